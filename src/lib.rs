@@ -1,0 +1,5 @@
+//! Catmull-Clark control meshes, drawn smooth by Vulkan's tessellation stages.
+
+pub mod mesh;
+
+pub use mesh::{ControlMesh, MeshData, MeshError};

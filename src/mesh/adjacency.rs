@@ -1,0 +1,105 @@
+//! Which half-edge lies opposite which.
+
+use super::{MeshData, MeshError};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// In a twin table: the half-edge lies on a boundary.
+pub(crate) const NO_TWIN: u32 = u32::MAX;
+
+/// A half-edge filed under the lower of its two vertices.
+#[derive(Clone, Copy, Default)]
+struct Filed {
+    /// The higher vertex.
+    high: u32,
+    half_edge: u32,
+}
+
+/// Finds the twin of every half-edge in linear time (up to sorting within one vertex).
+///
+/// Half-edges are filed under their lower vertex by counting, so that each file is as long as a vertex's valence and
+/// files can be sorted in parallel.
+pub(crate) fn twins(vertex_count: usize, face_offsets: &[u32], face_vertices: &[u32]) -> Result<Vec<u32>, MeshError> {
+    let count = face_vertices.len();
+    let mut file_offsets = vec![0u32; vertex_count + 1];
+    for_each_half_edge(face_offsets, face_vertices, |_, from, to| file_offsets[from.min(to) as usize + 1] += 1);
+    for i in 0..vertex_count {
+        file_offsets[i + 1] += file_offsets[i];
+    }
+    let mut filed = vec![Filed::default(); count];
+    let mut next = file_offsets.clone();
+    for_each_half_edge(face_offsets, face_vertices, |half_edge, from, to| {
+        let slot = &mut next[from.min(to) as usize];
+        filed[*slot as usize] = Filed { high: from.max(to), half_edge };
+        *slot += 1;
+    });
+    drop(next);
+
+    let mut files = Vec::with_capacity(vertex_count);
+    let mut rest = filed.as_mut_slice();
+    for range in file_offsets.windows(2) {
+        let (file, tail) = rest.split_at_mut((range[1] - range[0]) as usize);
+        files.push(file);
+        rest = tail;
+    }
+    files.par_iter_mut().with_min_len(1024).for_each(|file| file.sort_unstable_by_key(|f| (f.high, f.half_edge)));
+
+    let mut twins = vec![NO_TWIN; count];
+    let mut faults = Vec::new();
+    for (low, file) in files.iter().enumerate() {
+        for pair in file.chunk_by(|a, b| a.high == b.high) {
+            match *pair {
+                [_] => {}
+                [a, b] if face_vertices[a.half_edge as usize] != face_vertices[b.half_edge as usize] => {
+                    twins[a.half_edge as usize] = b.half_edge;
+                    twins[b.half_edge as usize] = a.half_edge;
+                }
+                _ => faults.push((low as u32, pair)),
+            }
+        }
+    }
+    // The fault that comes first in the mesh, so that the message does not depend on how edges were filed.
+    match faults.iter().min_by_key(|(_, pair)| pair.last().map(|f| f.half_edge)) {
+        None => Ok(twins),
+        Some((low, pair)) => Err(fault(*low, pair, face_offsets)),
+    }
+}
+
+fn fault(low: u32, pair: &[Filed], face_offsets: &[u32]) -> MeshError {
+    let face_of = |f: &Filed| face_offsets.partition_point(|&offset| offset <= f.half_edge) as u32 - 1;
+    let edge = [low, pair[0].high];
+    match pair {
+        [a, b] => MeshError::InconsistentOrientation { face: face_of(b), other: face_of(a), edge },
+        _ => MeshError::NonManifoldEdge { face: face_of(&pair[2]), edge },
+    }
+}
+
+fn for_each_half_edge(face_offsets: &[u32], face_vertices: &[u32], mut visit: impl FnMut(u32, u32, u32)) {
+    for range in face_offsets.windows(2) {
+        let face = &face_vertices[range[0] as usize..range[1] as usize];
+        let mut from = face[face.len() - 1];
+        // The half-edge that enters corner k is the one that starts at the corner before it.
+        let mut half_edge = range[1] - 1;
+        for (k, &to) in face.iter().enumerate() {
+            visit(half_edge, from, to);
+            from = to;
+            half_edge = range[0] + k as u32;
+        }
+    }
+}
+
+/// A half-edge of each crease's edge, [`NO_TWIN`] where there is no such edge.
+pub(crate) fn edges_of_creases(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Vec<u32> {
+    if data.creases.is_empty() {
+        return Vec::new();
+    }
+    let key = |a: u32, b: u32| (a.min(b), a.max(b));
+    let mut wanted: HashMap<(u32, u32), u32> =
+        data.creases.iter().map(|c| (key(c.vertices[0], c.vertices[1]), NO_TWIN)).collect();
+    for_each_half_edge(face_offsets, &data.face_vertices, |half_edge, from, to| {
+        if let Some(found) = wanted.get_mut(&key(from, to)) {
+            *found = half_edge.min(twins[half_edge as usize]);
+        }
+    });
+    data.creases.iter().map(|c| wanted[&key(c.vertices[0], c.vertices[1])]).collect()
+}

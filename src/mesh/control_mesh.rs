@@ -1,0 +1,312 @@
+use super::{MeshError, adjacency};
+use glam::DVec3;
+
+/// A sharpness from which on an edge or vertex is infinitely sharp, as in OpenSubdiv.
+pub const SHARPNESS_INFINITE: f32 = 10.0;
+
+/// What a boundary of the mesh does to the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BoundaryRule {
+    /// Faces that touch the boundary shape the surface but are not drawn.
+    None,
+    /// Boundary edges are infinitely sharp: the surface ends in a B-spline curve.
+    EdgeOnly,
+    /// As [`BoundaryRule::EdgeOnly`]; boundary vertices with one face are interpolated.
+    #[default]
+    EdgeAndCorner,
+}
+
+/// How semi-sharp creases lose sharpness when they are subdivided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CreaseMethod {
+    /// One less on every level.
+    #[default]
+    Uniform,
+    /// Mixed with the neighbours along the crease (Chaikin's rule), then one less.
+    Chaikin,
+}
+
+/// The weights of triangles under subdivision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TriangleRule {
+    /// Catmull and Clark's rule for every face.
+    #[default]
+    CatmullClark,
+    /// OpenSubdiv's smoother edge points next to triangles.
+    Smooth,
+}
+
+/// Where face-varying data is interpolated linearly (OpenSubdiv's six rules).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FaceVaryingRule {
+    /// Smooth everywhere.
+    None,
+    CornersOnly,
+    CornersPlus1,
+    CornersPlus2,
+    /// Linear along every seam and boundary.
+    Boundaries,
+    /// Linear everywhere.
+    #[default]
+    All,
+}
+
+/// A crease: the edge between two vertices and its sharpness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crease {
+    pub vertices: [u32; 2],
+    pub sharpness: f32,
+}
+
+/// A sharp vertex.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Corner {
+    pub vertex: u32,
+    pub sharpness: f32,
+}
+
+/// Values that may differ at one vertex from face to face: a pool, and an index into it a face corner.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FaceVarying<T> {
+    pub values: Vec<T>,
+    /// One a face corner, in the order of the faces' corners.
+    pub indices: Vec<u32>,
+}
+
+/// The parts of a control mesh, unchecked. Fill what you have and leave the rest to `Default`.
+///
+/// ```
+/// use ash_subdiv::{ControlMesh, MeshData};
+/// let tetrahedron = ControlMesh::new(MeshData {
+///     positions: vec![[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]],
+///     face_sizes: vec![3; 4],
+///     face_vertices: vec![0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2],
+///     ..MeshData::default()
+/// })?;
+/// assert_eq!(tetrahedron.face_count(), 4);
+/// # Ok::<(), ash_subdiv::MeshError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MeshData {
+    /// Object space, any unit.
+    pub positions: Vec<[f64; 3]>,
+    /// Vertices a face, three or more.
+    pub face_sizes: Vec<u32>,
+    /// The vertices of every face, counter-clockwise seen from outside, one face after the other.
+    pub face_vertices: Vec<u32>,
+    /// Texture coordinates, origin wherever the image says.
+    pub texcoords: Option<FaceVarying<[f32; 2]>>,
+    /// Authored normals. The smooth surface has normals of its own; these are kept for callers.
+    pub normals: Option<FaceVarying<[f32; 3]>>,
+    pub creases: Vec<Crease>,
+    pub corners: Vec<Corner>,
+    /// Faces that shape the surface but are not drawn.
+    pub holes: Vec<u32>,
+    pub boundary: BoundaryRule,
+    pub crease_method: CreaseMethod,
+    pub triangle_rule: TriangleRule,
+    pub face_varying_rule: FaceVaryingRule,
+}
+
+/// A checked, oriented control mesh whose edges have one or two faces.
+///
+/// Vertices, faces and face corners keep the numbers they were given. A *corner number* (also: half-edge number) is
+/// an index into [`MeshData::face_vertices`]; half-edge `h` runs from its corner to the next corner of the face.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ControlMesh {
+    data: MeshData,
+    face_offsets: Vec<u32>,
+    twins: Vec<u32>,
+}
+
+impl ControlMesh {
+    /// Checks `data` and makes it a mesh.
+    ///
+    /// # Errors
+    /// Empty meshes, faces with fewer than three vertices, repeated vertices or indices out of range, positions that
+    /// are not finite, isolated vertices, edges with three faces or with two faces in the same direction, and tags
+    /// that name what is not there. Vertices where fans of faces touch in a point are accepted.
+    pub fn new(mut data: MeshData) -> Result<Self, MeshError> {
+        let face_offsets = check(&data)?;
+        let twins = adjacency::twins(data.positions.len(), &face_offsets, &data.face_vertices)?;
+        check_tags(&data, &face_offsets, &twins)?;
+        data.holes.sort_unstable();
+        data.holes.dedup();
+        Ok(Self { data, face_offsets, twins })
+    }
+
+    /// The parts, as given (holes sorted).
+    pub fn data(&self) -> &MeshData {
+        &self.data
+    }
+
+    /// Gives the parts back, to be changed and checked again.
+    pub fn into_data(self) -> MeshData {
+        self.data
+    }
+
+    pub fn vertex_count(&self) -> usize {
+        self.data.positions.len()
+    }
+
+    pub fn face_count(&self) -> usize {
+        self.data.face_sizes.len()
+    }
+
+    /// Corners (half-edges) of all faces together.
+    pub fn corner_count(&self) -> usize {
+        self.data.face_vertices.len()
+    }
+
+    /// Edges, each counted once.
+    pub fn edge_count(&self) -> usize {
+        self.corner_count() - self.twins.iter().enumerate().filter(|&(h, &t)| t < h as u32).count()
+    }
+
+    /// Edges with one face.
+    pub fn boundary_edge_count(&self) -> usize {
+        self.twins.iter().filter(|&&t| t == adjacency::NO_TWIN).count()
+    }
+
+    pub fn position(&self, vertex: u32) -> DVec3 {
+        self.data.positions[vertex as usize].into()
+    }
+
+    /// The vertices of a face, counter-clockwise.
+    pub fn face(&self, face: u32) -> &[u32] {
+        &self.data.face_vertices[self.face_corners(face)]
+    }
+
+    /// The corner numbers of a face.
+    pub fn face_corners(&self, face: u32) -> std::ops::Range<usize> {
+        self.face_offsets[face as usize] as usize..self.face_offsets[face as usize + 1] as usize
+    }
+
+    /// Prefix sums of the face sizes: one more than there are faces.
+    pub fn face_offsets(&self) -> &[u32] {
+        &self.face_offsets
+    }
+
+    /// The half-edge on the other side of each half-edge, `u32::MAX` on a boundary.
+    pub fn twins(&self) -> &[u32] {
+        &self.twins
+    }
+
+    /// Smallest and largest coordinates of the control points.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        for &position in &self.data.positions {
+            bounds[0] = bounds[0].min(position.into());
+            bounds[1] = bounds[1].max(position.into());
+        }
+        bounds
+    }
+
+    /// Length of the diagonal of [`ControlMesh::bounds`].
+    pub fn diagonal(&self) -> f64 {
+        let [low, high] = self.bounds();
+        (high - low).length()
+    }
+
+    /// Positions in the precision of the GPU, in vertex order.
+    pub fn positions_f32(&self) -> Vec<[f32; 3]> {
+        self.data.positions.iter().map(|p| p.map(|x| x as f32)).collect()
+    }
+}
+
+/// Everything that can be checked without neighbours. Gives the face offsets.
+fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
+    let count = data.positions.len();
+    if count == 0 {
+        return Err(MeshError::Empty { what: "vertices" });
+    }
+    if data.face_sizes.is_empty() {
+        return Err(MeshError::Empty { what: "faces" });
+    }
+    // The top bit of an index is a flag in the GPU tables, and u32::MAX means "none".
+    let max = (u32::MAX >> 1) as usize;
+    for (what, count) in [("vertices", count), ("face corners", data.face_vertices.len())] {
+        if count > max {
+            return Err(MeshError::TooLarge { what, count, max });
+        }
+    }
+    let mut face_offsets = Vec::with_capacity(data.face_sizes.len() + 1);
+    let mut corners = 0usize;
+    face_offsets.push(0);
+    for (face, &size) in data.face_sizes.iter().enumerate() {
+        if size < 3 {
+            return Err(MeshError::FaceTooSmall { face: face as u32, size: size as usize });
+        }
+        corners += size as usize;
+        face_offsets.push(corners as u32);
+    }
+    if corners != data.face_vertices.len() {
+        return Err(MeshError::CornerCount { what: "vertices", given: data.face_vertices.len(), corners });
+    }
+    if let Some(vertex) = data.positions.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+        return Err(MeshError::NotFinite { vertex: vertex as u32, position: data.positions[vertex] });
+    }
+    // Which face used a vertex last: finds repeated vertices in linear time whatever the size of a face.
+    let mut last_face = vec![u32::MAX; count];
+    for (face, range) in face_offsets.windows(2).enumerate() {
+        let face = face as u32;
+        for &vertex in &data.face_vertices[range[0] as usize..range[1] as usize] {
+            let last = last_face.get_mut(vertex as usize).ok_or(MeshError::IndexOutOfRange { face, vertex, count })?;
+            if std::mem::replace(last, face) == face {
+                return Err(MeshError::RepeatedVertex { face, vertex });
+            }
+        }
+    }
+    if let Some(vertex) = last_face.iter().position(|&face| face == u32::MAX) {
+        return Err(MeshError::IsolatedVertex { vertex: vertex as u32 });
+    }
+    check_face_varying("texture coordinate", data.texcoords.as_ref(), corners)?;
+    check_face_varying("normal", data.normals.as_ref(), corners)?;
+    Ok(face_offsets)
+}
+
+fn check_face_varying<const N: usize>(
+    what: &'static str,
+    data: Option<&FaceVarying<[f32; N]>>,
+    corners: usize,
+) -> Result<(), MeshError> {
+    let Some(FaceVarying { values, indices }) = data else { return Ok(()) };
+    if indices.len() != corners {
+        return Err(MeshError::CornerCount { what, given: indices.len(), corners });
+    }
+    if let Some(corner) = indices.iter().position(|&i| i as usize >= values.len()) {
+        return Err(MeshError::CornerIndex { what, corner, index: indices[corner], count: values.len() });
+    }
+    if let Some(index) = values.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
+        return Err(MeshError::AttributeNotFinite { what, index });
+    }
+    Ok(())
+}
+
+fn check_tags(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Result<(), MeshError> {
+    for (index, corner) in data.corners.iter().enumerate() {
+        if corner.vertex as usize >= data.positions.len() {
+            let count = data.positions.len();
+            return Err(MeshError::NoSuchVertex { corner: index, vertex: corner.vertex, count });
+        }
+        check_sharpness("corner", index, corner.sharpness)?;
+    }
+    for &face in &data.holes {
+        if face as usize >= data.face_sizes.len() {
+            return Err(MeshError::NoSuchFace { face, count: data.face_sizes.len() });
+        }
+    }
+    let found = adjacency::edges_of_creases(data, face_offsets, twins);
+    for (index, (crease, edge)) in data.creases.iter().zip(found).enumerate() {
+        check_sharpness("crease", index, crease.sharpness)?;
+        if edge == adjacency::NO_TWIN {
+            return Err(MeshError::NoSuchEdge { crease: index, edge: crease.vertices });
+        }
+    }
+    Ok(())
+}
+
+fn check_sharpness(what: &'static str, index: usize, sharpness: f32) -> Result<(), MeshError> {
+    // Not `sharpness < 0.0`: NaN is bad too.
+    if sharpness >= 0.0 { Ok(()) } else { Err(MeshError::BadSharpness { what, index, sharpness }) }
+}

@@ -1,0 +1,80 @@
+use std::path::PathBuf;
+
+/// Why a control mesh could not be made: what is wrong, where, and what to do about it.
+///
+/// Face, vertex and corner numbers count from zero; `line` numbers from one. A reader that knows the line of the
+/// offending element wraps the error in [`MeshError::AtLine`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    #[error("the mesh has no {what}: a control mesh needs at least one face")]
+    Empty { what: &'static str },
+    #[error("vertex {vertex} is at ({}, {}, {}): positions must be finite numbers", position[0], position[1], position[2])]
+    NotFinite { vertex: u32, position: [f64; 3] },
+    #[error("face {face} has {size} vertices: a face needs at least three")]
+    FaceTooSmall { face: u32, size: usize },
+    #[error("face {face} names vertex {vertex}, but the mesh has {count} vertices (0 to {})", count - 1)]
+    IndexOutOfRange { face: u32, vertex: u32, count: usize },
+    #[error("face {face} names vertex {vertex} twice: remove the repeated vertex, or split the face there")]
+    RepeatedVertex { face: u32, vertex: u32 },
+    #[error("vertex {vertex} belongs to no face: remove it, or read the file with isolated vertices dropped")]
+    IsolatedVertex { vertex: u32 },
+    #[error(
+        "face {face} is the third face at the edge {}-{}: an edge has one or two faces; separate the surfaces there",
+        edge[0],
+        edge[1]
+    )]
+    NonManifoldEdge { face: u32, edge: [u32; 2] },
+    #[error(
+        "faces {other} and {face} both run along the edge {}-{} in the same direction: turn one of them round so that all faces are counter-clockwise from outside",
+        edge[0],
+        edge[1]
+    )]
+    InconsistentOrientation { face: u32, other: u32, edge: [u32; 2] },
+    #[error("crease {crease} names the edge {}-{}, which is no edge of any face", edge[0], edge[1])]
+    NoSuchEdge { crease: usize, edge: [u32; 2] },
+    #[error(
+        "{what} {index} has sharpness {sharpness}: sharpness is a number from 0 up (10 and more is infinitely sharp)"
+    )]
+    BadSharpness { what: &'static str, index: usize, sharpness: f32 },
+    #[error("corner {corner} names vertex {vertex}, but the mesh has {count} vertices")]
+    NoSuchVertex { corner: usize, vertex: u32, count: usize },
+    #[error("hole tag names face {face}, but the mesh has {count} faces")]
+    NoSuchFace { face: u32, count: usize },
+    #[error("{what} are given for {given} face corners, but the mesh has {corners}")]
+    CornerCount { what: &'static str, given: usize, corners: usize },
+    #[error("corner {corner} names {what} {index}, but there are {count}")]
+    CornerIndex { what: &'static str, corner: usize, index: u32, count: usize },
+    #[error("{what} {index} is not a finite number")]
+    AttributeNotFinite { what: &'static str, index: usize },
+    #[error("the mesh has {count} {what}: at most {max} can be addressed")]
+    TooLarge { what: &'static str, count: usize, max: usize },
+
+    #[error("line {line}: {error}")]
+    AtLine { line: usize, error: Box<MeshError> },
+    #[error("line {line}: {message}")]
+    Syntax { line: usize, message: String },
+    #[error("{}: {message}", path.display())]
+    Unreadable { path: PathBuf, message: String },
+    #[error("{}: {error}", path.display())]
+    InFile { path: PathBuf, error: Box<MeshError> },
+    #[error("{message}")]
+    Format { message: String },
+    #[error("there is no shape named \"{name}\": choose one of {known}")]
+    UnknownShape { name: String, known: String },
+}
+
+impl MeshError {
+    /// The face that is to blame, if one is.
+    pub fn face(&self) -> Option<u32> {
+        match self {
+            Self::FaceTooSmall { face, .. }
+            | Self::IndexOutOfRange { face, .. }
+            | Self::RepeatedVertex { face, .. }
+            | Self::NonManifoldEdge { face, .. }
+            | Self::InconsistentOrientation { face, .. } => Some(*face),
+            Self::AtLine { error, .. } | Self::InFile { error, .. } => error.face(),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Control meshes: what they are, how they are checked, and how files and built-in shapes become one.
+
+mod adjacency;
+mod control_mesh;
+mod error;
+
+pub use control_mesh::{
+    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,
+    SHARPNESS_INFINITE, TriangleRule,
+};
+pub use error::MeshError;
+
+pub(crate) use adjacency::NO_TWIN;
