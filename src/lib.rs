@@ -1,5 +1,8 @@
 //! Catmull-Clark control meshes, drawn smooth by Vulkan's tessellation stages.
 
+pub mod limit;
 pub mod mesh;
+pub mod patch;
+pub mod topology;
 
 pub use mesh::{ControlMesh, MeshData, MeshError};

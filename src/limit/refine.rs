@@ -1,0 +1,428 @@
+//! One step of Catmull-Clark refinement of a whole mesh: any face sizes, boundaries, semi-sharp creases and corners,
+//! holes, both crease methods and both triangle rules (patch_maths A).
+
+use crate::mesh::{
+    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, MeshData, MeshError, SHARPNESS_INFINITE,
+    TriangleRule,
+};
+use crate::patch::{Blend, Row};
+use crate::topology::Topology;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Weighted sums: output `i` is the sum of `weights[k] * input[indices[k]]` for k in `offsets[i]..offsets[i + 1]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stencils {
+    pub offsets: Vec<u32>,
+    pub indices: Vec<u32>,
+    pub weights: Vec<f64>,
+}
+
+impl Stencils {
+    fn new(rows: Vec<Row>) -> Self {
+        let mut stencils = Self { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
+        for row in rows {
+            for &(index, weight) in row.weights() {
+                stencils.indices.push(index);
+                stencils.weights.push(weight);
+            }
+            stencils.offsets.push(stencils.indices.len() as u32);
+        }
+        stencils
+    }
+
+    /// Number of outputs.
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The outputs for these inputs.
+    pub fn apply<T: Blend + Send + Sync>(&self, inputs: &[T]) -> Vec<T> {
+        self.offsets
+            .par_windows(2)
+            .map(|range| {
+                let range = range[0] as usize..range[1] as usize;
+                let terms = self.weights[range.clone()].iter().zip(&self.indices[range]);
+                T::sum(terms.map(|(&weight, &index)| (weight, &inputs[index as usize])))
+            })
+            .collect()
+    }
+}
+
+/// A refined mesh and where it came from.
+#[derive(Debug, Clone)]
+pub struct Refined {
+    /// All quads. Vertices: one for each manifold vertex, then each edge, then each face of the coarse mesh.
+    pub mesh: ControlMesh,
+    /// The refined positions as sums of the coarse mesh's.
+    pub stencils: Stencils,
+    /// For each refined face, the coarse face corner it grew from: the child of corner h is
+    /// `[vertex(h), edge(h), face, edge(prev(h))]`.
+    pub parents: Vec<u32>,
+}
+
+/// Refines once. Texture coordinates and normals are refined linearly within each face.
+///
+/// # Errors
+/// [`MeshError::TooLarge`] if the refined mesh has more corners or vertices than can be addressed.
+pub fn refine(topology: &Topology) -> Result<Refined, MeshError> {
+    let step = Step::new(topology);
+    let stencils = Stencils::new(step.rows());
+    let mesh = topology.mesh();
+    let coarse: Vec<DVec3> = mesh.data().positions.iter().map(|&p| p.into()).collect();
+    let corners = mesh.corner_count();
+    let corner = |h: usize| {
+        let h = h as u32;
+        [topology.vertex(h), step.edge_vertex(h), step.face_vertex(h), step.edge_vertex(topology.prev(h))]
+    };
+    let data = mesh.data();
+    let refined = ControlMesh::new(MeshData {
+        positions: stencils.apply(&coarse).into_iter().map(Into::into).collect(),
+        face_sizes: vec![4; corners],
+        face_vertices: (0..corners).flat_map(corner).collect(),
+        texcoords: data.texcoords.as_ref().map(|t| refine_face_varying(topology, t)),
+        normals: data.normals.as_ref().map(|n| refine_face_varying(topology, n)),
+        creases: step.child_creases(),
+        corners: step.child_corners(),
+        holes: data.holes.iter().flat_map(|&f| mesh.face_corners(f)).map(|h| h as u32).collect(),
+        boundary: data.boundary,
+        crease_method: data.crease_method,
+        // After one step there are no triangles.
+        triangle_rule: TriangleRule::CatmullClark,
+        face_varying_rule: data.face_varying_rule,
+    })?;
+    Ok(Refined { mesh: refined, stencils, parents: (0..corners as u32).collect() })
+}
+
+fn refine_face_varying<const N: usize>(topology: &Topology, coarse: &FaceVarying<[f32; N]>) -> FaceVarying<[f32; N]> {
+    let value = |h: u32| coarse.values[coarse.indices[h as usize] as usize];
+    let mean =
+        |values: &[[f32; N]]| std::array::from_fn(|i| values.iter().map(|v| v[i]).sum::<f32>() / values.len() as f32);
+    let mut values = Vec::with_capacity(4 * coarse.indices.len());
+    for face in 0..topology.mesh().face_count() as u32 {
+        let corners = topology.mesh().face_corners(face);
+        let around: Vec<_> = corners.clone().map(|h| value(h as u32)).collect();
+        for h in corners {
+            let h = h as u32;
+            let (here, next, prev) = (value(h), value(topology.next(h)), value(topology.prev(h)));
+            values.extend([here, mean(&[here, next]), mean(&around), mean(&[here, prev])]);
+        }
+    }
+    FaceVarying { indices: (0..values.len() as u32).collect(), values }
+}
+
+/// The rule at a vertex, by what is sharp there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Rule {
+    /// Nothing or one edge (a dart) is sharp.
+    Smooth,
+    /// Two edges are sharp: their half-edges' far vertices.
+    Crease([u32; 2]),
+    Corner,
+}
+
+/// An edge end that is sharp: seen from one vertex.
+#[derive(Clone, Copy)]
+struct SharpEnd {
+    /// The vertex of the mesh at the other end.
+    far: u32,
+    sharpness: f32,
+    /// What is left of it in the child edge at this vertex.
+    child: f32,
+}
+
+struct Step<'t, 'm> {
+    topology: &'t Topology<'m>,
+    /// The edge of each half-edge.
+    edges: Vec<u32>,
+    /// A half-edge of each edge.
+    edge_half_edges: Vec<u32>,
+    /// Sharpness of the edges that have any, boundaries included.
+    sharpness: HashMap<u32, f32>,
+    /// The sharp edge ends of the vertices that have any.
+    sharp_ends: HashMap<u32, Vec<(u32, SharpEnd)>>,
+    /// Sharpness of the manifold vertices that have any.
+    vertex_sharpness: HashMap<u32, f32>,
+}
+
+/// Sharpness after one uniform step.
+fn decrement(sharpness: f32) -> f32 {
+    if sharpness >= SHARPNESS_INFINITE { sharpness } else { (sharpness - 1.0).max(0.0) }
+}
+
+fn is_semi_sharp(sharpness: f32) -> bool {
+    sharpness > 0.0 && sharpness < SHARPNESS_INFINITE
+}
+
+impl<'t, 'm> Step<'t, 'm> {
+    fn new(topology: &'t Topology<'m>) -> Self {
+        let corners = topology.mesh().corner_count() as u32;
+        let mut edges = vec![0; corners as usize];
+        let mut edge_half_edges = Vec::new();
+        for h in 0..corners {
+            edges[h as usize] = match topology.twin(h) {
+                Some(twin) if twin < h => edges[twin as usize],
+                _ => {
+                    edge_half_edges.push(h);
+                    edge_half_edges.len() as u32 - 1
+                }
+            };
+        }
+        let mut step = Self {
+            topology,
+            edges,
+            edge_half_edges,
+            sharpness: HashMap::new(),
+            sharp_ends: HashMap::new(),
+            vertex_sharpness: HashMap::new(),
+        };
+        step.find_sharp_edges();
+        step.find_sharp_vertices();
+        step
+    }
+
+    fn edge_vertex(&self, h: u32) -> u32 {
+        self.topology.vertex_count() as u32 + self.edges[h as usize]
+    }
+
+    fn face_vertex(&self, h: u32) -> u32 {
+        (self.topology.vertex_count() + self.edge_half_edges.len()) as u32 + self.topology.face(h)
+    }
+
+    /// The manifold vertices at the two ends of an edge.
+    fn ends(&self, edge: u32) -> [u32; 2] {
+        let h = self.edge_half_edges[edge as usize];
+        [self.topology.vertex(h), self.topology.vertex(self.topology.next(h))]
+    }
+
+    fn find_sharp_edges(&mut self) {
+        let topology = self.topology;
+        let key = |a: u32, b: u32| (a.min(b), a.max(b));
+        let creases: HashMap<_, _> =
+            topology.mesh().data().creases.iter().map(|c| (key(c.vertices[0], c.vertices[1]), c.sharpness)).collect();
+        for (edge, &h) in self.edge_half_edges.iter().enumerate() {
+            let sharpness = if topology.twin(h).is_none() {
+                SHARPNESS_INFINITE
+            } else if creases.is_empty() {
+                0.0
+            } else {
+                let ends = key(topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h)));
+                creases.get(&ends).copied().unwrap_or(0.0)
+            };
+            if sharpness > 0.0 {
+                self.sharpness.insert(edge as u32, sharpness);
+            }
+        }
+        for (&edge, &sharpness) in &self.sharpness {
+            let [a, b] = self.ends(edge);
+            for (near, far) in [(a, b), (b, a)] {
+                let end = SharpEnd { far: topology.source(far), sharpness, child: decrement(sharpness) };
+                self.sharp_ends.entry(near).or_default().push((edge, end));
+            }
+        }
+        for ends in self.sharp_ends.values_mut() {
+            // A hash map gave them in any order.
+            ends.sort_unstable_by_key(|(edge, _)| *edge);
+            if topology.mesh().data().crease_method == CreaseMethod::Chaikin {
+                chaikin(ends);
+            }
+        }
+    }
+
+    fn find_sharp_vertices(&mut self) {
+        let topology = self.topology;
+        let data = topology.mesh().data();
+        let tagged: HashMap<u32, f32> = data.corners.iter().map(|c| (c.vertex, c.sharpness)).collect();
+        let corners_are_sharp = data.boundary == BoundaryRule::EdgeAndCorner;
+        for h in 0..topology.mesh().corner_count() as u32 {
+            let vertex = topology.vertex(h);
+            let lone = topology.twin(h).is_none() && topology.twin(topology.prev(h)).is_none();
+            if lone && corners_are_sharp {
+                self.vertex_sharpness.insert(vertex, SHARPNESS_INFINITE);
+            } else if let Some(&sharpness) = tagged.get(&topology.source(vertex))
+                && sharpness > 0.0
+            {
+                self.vertex_sharpness.insert(vertex, sharpness);
+            }
+        }
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let topology = self.topology;
+        let mut start = vec![u32::MAX; topology.vertex_count()];
+        for h in 0..topology.mesh().corner_count() as u32 {
+            let first = &mut start[topology.vertex(h) as usize];
+            *first = (*first).min(h);
+        }
+        let vertices = start.into_par_iter().map(|h| self.vertex_row(h));
+        let edges = (0..self.edge_half_edges.len() as u32).into_par_iter().map(|e| self.edge_row(e));
+        let faces = (0..topology.mesh().face_count() as u32).into_par_iter().map(|f| self.face_row(f));
+        vertices.chain(edges).chain(faces).collect()
+    }
+
+    fn unit(&self, half_edge: u32) -> Row {
+        Row::unit(self.topology.mesh_vertex(half_edge))
+    }
+
+    fn face_row(&self, face: u32) -> Row {
+        let vertices = self.topology.mesh().face(face);
+        let mut row = Row::default();
+        for &vertex in vertices {
+            row.add_scaled(1.0 / vertices.len() as f64, &Row::unit(vertex));
+        }
+        row
+    }
+
+    fn edge_row(&self, edge: u32) -> Row {
+        let topology = self.topology;
+        let h = self.edge_half_edges[edge as usize];
+        let (from, to) = (self.unit(h), self.unit(topology.next(h)));
+        let sharp = Row::sum([(0.5, &from), (0.5, &to)]);
+        let Some(twin) = topology.twin(h) else { return sharp };
+        let sharpness = self.sharpness.get(&edge).copied().unwrap_or(0.0);
+        let weight = if self.stays_sharp(edge, sharpness) { 1.0 } else { f64::from(sharpness.min(1.0)) };
+        if weight == 1.0 {
+            return sharp;
+        }
+        let (left, right) = (self.face_row(topology.face(h)), self.face_row(topology.face(twin)));
+        let face_weight = self.edge_face_weight(h, twin);
+        let end_weight = 0.5 - face_weight;
+        let smooth = [(end_weight, &from), (end_weight, &to), (face_weight, &left), (face_weight, &right)];
+        let smooth = Row::sum(smooth);
+        if weight == 0.0 { smooth } else { Row::sum([(weight, &sharp), (1.0 - weight, &smooth)]) }
+    }
+
+    /// The weight of each face point in a smooth edge point: 1/4, more next to triangles under OpenSubdiv's smooth
+    /// triangle rule (0.47 stands for a triangle).
+    fn edge_face_weight(&self, h: u32, twin: u32) -> f64 {
+        if self.topology.mesh().data().triangle_rule == TriangleRule::CatmullClark {
+            return 0.25;
+        }
+        let weight = |h: u32| if self.topology.face_size(h) == 3 { 0.470 } else { 0.25 };
+        0.5 * (weight(h) + weight(twin))
+    }
+
+    /// Chaikin's exception: an edge whose two children stay sharp is fully sharp.
+    fn stays_sharp(&self, edge: u32, sharpness: f32) -> bool {
+        self.topology.mesh().data().crease_method == CreaseMethod::Chaikin
+            && sharpness > 0.0
+            && self.ends(edge).into_iter().all(|v| self.child_sharpness(edge, v) > 0.0)
+    }
+
+    fn child_sharpness(&self, edge: u32, vertex: u32) -> f32 {
+        let ends = self.sharp_ends.get(&vertex).map_or(&[][..], Vec::as_slice);
+        ends.iter().find(|(e, _)| *e == edge).map_or(0.0, |(_, end)| end.child)
+    }
+
+    fn vertex_row(&self, half_edge: u32) -> Row {
+        let vertex = self.topology.vertex(half_edge);
+        let none = Vec::new();
+        let ends = self.sharp_ends.get(&vertex).unwrap_or(&none);
+        let sharpness = self.vertex_sharpness.get(&vertex).copied().unwrap_or(0.0);
+        let rule = |sharpness: f32, of: fn(&SharpEnd) -> f32| {
+            let sharp: Vec<u32> = ends.iter().filter(|(_, e)| of(e) > 0.0).map(|(_, e)| e.far).collect();
+            match *sharp {
+                _ if sharpness > 0.0 => Rule::Corner,
+                [] | [_] => Rule::Smooth,
+                [a, b] => Rule::Crease([a, b]),
+                _ => Rule::Corner,
+            }
+        };
+        let parent = rule(sharpness, |e| e.sharpness);
+        let child = rule(decrement(sharpness), |e| e.child);
+        let row = self.masked(half_edge, parent);
+        if parent == Rule::Smooth || std::mem::discriminant(&parent) == std::mem::discriminant(&child) {
+            return row;
+        }
+        // Between the two rules, by the mean of the sharpness that is used up in this step.
+        let uniform = self.topology.mesh().data().crease_method == CreaseMethod::Uniform;
+        let mut used: Vec<f32> = ends
+            .iter()
+            .filter(|(_, e)| if uniform { e.sharpness <= 1.0 } else { e.child <= 0.0 })
+            .map(|(_, e)| e.sharpness)
+            .collect();
+        if sharpness > 0.0 && decrement(sharpness) <= 0.0 {
+            used.push(sharpness);
+        }
+        let mean = if used.is_empty() { 0.0 } else { used.iter().sum::<f32>() / used.len() as f32 };
+        let weight = f64::from(mean.min(1.0));
+        Row::sum([(weight, &row), (1.0 - weight, &self.masked(half_edge, child))])
+    }
+
+    fn masked(&self, half_edge: u32, rule: Rule) -> Row {
+        let centre = self.unit(half_edge);
+        match rule {
+            Rule::Corner => centre,
+            Rule::Crease([a, b]) => Row::sum([(0.75, &centre), (0.125, &Row::unit(a)), (0.125, &Row::unit(b))]),
+            Rule::Smooth => {
+                let topology = self.topology;
+                let mut around = vec![half_edge];
+                let mut at = half_edge;
+                while let Some(next) = topology.twin(topology.prev(at)) {
+                    if next == half_edge {
+                        break;
+                    }
+                    around.push(next);
+                    at = next;
+                }
+                let n = around.len() as f64;
+                let mut row = Row::default();
+                row.add_scaled((n - 2.0) / n, &centre);
+                for h in around {
+                    row.add_scaled(1.0 / (n * n), &self.unit(topology.next(h)));
+                    row.add_scaled(1.0 / (n * n), &self.face_row(topology.face(h)));
+                }
+                row
+            }
+        }
+    }
+
+    fn child_creases(&self) -> Vec<Crease> {
+        let mut creases = Vec::new();
+        for (edge, &h) in self.edge_half_edges.iter().enumerate() {
+            let edge = edge as u32;
+            if self.topology.twin(h).is_none() || !self.sharpness.contains_key(&edge) {
+                continue;
+            }
+            for vertex in self.ends(edge) {
+                let sharpness = self.child_sharpness(edge, vertex);
+                if sharpness > 0.0 {
+                    creases.push(Crease { vertices: [vertex, self.edge_vertex(h)], sharpness });
+                }
+            }
+        }
+        creases
+    }
+
+    fn child_corners(&self) -> Vec<Corner> {
+        let tagged: HashMap<u32, f32> =
+            self.topology.mesh().data().corners.iter().map(|c| (c.vertex, c.sharpness)).collect();
+        let mut corners: Vec<Corner> = (0..self.topology.vertex_count() as u32)
+            .filter(|_| !tagged.is_empty())
+            .filter_map(|vertex| {
+                let sharpness = decrement(*tagged.get(&self.topology.source(vertex))?);
+                (sharpness > 0.0).then_some(Corner { vertex, sharpness })
+            })
+            .collect();
+        corners.sort_unstable_by_key(|c| c.vertex);
+        corners
+    }
+}
+
+/// Chaikin's rule at one vertex: each semi-sharp edge's child takes a quarter from the mean of the others.
+fn chaikin(ends: &mut [(u32, SharpEnd)]) {
+    let semi: Vec<f32> = ends.iter().map(|(_, e)| e.sharpness).filter(|&s| is_semi_sharp(s)).collect();
+    if semi.len() < 2 {
+        return;
+    }
+    let sum: f32 = semi.iter().sum();
+    for (_, end) in ends.iter_mut().filter(|(_, e)| is_semi_sharp(e.sharpness)) {
+        let others = (sum - end.sharpness) / (semi.len() - 1) as f32;
+        end.child = (0.75 * end.sharpness + 0.25 * others - 1.0).max(0.0);
+    }
+}

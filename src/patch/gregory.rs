@@ -1,0 +1,133 @@
+//! Gregory patches: Loop, Schaefer, Ni and Castano, *Approximating Subdivision Surfaces with Gregory Patches for
+//! Hardware Tessellation* (2009), as corrected in patch_maths B.
+//!
+//! A quad has 20 control points, a triangle 15, in this order: the corners `p_0..`, then the edge points `e_0+, e_0-,
+//! e_1+, e_1-, ..`, then the face points `f_0+, f_0-, ..`. `e_k+` and `f_k+` belong to the edge from corner k to
+//! corner k + 1, `e_k-` and `f_k-` to the edge from corner k to corner k - 1.
+
+use super::point::{scalar, unit_normal};
+use super::{Blend, Frame, Point, RingValues, Sample};
+use crate::patch::bicubic::{Basis, cubic, evaluate_tensor};
+
+/// What a corner of a patch takes from its one-ring.
+#[derive(Debug)]
+pub struct PatchCorner<'r, T> {
+    pub ring: &'r RingValues<T>,
+    pub frame: &'r Frame<T>,
+    /// The ring edge that is the corner's plus edge; the next one is its minus edge.
+    pub index: usize,
+}
+
+impl<T: Blend> PatchCorner<'_, T> {
+    pub(crate) fn plus(&self) -> T {
+        self.ring.edge_point(self.frame, self.index)
+    }
+
+    pub(crate) fn minus(&self) -> T {
+        self.ring.edge_point(self.frame, self.minus_index())
+    }
+
+    fn minus_index(&self) -> usize {
+        (self.index + 1) % self.ring.shape.edges()
+    }
+}
+
+/// The control points of the patch with these corners: 20 for four, 15 for three.
+///
+/// GLSL twin: `glsl/construct/gregory.tesc`.
+pub fn gregory_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
+    let n = corners.len();
+    // The d of section 3.4: three times the degree ratio between the patch and its edge curves.
+    let d = if n == 4 { 3.0 } else { 4.0 };
+    let plus: Vec<T> = corners.iter().map(PatchCorner::plus).collect();
+    let minus: Vec<T> = corners.iter().map(PatchCorner::minus).collect();
+    let cosines: Vec<f64> = corners.iter().map(|c| c.ring.shape.cosine()).collect();
+    let mut points: Vec<T> = corners.iter().map(|c| c.frame.p.clone()).collect();
+    for k in 0..n {
+        points.push(plus[k].clone());
+        points.push(minus[k].clone());
+    }
+    for (k, corner) in corners.iter().enumerate() {
+        let (next, before) = ((k + 1) % n, (k + n - 1) % n);
+        let face_point = |far: usize, near_edge: &T, far_edge: &T, side: f64, edge: usize| {
+            T::sum([
+                (cosines[far] / d, &corner.frame.p),
+                ((d - 2.0 * cosines[k] - cosines[far]) / d, near_edge),
+                (2.0 * cosines[k] / d, far_edge),
+                (side / d, &corner.ring.transversal(edge)),
+            ])
+        };
+        points.push(face_point(next, &plus[k], &minus[next], 1.0, corner.index));
+        // The face lies on the right of its minus edge.
+        points.push(face_point(before, &minus[k], &plus[before], -1.0, corner.minus_index()));
+    }
+    points
+}
+
+/// A quad patch at (u, v), with the de Casteljau normal of section 3.5: the derivative that takes the blended face points
+/// as constant. It is exact on the boundary, and inside closer to Catmull-Clark than the true one.
+///
+/// GLSL twin: `glsl/evaluate/gregory_quad.tese`.
+pub fn evaluate_gregory_quad<P: Point>(points: &[P; 20], u: P::Scalar, v: P::Scalar) -> Sample<P> {
+    let one = scalar::<P>(1.0);
+    let [p, e, f] = [&points[0..4], &points[4..12], &points[12..20]];
+    let (s, t) = (one - u, one - v);
+    let [f0, f1, f2, f3] =
+        [blend(f[0], u, f[1], v), blend(f[2], v, f[3], s), blend(f[4], s, f[5], t), blend(f[6], t, f[7], u)];
+    evaluate_tensor(
+        &[[p[0], e[1], e[6], p[3]], [e[0], f0, f3, e[7]], [e[3], f1, f2, e[4]], [p[1], e[2], e[5], p[2]]],
+        u,
+        v,
+    )
+}
+
+/// The face point `(a f+ + b f-) / (a + b)`; at a corner, where both weights vanish, it does not matter.
+fn blend<P: Point>(plus: P, a: P::Scalar, minus: P, b: P::Scalar) -> P {
+    let sum = a + b;
+    if sum > scalar::<P>(0.0) { (plus * a + minus * b) * (scalar::<P>(1.0) / sum) } else { plus }
+}
+
+/// A triangle patch at barycentric (u, v, 1 - u - v), with the derivative as in [`evaluate_gregory_quad`].
+///
+/// GLSL twin: `glsl/evaluate/gregory_triangle.tese`.
+pub fn evaluate_gregory_triangle<P: Point>(points: &[P; 15], u: P::Scalar, v: P::Scalar) -> Sample<P> {
+    let [c1, c2, c3, c12, c24] = [1.0, 2.0, 3.0, 12.0, 24.0].map(scalar::<P>);
+    let b = [u, v, c1 - u - v];
+    let [p, e, f] = [&points[0..3], &points[3..9], &points[9..15]];
+    let mut position = P::default();
+    // Partial derivatives by u, v and w as if they were independent.
+    let mut gradient = [P::default(); 3];
+    for k in 0..3 {
+        let (n, o) = ((k + 1) % 3, (k + 2) % 3);
+        let (x, y, z) = (b[k], b[n], b[o]);
+        // Corner k.
+        position = position + p[k] * (x * x * x);
+        gradient[k] = gradient[k] + p[k] * (c3 * x * x);
+        // The edge from corner k to corner n.
+        let (plus, minus) = (e[2 * k], e[2 * n + 1]);
+        let edge = plus * x + minus * y;
+        let scale = c3 * x * y * (x + y);
+        position = position + edge * scale;
+        gradient[k] = gradient[k] + edge * (c3 * y * (c2 * x + y)) + plus * scale;
+        gradient[n] = gradient[n] + edge * (c3 * x * (x + c2 * y)) + minus * scale;
+        // The face point of corner k.
+        let face = blend(f[2 * k], y, f[2 * k + 1], z);
+        position = position + face * (c12 * x * x * y * z);
+        gradient[k] = gradient[k] + face * (c24 * x * y * z);
+        gradient[n] = gradient[n] + face * (c12 * x * x * z);
+        gradient[o] = gradient[o] + face * (c12 * x * x * y);
+    }
+    let normal = unit_normal(gradient[0] - gradient[2], gradient[1] - gradient[2], (p[1] - p[0]).cross(p[2] - p[0]));
+    Sample { position, normal }
+}
+
+/// A curve along the boundary of a patch, from corner k to the next, as cubic Bezier points.
+pub fn boundary_curve<P: Point>(points: &[P], corners: usize, k: usize) -> [P; 4] {
+    let next = (k + 1) % corners;
+    [points[k], points[corners + 2 * k], points[corners + 2 * next + 1], points[next]]
+}
+
+/// A point on a boundary curve at `t` from its first end.
+pub fn evaluate_boundary<P: Point>(curve: &[P; 4], t: P::Scalar) -> P {
+    cubic(&Basis::new::<P>(t), curve)
+}

@@ -1,0 +1,67 @@
+//! Which patch a face becomes.
+
+use super::Topology;
+use crate::mesh::BoundaryRule;
+
+/// The patch that a face of the mesh becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum PatchKind {
+    /// A quad whose one-rings are regular: a bicubic B-spline patch, which is the limit surface itself.
+    Regular,
+    /// Any other quad.
+    IrregularQuad,
+    Triangle,
+}
+
+impl PatchKind {
+    /// In the order in which they are stored and drawn.
+    pub const ALL: [Self; 3] = [Self::Regular, Self::IrregularQuad, Self::Triangle];
+
+    /// Corners of the patch.
+    pub fn corners(self) -> usize {
+        if self == Self::Triangle { 3 } else { 4 }
+    }
+
+    /// The kind as it is called in the program's output.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Regular => "regular",
+            Self::IrregularQuad => "irregular_quad",
+            Self::Triangle => "triangle",
+        }
+    }
+}
+
+impl Topology<'_> {
+    /// The patch that a face becomes; `None` for a face with five or more corners, which must be refined first.
+    pub fn patch_kind(&self, face: u32) -> Option<PatchKind> {
+        let corners = self.mesh.face_corners(face);
+        match corners.len() {
+            3 => Some(PatchKind::Triangle),
+            4 if { corners }.all(|h| self.rings[self.places[h].ring as usize].is_regular()) => Some(PatchKind::Regular),
+            4 => Some(PatchKind::IrregularQuad),
+            _ => None,
+        }
+    }
+}
+
+/// Tells for every face whether it is drawn: it is no hole and, under [`BoundaryRule::None`], touches no boundary.
+pub fn draws_face(topology: &Topology) -> Vec<bool> {
+    let mesh = topology.mesh();
+    let mut draws = vec![true; mesh.face_count()];
+    for &hole in &mesh.data().holes {
+        draws[hole as usize] = false;
+    }
+    if mesh.data().boundary == BoundaryRule::None {
+        let mut on_boundary = vec![false; topology.vertex_count()];
+        let half_edges = 0..mesh.corner_count() as u32;
+        for half_edge in half_edges.clone().filter(|&h| topology.twin(h).is_none()) {
+            on_boundary[topology.vertex(half_edge) as usize] = true;
+            on_boundary[topology.vertex(topology.next(half_edge)) as usize] = true;
+        }
+        for half_edge in half_edges.filter(|&h| on_boundary[topology.vertex(h) as usize]) {
+            draws[topology.face(half_edge) as usize] = false;
+        }
+    }
+    draws
+}

@@ -1,0 +1,199 @@
+//! Connectivity without positions: manifold vertices, ordered one-rings, sharp edges and patch classes.
+
+mod classes;
+mod rings;
+
+pub use classes::{PatchKind, draws_face};
+pub use rings::{Ring, RingKind};
+
+use crate::mesh::{BoundaryRule, ControlMesh, NO_TWIN};
+use rings::RingBuilder;
+use std::borrow::Cow;
+
+/// Sharpness from which on the patch schemes draw an edge or vertex as infinitely sharp. Below, it is smooth.
+///
+/// A patch a face cannot follow a crease of finite sharpness; refining the mesh first brings the surface closer.
+pub const SHARP_FROM: f32 = 1.0;
+
+/// How the faces of a [`ControlMesh`] hang together.
+///
+/// The unit is the *half-edge* `h`, which is also the number of a face corner: it runs from `vertex(h)` to
+/// `vertex(next(h))` and has its face on the left.
+///
+/// A *vertex* here is manifold: a vertex of the mesh where several fans of faces touch in a point is split into one
+/// for each fan ([`Topology::source`] leads back). A [`Ring`] is a sector of a vertex between sharp edges: around
+/// most vertices there is just one.
+pub struct Topology<'m> {
+    mesh: &'m ControlMesh,
+    /// The face of each half-edge.
+    faces: Vec<u32>,
+    /// The manifold vertex of each half-edge; the mesh's own array where nothing had to be split.
+    vertices: Cow<'m, [u32]>,
+    /// The mesh vertices of the manifold vertices beyond `mesh.vertex_count()`.
+    split_sources: Vec<u32>,
+    /// Whether each half-edge's edge is drawn sharp; empty where the mesh has no such crease.
+    sharp: Vec<bool>,
+    rings: Vec<Ring>,
+    /// The ring of each half-edge, and the index of the half-edge in it.
+    places: Vec<Place>,
+}
+
+/// Where a face corner stands in its vertex's one-ring: its face is ring face `index`, its *plus* edge (to the next
+/// corner of the face) ring edge `index`, its *minus* edge ring edge `index + 1`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    pub ring: u32,
+    pub index: u32,
+}
+
+impl<'m> Topology<'m> {
+    /// Walks the mesh once: linear in the number of face corners.
+    pub fn new(mesh: &'m ControlMesh) -> Self {
+        let faces: Vec<u32> = mesh
+            .data()
+            .face_sizes
+            .iter()
+            .enumerate()
+            .flat_map(|(face, &size)| std::iter::repeat_n(face as u32, size as usize))
+            .collect();
+        let mut topology = Self {
+            mesh,
+            faces,
+            vertices: Cow::Borrowed(&mesh.data().face_vertices),
+            split_sources: Vec::new(),
+            sharp: Vec::new(),
+            rings: Vec::new(),
+            places: Vec::new(),
+        };
+        topology.sharp = topology.sharp_edges();
+        RingBuilder::new(&topology).build().store(&mut topology);
+        topology
+    }
+
+    /// The mesh this is the topology of.
+    pub fn mesh(&self) -> &'m ControlMesh {
+        self.mesh
+    }
+
+    /// Manifold vertices: those of the mesh, then those that splitting added.
+    pub fn vertex_count(&self) -> usize {
+        self.mesh.vertex_count() + self.split_sources.len()
+    }
+
+    /// How many vertices splitting added.
+    pub fn split_count(&self) -> usize {
+        self.split_sources.len()
+    }
+
+    /// The vertex of the mesh that a manifold vertex stands for, whose position it has.
+    pub fn source(&self, vertex: u32) -> u32 {
+        let count = self.mesh.vertex_count() as u32;
+        if vertex < count { vertex } else { self.split_sources[(vertex - count) as usize] }
+    }
+
+    /// The manifold vertex a half-edge starts from.
+    pub fn vertex(&self, half_edge: u32) -> u32 {
+        self.vertices[half_edge as usize]
+    }
+
+    /// The vertex of the mesh a half-edge starts from.
+    pub fn mesh_vertex(&self, half_edge: u32) -> u32 {
+        self.mesh.data().face_vertices[half_edge as usize]
+    }
+
+    /// The face on the left of a half-edge.
+    pub fn face(&self, half_edge: u32) -> u32 {
+        self.faces[half_edge as usize]
+    }
+
+    /// The number of corners of the face on the left of a half-edge.
+    pub fn face_size(&self, half_edge: u32) -> u32 {
+        self.mesh.data().face_sizes[self.face(half_edge) as usize]
+    }
+
+    /// The next half-edge around the face, counter-clockwise.
+    pub fn next(&self, half_edge: u32) -> u32 {
+        let offsets = self.mesh.face_offsets();
+        let face = self.face(half_edge) as usize;
+        if half_edge + 1 == offsets[face + 1] { offsets[face] } else { half_edge + 1 }
+    }
+
+    /// The previous half-edge around the face.
+    pub fn prev(&self, half_edge: u32) -> u32 {
+        let offsets = self.mesh.face_offsets();
+        let face = self.face(half_edge) as usize;
+        if half_edge == offsets[face] { offsets[face + 1] - 1 } else { half_edge - 1 }
+    }
+
+    /// The half-edge on the other side, `None` on a boundary.
+    pub fn twin(&self, half_edge: u32) -> Option<u32> {
+        let twin = self.mesh.twins()[half_edge as usize];
+        (twin != NO_TWIN).then_some(twin)
+    }
+
+    /// Whether the surface has a sharp edge here: a crease that is drawn sharp. A boundary is not a crease.
+    pub fn is_sharp(&self, half_edge: u32) -> bool {
+        self.sharp.get(half_edge as usize).copied().unwrap_or(false)
+    }
+
+    /// All one-rings.
+    pub fn rings(&self) -> &[Ring] {
+        &self.rings
+    }
+
+    /// Where a face corner stands in its ring.
+    pub fn place(&self, half_edge: u32) -> Place {
+        self.places[half_edge as usize]
+    }
+
+    /// The half-edges of a ring that start from its vertex, counter-clockwise, one a face.
+    pub fn ring_half_edges(&self, ring: &Ring) -> impl Iterator<Item = u32> + '_ {
+        let mut half_edge = ring.start;
+        (0..ring.faces).map(move |i| {
+            if i > 0 {
+                // The builder walked this way, so the twin is there.
+                half_edge = self.mesh.twins()[self.prev(half_edge) as usize];
+            }
+            half_edge
+        })
+    }
+
+    /// Edges tagged as creases with a sharpness above zero, each counted once.
+    pub fn creased_edge_count(&self) -> usize {
+        let mut edges: Vec<_> = self.mesh.data().creases.iter().filter(|c| c.sharpness > 0.0).map(crease_key).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges.len()
+    }
+
+    fn sharp_edges(&self) -> Vec<bool> {
+        let mut sharpness = std::collections::HashMap::new();
+        for crease in &self.mesh.data().creases {
+            sharpness.insert(crease_key(crease), crease.sharpness);
+        }
+        sharpness.retain(|_, s| *s >= SHARP_FROM);
+        if sharpness.is_empty() {
+            return Vec::new();
+        }
+        (0..self.mesh.corner_count() as u32)
+            .map(|h| {
+                let (a, b) = (self.mesh_vertex(h), self.mesh_vertex(self.next(h)));
+                sharpness.contains_key(&(a.min(b), a.max(b)))
+            })
+            .collect()
+    }
+
+    /// Corner sharpness by mesh vertex, where it is drawn sharp.
+    fn sharp_vertices(&self) -> std::collections::HashSet<u32> {
+        self.mesh.data().corners.iter().filter(|c| c.sharpness >= SHARP_FROM).map(|c| c.vertex).collect()
+    }
+
+    fn interpolates_corners(&self) -> bool {
+        self.mesh.data().boundary == BoundaryRule::EdgeAndCorner
+    }
+}
+
+fn crease_key(crease: &crate::mesh::Crease) -> (u32, u32) {
+    let [a, b] = crease.vertices;
+    (a.min(b), a.max(b))
+}

@@ -1,0 +1,166 @@
+//! Control points, evaluation and refinement against the reference vectors of `../shared/reference/vectors`, which an
+//! independent float64 implementation wrote.
+
+mod common;
+
+use ash_subdiv::limit::refine;
+use ash_subdiv::mesh::{Corner, Crease, CreaseMethod};
+use ash_subdiv::patch::{Blend, control_points, evaluate};
+use ash_subdiv::topology::{PatchKind, Topology};
+use ash_subdiv::{ControlMesh, MeshData};
+use common::vectors;
+use glam::{DVec3, Vec3};
+use serde_json::Value;
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().expect("an array").iter().map(|x| x.as_f64().expect("a number")).collect()
+}
+
+fn points(value: &Value) -> Vec<DVec3> {
+    value.as_array().expect("an array").iter().map(|p| DVec3::from_slice(&numbers(p))).collect()
+}
+
+fn mesh(vector: &Value, crease_method: CreaseMethod) -> ControlMesh {
+    let rows = |key: &str| vector.get(key).and_then(Value::as_array).into_iter().flatten().map(numbers);
+    let faces: Vec<Vec<u32>> = rows("faces").map(|f| f.iter().map(|&v| v as u32).collect()).collect();
+    ControlMesh::new(MeshData {
+        positions: points(&vector["positions"]).into_iter().map(Into::into).collect(),
+        face_sizes: faces.iter().map(|f| f.len() as u32).collect(),
+        face_vertices: faces.concat(),
+        creases: rows("creases")
+            .map(|c| Crease { vertices: [c[0] as u32, c[1] as u32], sharpness: c[2] as f32 })
+            .collect(),
+        corners: rows("corners").map(|c| Corner { vertex: c[0] as u32, sharpness: c[1] as f32 }).collect(),
+        crease_method,
+        ..MeshData::default()
+    })
+    .expect("the vectors are manifold meshes")
+}
+
+/// The Gregory points of every face that has some in the vector file, as `T` makes them, for all faces: regular ones too.
+fn gregory<T: Blend>(topology: &Topology, face: u32, vertex: impl Fn(u32) -> T) -> Vec<T> {
+    let size = topology.mesh().face(face).len();
+    let kind = if size == 3 { PatchKind::Triangle } else { PatchKind::IrregularQuad };
+    control_points(topology, face, kind, vertex)
+}
+
+fn for_each_gregory(mut visit: impl FnMut(&str, &Topology, u32, &Value)) {
+    let mut faces = 0;
+    for (name, vector) in vectors() {
+        let Some(expected) = vector.get("gregory") else { continue };
+        let mesh = mesh(&vector, CreaseMethod::Uniform);
+        let topology = Topology::new(&mesh);
+        for (face, expected) in expected.as_object().unwrap() {
+            visit(&name, &topology, face.parse().unwrap(), expected);
+            faces += 1;
+        }
+    }
+    assert!(faces > 50, "the vectors hold {faces} faces");
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn gregory_points_agree_in_f64() {
+    for_each_gregory(|name, topology, face, expected| {
+        let ours = gregory(topology, face, |v| topology.mesh().position(v));
+        let expected = points(&expected["cp"]);
+        assert_eq!(ours.len(), expected.len());
+        for (i, (ours, expected)) in ours.iter().zip(expected).enumerate() {
+            let error = (*ours - expected).length();
+            assert!(error < 1e-12 * topology.mesh().diagonal(), "{name} face {face} point {i}: {ours} not {expected}");
+        }
+    });
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn gregory_points_agree_in_f32() {
+    for_each_gregory(|name, topology, face, expected| {
+        let ours: Vec<Vec3> = gregory(topology, face, |v| topology.mesh().position(v).as_vec3());
+        for (i, (ours, expected)) in ours.iter().zip(points(&expected["cp"])).enumerate() {
+            let error = (ours.as_dvec3() - expected).length();
+            assert!(error < 1e-6 * topology.mesh().diagonal(), "{name} face {face} point {i}: {ours} not {expected}");
+        }
+    });
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn evaluation_agrees() {
+    for_each_gregory(|name, topology, face, expected| {
+        let points_f64 = gregory(topology, face, |v| topology.mesh().position(v));
+        let kind = if points_f64.len() == 15 { PatchKind::Triangle } else { PatchKind::IrregularQuad };
+        let positions = points(&expected["pos"]);
+        let normals = points(&expected["normal_approx"]);
+        for (i, at) in expected["params"].as_array().unwrap().iter().enumerate() {
+            let at = numbers(at);
+            let sample = evaluate(kind, &points_f64, at[0], at[1]);
+            let position_error = (sample.position - positions[i]).length();
+            assert!(position_error < 1e-12 * topology.mesh().diagonal(), "{name} face {face} at {at:?}");
+            let angle = sample.normal.angle_between(normals[i]);
+            assert!(angle < 1e-7, "{name} face {face} at {at:?}: normal off by {angle}");
+        }
+    });
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn regular_faces_are_the_gregory_patch() {
+    for_each_gregory(|name, topology, face, _| {
+        if topology.patch_kind(face) != Some(PatchKind::Regular) {
+            return;
+        }
+        let vertex = |v| topology.mesh().position(v);
+        let gregory = gregory(topology, face, vertex);
+        let bicubic = control_points(topology, face, PatchKind::Regular, vertex);
+        for (u, v) in [(0.0, 0.0), (0.3, 0.0), (0.2, 0.7), (1.0, 0.4), (0.9, 1.0)] {
+            let a = evaluate(PatchKind::IrregularQuad, &gregory, u, v);
+            let b = evaluate(PatchKind::Regular, &bicubic, u, v);
+            assert!((a.position - b.position).length() < 1e-12, "{name} face {face} at {u} {v}");
+            assert!((a.normal - b.normal).length() < 1e-12, "{name} face {face} at {u} {v}");
+        }
+    });
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn refinement_agrees() {
+    for (name, vector) in vectors() {
+        let Some(order) = vector.get("subdiv1") else { continue };
+        let edges: Vec<_> = order["edge_vertices"].as_array().unwrap().iter().map(numbers).collect();
+        for (method, key) in [(CreaseMethod::Uniform, "uniform"), (CreaseMethod::Chaikin, "chaikin")] {
+            let expected = vector.get(format!("subdiv1_{key}")).unwrap_or(&order["positions"]);
+            let mesh = mesh(&vector, method);
+            check_refined(&name, &mesh, &points(expected), &edges);
+            // The vertices of the coarse mesh after a second step, which sees the sharpness the first one left.
+            let Some(second) = vector.get(format!("subdiv2_{key}_first")) else { continue };
+            let once = refine(&Topology::new(&mesh)).expect("small").mesh;
+            let twice = refine(&Topology::new(&once)).expect("small").mesh;
+            for (v, expected) in points(second).into_iter().enumerate() {
+                let error = (twice.position(v as u32) - expected).length();
+                assert!(error < 1e-7 * mesh.diagonal(), "{name} {key}: vertex {v} after two steps");
+            }
+        }
+    }
+}
+
+fn check_refined(name: &str, mesh: &ControlMesh, positions: &[DVec3], edges: &[Vec<f64>]) {
+    let topology = Topology::new(mesh);
+    let refined = refine(&topology).expect("small").mesh;
+    let vertices = mesh.vertex_count();
+    // Sharpness is f32, as in OpenSubdiv; the vectors have it in f64.
+    let tolerance = if mesh.data().creases.is_empty() { 1e-12 } else { 1e-7 };
+    let close = |ours: DVec3, index: usize, what: &str| {
+        let error = (ours - positions[index]).length();
+        assert!(error < tolerance * mesh.diagonal(), "{name}: {what} {index} is off by {error:e}");
+    };
+    // The children of corner h: its vertex, its edge, its face.
+    for h in 0..mesh.corner_count() as u32 {
+        let child = refined.face(h);
+        let ends = [topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h))];
+        let edge = edges.iter().position(|e| [e[0] as u32, e[1] as u32] == ends || [e[1] as u32, e[0] as u32] == ends);
+        close(refined.position(child[0]), ends[0] as usize, "vertex");
+        close(refined.position(child[1]), vertices + edge.expect("an edge"), "edge");
+        close(refined.position(child[2]), vertices + edges.len() + topology.face(h) as usize, "face");
+    }
+}
