@@ -3,6 +3,7 @@
 pub mod limit;
 pub mod mesh;
 pub mod patch;
+pub mod table;
 pub mod topology;
 
 pub use mesh::{ControlMesh, MeshData, MeshError};

@@ -1,0 +1,10 @@
+// The stencil construction has nothing to do for a vertex: one invocation a patch, which says which patch it is.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+
+layout(location = 4) out uint patch_number;
+
+void main() {
+    patch_number = uint(gl_InstanceIndex) * draw.patches_per_instance + uint(gl_VertexIndex);
+}

@@ -1,0 +1,15 @@
+// A regular patch. Rust twin: `evaluate_bicubic` in src/patch/bicubic.rs.
+// variants: FRACTIONAL_ODD, FRACTIONAL_EVEN, TEXCOORD, FRACTIONAL_ODD+TEXCOORD, FRACTIONAL_EVEN+TEXCOORD, CAPTURE, FRACTIONAL_ODD+CAPTURE, FRACTIONAL_EVEN+CAPTURE, CAPTURE_GRID
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define REGULAR
+#include "evaluation.glsl"
+
+void main() {
+    vec3 at = parameter();
+    emit(evaluate_tensor(corner[0], edge_minus[0], edge_plus[3], corner[3],          //
+                         edge_plus[0], face_plus[0], face_plus[3], edge_minus[3],    //
+                         edge_minus[1], face_plus[1], face_plus[2], edge_plus[2],    //
+                         corner[1], edge_plus[1], edge_minus[2], corner[2], at.x, at.y),
+         at);
+}

@@ -1,0 +1,32 @@
+// A Gregory triangle. Rust twin: `evaluate_gregory_triangle` in src/patch/gregory.rs.
+// variants: FRACTIONAL_ODD, FRACTIONAL_EVEN, TEXCOORD, FRACTIONAL_ODD+TEXCOORD, FRACTIONAL_EVEN+TEXCOORD, CAPTURE, FRACTIONAL_ODD+CAPTURE, FRACTIONAL_EVEN+CAPTURE, CAPTURE_GRID
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define TRIANGLE
+#include "evaluation.glsl"
+
+// The terms of corner k with coordinate x, and of its edge to the next corner, whose coordinate is y.
+void add_corner(float x, float y, float z, vec3 p, vec3 plus, vec3 next_minus, vec3 f_plus, vec3 f_minus,
+                inout vec3 position, inout vec3 dx, inout vec3 dy, inout vec3 dz) {
+    precise vec3 edge = x * plus + y * next_minus;
+    precise float scale = 3.0 * x * y * (x + y);
+    vec3 face = blend(f_plus, y, f_minus, z);
+    position += ((x * x) * x) * p + scale * edge + (12.0 * x * x * y * z) * face;
+    dx += (3.0 * x * x) * p + (3.0 * y * (2.0 * x + y)) * edge + scale * plus + (24.0 * x * y * z) * face;
+    dy += (3.0 * x * (x + 2.0 * y)) * edge + scale * next_minus + (12.0 * x * x * z) * face;
+    dz += (12.0 * x * x * y) * face;
+}
+
+Sample evaluate_gregory_triangle(float u, float v, float w) {
+    vec3 position = vec3(0.0), du = vec3(0.0), dv = vec3(0.0), dw = vec3(0.0);
+    add_corner(u, v, w, corner[0], edge_plus[0], edge_minus[1], face_plus[0], face_minus[0], position, du, dv, dw);
+    add_corner(v, w, u, corner[1], edge_plus[1], edge_minus[2], face_plus[1], face_minus[1], position, dv, dw, du);
+    add_corner(w, u, v, corner[2], edge_plus[2], edge_minus[0], face_plus[2], face_minus[2], position, dw, du, dv);
+    vec3 chords = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    return Sample(position, unit_normal(du - dw, dv - dw, chords));
+}
+
+void main() {
+    vec3 at = parameter();
+    emit(evaluate_gregory_triangle(at.x, at.y, at.z), at);
+}

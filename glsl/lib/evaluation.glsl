@@ -1,0 +1,88 @@
+// What all tessellation evaluation shaders share: the domain, the control points, and what goes to the fragment stage.
+// The documented stage interface: location 0 the position and 1 the normal in world space, 2 the texture coordinate.
+#ifndef EVALUATION_GLSL
+#define EVALUATION_GLSL
+
+#include "draw.glsl"
+#include "patch.glsl"
+
+#if defined(FRACTIONAL_ODD)
+#define SPACING fractional_odd_spacing
+#elif defined(FRACTIONAL_EVEN)
+#define SPACING fractional_even_spacing
+#else
+#define SPACING equal_spacing
+#endif
+// A captured grid of a triangle is laid over a quad domain: the tessellator's own triangles are no grid.
+#if defined(TRIANGLE) && !defined(CAPTURE_GRID)
+layout(triangles, SPACING, ccw) in;
+#else
+layout(quads, SPACING, ccw) in;
+#endif
+
+layout(location = 0) in vec3 corner[];
+layout(location = 1) in vec3 edge_plus[];
+layout(location = 2) in vec3 edge_minus[];
+layout(location = 3) in vec3 face_plus[];
+#ifndef REGULAR
+layout(location = 4) in vec3 face_minus[];
+#endif
+
+layout(location = 0) out vec3 world_position;
+layout(location = 1) out vec3 world_normal;
+#ifdef TEXCOORD
+layout(location = 5) in vec2 texcoord[];
+layout(location = 2) out vec2 out_texcoord;
+#endif
+
+#if defined(CAPTURE) || defined(CAPTURE_GRID)
+#include "capture.glsl"
+layout(location = 6) patch in uint captured_patch;
+uint capture_place;
+uint capture_places;
+#endif
+
+// Where to evaluate: (u, v) of a quad, (u, v, w) of a triangle.
+vec3 parameter() {
+#ifdef CAPTURE_GRID
+    uint n = capture_grid;
+    uint i = uint(round(gl_TessCoord.x * float(n - 1u)));
+    uint j = uint(round(gl_TessCoord.y * float(n - 1u)));
+#ifdef TRIANGLE
+    // Row j has j + 1 samples; the rest of the square repeats the last one.
+    i = min(i, j);
+    capture_place = j * (j + 1u) / 2u + i;
+    capture_places = n * (n + 1u) / 2u;
+    float w = float(i) / float(n - 1u);
+    float v = float(j - i) / float(n - 1u);
+    return vec3(1.0 - v - w, v, w);
+#else
+    capture_place = j * n + i;
+    capture_places = n * n;
+    return vec3(float(i) / float(n - 1u), float(j) / float(n - 1u), 0.0);
+#endif
+#else
+    return gl_TessCoord;
+#endif
+}
+
+void emit(Sample surface, vec3 at) {
+#ifdef CAPTURE
+    capture_sample(captured_patch, 0u, 0u, at, surface.position, surface.normal);
+#endif
+#ifdef CAPTURE_GRID
+    capture_sample(captured_patch, capture_place, capture_places, at, surface.position, surface.normal);
+#endif
+#ifdef TEXCOORD
+#ifdef TRIANGLE
+    out_texcoord = at.x * texcoord[0] + at.y * texcoord[1] + at.z * texcoord[2];
+#else
+    out_texcoord = mix(mix(texcoord[0], texcoord[1], at.x), mix(texcoord[3], texcoord[2], at.x), at.y);
+#endif
+#endif
+    world_position = to_world(surface.position);
+    world_normal = normal_to_world(surface.normal);
+    gl_Position = view.view_projection * vec4(world_position, 1.0);
+}
+
+#endif

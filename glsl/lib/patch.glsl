@@ -1,0 +1,70 @@
+// Evaluation that patches share. Rust twins: src/patch/bicubic.rs, src/patch/point.rs.
+//
+// glslang does not carry `precise` into called functions: every local of a shared edge's arithmetic says it itself.
+#ifndef PATCH_GLSL
+#define PATCH_GLSL
+
+struct Sample {
+    vec3 position;
+    vec3 normal;
+};
+
+struct Basis {
+    vec4 value;
+    vec4 derivative;
+};
+
+// The cubic Bernstein polynomials and their derivatives: at t and 1 - t the same numbers in reverse order.
+Basis cubic_basis(float t) {
+    precise float s = 1.0 - t;
+    precise float ss = s * s;
+    precise float tt = t * t;
+    precise float st = s * t;
+    precise vec4 value = vec4(ss * s, 3.0 * ss * t, 3.0 * tt * s, tt * t);
+    precise vec4 derivative = vec4(-(3.0 * ss), 3.0 * ss - 3.0 * (2.0 * st), 3.0 * (2.0 * st) - 3.0 * tt, 3.0 * tt);
+    return Basis(value, derivative);
+}
+
+// The sum that both directions along an edge evaluate to the same bits.
+vec3 symmetric_sum(vec4 weights, vec3 x0, vec3 x1, vec3 x2, vec3 x3) {
+    precise vec3 sum = (weights.x * x0 + weights.w * x3) + (weights.y * x1 + weights.z * x2);
+    return sum;
+}
+
+// The unit vector along `du x dv`; where the derivatives are parallel, along `fallback`.
+vec3 unit_normal(vec3 du, vec3 dv, vec3 fallback) {
+    vec3 normal = cross(du, dv);
+    float squared = dot(normal, normal);
+    if (squared <= 0.0) {
+        normal = fallback;
+        squared = dot(normal, normal);
+    }
+    return squared > 0.0 ? normal * inversesqrt(squared) : normal;
+}
+
+// A 4 x 4 tensor-product Bezier patch, rows along u.
+Sample evaluate_tensor(vec3 x00, vec3 x01, vec3 x02, vec3 x03, vec3 x10, vec3 x11, vec3 x12, vec3 x13, vec3 x20,
+                       vec3 x21, vec3 x22, vec3 x23, vec3 x30, vec3 x31, vec3 x32, vec3 x33, float u, float v) {
+    Basis bu = cubic_basis(u);
+    Basis bv = cubic_basis(v);
+    vec3 c0 = symmetric_sum(bu.value, x00, x10, x20, x30);
+    vec3 c1 = symmetric_sum(bu.value, x01, x11, x21, x31);
+    vec3 c2 = symmetric_sum(bu.value, x02, x12, x22, x32);
+    vec3 c3 = symmetric_sum(bu.value, x03, x13, x23, x33);
+    vec3 d0 = symmetric_sum(bu.derivative, x00, x10, x20, x30);
+    vec3 d1 = symmetric_sum(bu.derivative, x01, x11, x21, x31);
+    vec3 d2 = symmetric_sum(bu.derivative, x02, x12, x22, x32);
+    vec3 d3 = symmetric_sum(bu.derivative, x03, x13, x23, x33);
+    vec3 du = symmetric_sum(bv.value, d0, d1, d2, d3);
+    vec3 dv = symmetric_sum(bv.derivative, c0, c1, c2, c3);
+    vec3 diagonals = cross(x33 - x00, x03 - x30);
+    return Sample(symmetric_sum(bv.value, c0, c1, c2, c3), unit_normal(du, dv, diagonals));
+}
+
+// The face point (a f+ + b f-) / (a + b); at a corner, where both weights vanish, it does not matter.
+vec3 blend(vec3 plus, float a, vec3 minus, float b) {
+    float sum = a + b;
+    return sum > 0.0 ? (a * plus + b * minus) * (1.0 / sum) : plus;
+}
+
+#endif

@@ -1,0 +1,107 @@
+// The ring table of the two-stage construction. Rust twin: src/table/rings.rs.
+#ifndef RINGS_GLSL
+#define RINGS_GLSL
+
+#include "positions.glsl"
+
+layout(set = 1, binding = 1, std430) readonly buffer RingHeaders { uvec4 ring_headers[]; };
+layout(set = 1, binding = 2, std430) readonly buffer RingEntries { uint ring_entries[]; };
+layout(set = 1, binding = 3, std430) readonly buffer RingTypes { float ring_types[]; };
+layout(set = 1, binding = 4, std430) readonly buffer PatchCorners { uvec2 patch_corners[]; };
+
+const uint TRIANGLE_BIT = 1u << 31;
+const uint OPEN_BIT = 1u << 31;
+const uint CONE_BIT = 1u << 30;
+
+struct Ring {
+    uint vertex;
+    uint entries;
+    uint type;
+    uint faces;
+    uint edges;
+    bool open;
+    bool cone;
+};
+
+Ring ring_at(uint index) {
+    uvec4 header = ring_headers[index];
+    bool open = (header.w & OPEN_BIT) != 0u;
+    uint faces = header.w & ~(OPEN_BIT | CONE_BIT);
+    return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u);
+}
+
+// cos_k: of the angle between neighbouring edges.
+float ring_cosine(Ring ring) {
+    return ring_types[ring.type];
+}
+
+// Cosine and sine of the direction of edge j.
+vec2 edge_direction(Ring ring, uint j) {
+    uint at = ring.type + 1u + 2u * j;
+    return vec2(ring_types[at], ring_types[at + 1u]);
+}
+
+// a_j, at the other end of edge j < edges + faces.
+vec3 edge_neighbour(Ring ring, uint j) {
+    uint wrapped = j >= ring.edges ? j - ring.edges : j;
+    return vertex_position(ring_entries[ring.entries + 2u * wrapped]);
+}
+
+// Limit point and tangent frame.
+void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3 b_out) {
+    uint weight = ring.type + 1u + 2u * ring.edges;
+    precise vec3 p = ring_types[weight] * centre;
+    precise vec3 a = ring_types[weight + 1u] * centre;
+    precise vec3 b = ring_types[weight + 2u] * centre;
+    uint count = ring.faces + ring.edges;
+    for (uint i = 0u; i < count; ++i) {
+        vec3 x = vertex_position(ring_entries[ring.entries + i] & ~TRIANGLE_BIT);
+        weight += 3u;
+        p += ring_types[weight] * x;
+        a += ring_types[weight + 1u] * x;
+        b += ring_types[weight + 2u] * x;
+    }
+    p_out = p;
+    a_out = a;
+    b_out = b;
+}
+
+// e_j.
+vec3 edge_point(Ring ring, uint j, vec3 centre, vec3 p, vec3 a, vec3 b) {
+    precise vec3 e;
+    if (ring.cone) {
+        e = (2.0 * centre + edge_neighbour(ring, j)) / 3.0;
+    } else {
+        vec2 direction = edge_direction(ring, j);
+        e = p + (direction.x * a + direction.y * b);
+    }
+    return e;
+}
+
+// c_i, the mean of the vertices of face i; `first` and `second` are the ends of its edges.
+vec3 face_centroid(Ring ring, uint i, vec3 centre, vec3 first, vec3 second) {
+    uint entry = ring_entries[ring.entries + 2u * i + 1u];
+    vec3 sum = centre + first + second;
+    return (entry & TRIANGLE_BIT) != 0u ? sum / 3.0 : (sum + vertex_position(entry)) / 4.0;
+}
+
+// r_j, the transversal of edge j.
+vec3 transversal(Ring ring, uint j, vec3 centre) {
+    vec3 here = edge_neighbour(ring, j);
+    if (ring.open && j == 0u) {
+        vec3 next = edge_neighbour(ring, 1u);
+        vec3 mean = face_centroid(ring, 0u, centre, here, next);
+        return (next - centre) / 3.0 + (4.0 * mean - 2.0 * (centre + here)) / 3.0;
+    }
+    uint before_j = (j == 0u ? ring.edges : j) - 1u;
+    vec3 before = edge_neighbour(ring, before_j);
+    vec3 mean_before = face_centroid(ring, before_j, centre, before, here);
+    if (ring.open && j == ring.faces) {
+        return (centre - before) / 3.0 + (2.0 * (centre + here) - 4.0 * mean_before) / 3.0;
+    }
+    vec3 next = edge_neighbour(ring, j + 1u);
+    vec3 mean = face_centroid(ring, j, centre, here, next);
+    return (next - before) / 6.0 + (2.0 / 3.0) * (mean - mean_before);
+}
+
+#endif

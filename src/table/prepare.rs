@@ -1,0 +1,126 @@
+//! From any control mesh to one whose faces are patches: refinement where faces have five or more corners, or where
+//! the caller asks for it.
+
+use crate::limit::{Stencils, refine};
+use crate::mesh::{ControlMesh, MeshError, SHARPNESS_INFINITE};
+use crate::patch::Blend;
+use crate::topology::{SHARP_FROM, Topology};
+use std::borrow::Cow;
+use std::fmt;
+
+/// Where a face of the prepared mesh comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FaceOrigin {
+    /// The face of the caller's mesh.
+    pub face: u32,
+    /// -1 for the whole face; else the corner of the face around which refinement made this part of it. After several
+    /// steps, four times the number of the first step's part plus the corner within that, and so on.
+    pub sub: i64,
+}
+
+/// Something that a user will want to know about how a mesh is drawn.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Notice {
+    /// Faces with five or more corners: the whole mesh was refined once so that all faces are quads.
+    RefinedPolygons { polygons: usize, first: u32 },
+    /// Vertices where fans of faces touch in a point were split.
+    SplitVertices { count: usize },
+    /// Creases or corners of finite sharpness that patches cannot follow.
+    SemiSharp { sharp: usize, smooth: usize },
+}
+
+impl fmt::Display for Notice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::RefinedPolygons { polygons, first } => write!(
+                f,
+                "{polygons} faces have five or more corners (the first is face {first}): the whole mesh is refined once"
+            ),
+            Self::SplitVertices { count } => {
+                write!(f, "{count} vertices were split off where fans of faces touch in a point")
+            }
+            Self::SemiSharp { sharp, smooth } => write!(
+                f,
+                "{} creases and corners have finite sharpness: {sharp} (from {SHARP_FROM} up) are drawn infinitely sharp, {smooth} smooth; refine the mesh first to come closer",
+                sharp + smooth
+            ),
+        }
+    }
+}
+
+/// A mesh of triangles and quads, and the way there from the caller's mesh.
+#[derive(Debug, Clone)]
+pub struct Prepared<'m> {
+    pub mesh: Cow<'m, ControlMesh>,
+    /// The refinement steps, in order. Each step's inputs are the outputs of the one before.
+    pub steps: Vec<Stencils>,
+    /// For each face of the prepared mesh; empty where nothing was refined.
+    origins: Vec<FaceOrigin>,
+    pub notices: Vec<Notice>,
+}
+
+impl Prepared<'_> {
+    /// Where a face comes from.
+    pub fn origin(&self, face: u32) -> FaceOrigin {
+        self.origins.get(face as usize).copied().unwrap_or(FaceOrigin { face, sub: -1 })
+    }
+
+    /// The values at the vertices of the prepared mesh for these at the vertices of the caller's.
+    pub fn values<'v, T: Blend + Send + Sync>(&self, values: &'v [T]) -> Cow<'v, [T]> {
+        let mut values = Cow::Borrowed(values);
+        for step in &self.steps {
+            values = Cow::Owned(step.apply(&values));
+        }
+        values
+    }
+}
+
+/// Refines `mesh` at least `levels` times, and once if it has faces with five or more corners.
+///
+/// # Errors
+/// [`MeshError::TooLarge`] if the refined mesh cannot be addressed.
+pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared<'_>, MeshError> {
+    let mut prepared =
+        Prepared { mesh: Cow::Borrowed(mesh), steps: Vec::new(), origins: Vec::new(), notices: Vec::new() };
+    let polygon = |&(_, &size): &(usize, &u32)| size > 4;
+    let mut polygons = mesh.data().face_sizes.iter().enumerate().filter(polygon);
+    let mut needed = levels;
+    if let Some((first, _)) = polygons.next() {
+        if levels == 0 {
+            let polygons = 1 + polygons.count();
+            prepared.notices.push(Notice::RefinedPolygons { polygons, first: first as u32 });
+        }
+        needed = levels.max(1);
+    }
+    let splits = Topology::new(mesh).split_count();
+    if splits > 0 {
+        prepared.notices.push(Notice::SplitVertices { count: splits });
+    }
+    for _ in 0..needed {
+        let refined = refine(&Topology::new(&prepared.mesh))?;
+        let offsets = prepared.mesh.face_offsets();
+        let mut origins = Vec::with_capacity(refined.parents.len());
+        for face in 0..prepared.mesh.face_count() as u32 {
+            let parent = prepared.origin(face);
+            for (corner, _) in (offsets[face as usize]..offsets[face as usize + 1]).enumerate() {
+                let sub = if parent.sub < 0 { corner as i64 } else { 4 * parent.sub + corner as i64 };
+                origins.push(FaceOrigin { face: parent.face, sub });
+            }
+        }
+        prepared.origins = origins;
+        prepared.steps.push(refined.stencils);
+        prepared.mesh = Cow::Owned(refined.mesh);
+    }
+    prepared.notices.extend(semi_sharp(&prepared.mesh));
+    Ok(prepared)
+}
+
+fn semi_sharp(mesh: &ControlMesh) -> Option<Notice> {
+    let data = mesh.data();
+    let sharpness = data.creases.iter().map(|c| c.sharpness).chain(data.corners.iter().map(|c| c.sharpness));
+    let finite = sharpness.filter(|&s| s > 0.0 && s < SHARPNESS_INFINITE);
+    let (sharp, smooth): (Vec<f32>, Vec<f32>) = finite.partition(|&s| s >= SHARP_FROM);
+    let notice = Notice::SemiSharp { sharp: sharp.len(), smooth: smooth.len() };
+    (sharp.len() + smooth.len() > 0).then_some(notice)
+}

@@ -1,0 +1,150 @@
+//! The connectivity of the two-stage construction: every one-ring in order, and what its weights are.
+
+use super::{PatchPlan, bytes};
+use crate::patch::{RingShape, RingValues, Row};
+use crate::topology::{Ring, RingKind, Topology};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Bit of a ring entry's index: the face is a triangle, and the entry stands in for the diagonal it does not have.
+pub const TRIANGLE_BIT: u32 = 1 << 31;
+/// Bit of [`RingTable::headers`]`[3]`: the first and the last edge differ.
+pub const OPEN_BIT: u32 = 1 << 31;
+/// Bit of [`RingTable::headers`]`[3]`: edge points go straight at the neighbours ([`RingShape::has_frame`] is false).
+pub const CONE_BIT: u32 = 1 << 30;
+
+/// One-rings as the shaders read them. GLSL twin: `glsl/lib/rings.glsl`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RingTable {
+    /// A ring: its vertex; where its entries start; where its type starts; its number of faces and flag bits.
+    pub headers: Vec<[u32; 4]>,
+    /// Vertices around a ring: `a_0, d_0, a_1, d_1, ..`, and the last edge's `a` where the ring is open.
+    pub entries: Vec<u32>,
+    /// For each type of ring: `cos_k`; cosine and sine of each edge's direction; then, for the vertex itself and
+    /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame).
+    pub types: Vec<f32>,
+    /// How many types there are.
+    pub type_count: usize,
+    /// For each patch corner, its ring and the ring edge that is its plus edge.
+    pub corners: Vec<[u32; 2]>,
+}
+
+impl RingTable {
+    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
+        let mut types = RingTypes::default();
+        let mut entries = 0;
+        let headers: Vec<[u32; 4]> = topology
+            .rings()
+            .iter()
+            .map(|ring| {
+                let (kind, has_frame) = types.of(topology, ring);
+                let mut faces = ring.faces;
+                if ring.open {
+                    faces |= OPEN_BIT;
+                }
+                if !has_frame {
+                    faces |= CONE_BIT;
+                }
+                let header = [topology.mesh_vertex(ring.start), entries, kind, faces];
+                entries += 2 * ring.faces + u32::from(ring.open);
+                header
+            })
+            .collect();
+        let corners = plan.corners(topology);
+        let corners = corners.into_par_iter().map(|h| topology.place(h)).map(|place| [place.ring, place.index]);
+        Self {
+            entries: ring_entries(topology, entries as usize),
+            headers,
+            types: types.words,
+            type_count: types.count,
+            corners: corners.collect(),
+        }
+    }
+
+    pub fn bytes(&self) -> u64 {
+        bytes(&self.headers) + bytes(&self.entries) + bytes(&self.types) + bytes(&self.corners)
+    }
+}
+
+fn ring_entries(topology: &Topology, count: usize) -> Vec<u32> {
+    let mut entries = vec![0; count];
+    let mut slices = Vec::with_capacity(topology.rings().len());
+    let mut rest = entries.as_mut_slice();
+    for ring in topology.rings() {
+        let (slice, tail) = rest.split_at_mut((2 * ring.faces + u32::from(ring.open)) as usize);
+        slices.push((ring, slice));
+        rest = tail;
+    }
+    slices.into_par_iter().with_min_len(1024).for_each(|(ring, slice)| {
+        let mut last = ring.start;
+        for (h, pair) in topology.ring_half_edges(ring).zip(slice.chunks_mut(2)) {
+            let head = topology.next(h);
+            let vertex = topology.mesh_vertex(topology.next(head));
+            // A triangle's would-be diagonal is its minus edge's neighbour.
+            let triangle = topology.face_size(h) == 3;
+            pair.copy_from_slice(&[topology.mesh_vertex(head), if triangle { vertex | TRIANGLE_BIT } else { vertex }]);
+            last = h;
+        }
+        if let (true, Some(end)) = (ring.open, slice.last_mut()) {
+            *end = topology.mesh_vertex(topology.prev(last));
+        }
+    });
+    entries
+}
+
+/// The types of rings met so far: rings of one shape share their weights.
+#[derive(Default)]
+struct RingTypes {
+    words: Vec<f32>,
+    count: usize,
+    /// Rings of quads only, by kind, openness and faces: no need to look at their faces one by one.
+    of_quads: HashMap<(RingKind, bool, u32), (u32, bool)>,
+    mixed: HashMap<RingShape, (u32, bool)>,
+}
+
+impl RingTypes {
+    /// Where the type of a ring starts, and whether it has a frame.
+    fn of(&mut self, topology: &Topology, ring: &Ring) -> (u32, bool) {
+        if !ring.quads {
+            return self.of_shape(RingShape::of(topology, ring));
+        }
+        let key = (ring.kind, ring.open, ring.faces);
+        if let Some(&found) = self.of_quads.get(&key) {
+            return found;
+        }
+        let found = self.of_shape(RingShape::of(topology, ring));
+        self.of_quads.insert(key, found);
+        found
+    }
+
+    fn of_shape(&mut self, shape: RingShape) -> (u32, bool) {
+        if let Some(&found) = self.mixed.get(&shape) {
+            return found;
+        }
+        let start = self.words.len() as u32;
+        self.words.push(shape.cosine() as f32);
+        for j in 0..shape.edges() {
+            self.words.extend(shape.edge_direction(j).map(|x| x as f32));
+        }
+        let frame = RingValues::unknowns(shape.clone()).frame();
+        for entry in 0..=(shape.faces() + shape.edges()) as u32 {
+            self.words.extend([&frame.p, &frame.a, &frame.b].map(|row| row.weight(entry) as f32));
+        }
+        self.count += 1;
+        let found = (start, shape.has_frame());
+        self.mixed.insert(shape, found);
+        found
+    }
+}
+
+impl RingValues<Row> {
+    /// A ring whose values are unknowns, numbered as in a table: 0 for the vertex, then `a_0, d_0, a_1, d_1, ..`.
+    fn unknowns(shape: RingShape) -> Self {
+        Self {
+            centre: Row::unit(0),
+            edges: (0..shape.edges() as u32).map(|j| Row::unit(1 + 2 * j)).collect(),
+            diagonals: (0..shape.faces() as u32).map(|i| Row::unit(2 + 2 * i)).collect(),
+            shape,
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! The weights of the stencil construction, one set for each type of connectivity around a patch.
+
+use super::{PatchPlan, bytes};
+use crate::patch::bicubic::CORNER_SLOTS;
+use crate::patch::{Row, control_points};
+use crate::table::Patch;
+use crate::topology::{PatchKind, Topology};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Control points that one corner of a patch owns: `p`, `e+`, `e-`, `f+`, `f-`. A regular patch has one face point a
+/// corner; its fifth weights are zero.
+pub const POINTS_PER_CORNER: usize = 5;
+/// Words of an entry of [`StencilTable::types`].
+pub const ENTRY_WORDS: usize = 1 + POINTS_PER_CORNER;
+
+/// Patches as weighted sums of the vertices around them. GLSL twin: `glsl/lib/stencils.glsl`.
+///
+/// Within a kind, patches are sorted by type.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StencilTable {
+    /// For each patch, where its vertices start and where its type starts.
+    pub patches: Vec<[u32; 2]>,
+    /// The vertices of the one-ring of each patch.
+    pub vertices: Vec<u32>,
+    /// For each type, in words: for each corner of the patch where its entries start (counted from the start of the
+    /// type) and how many there are; then the entries: the number of a vertex in the patch's one-ring and, as f32
+    /// bits, its weights in the five control points of the corner. Vertices without weight are left out.
+    pub types: Vec<u32>,
+    /// How many types there are.
+    pub type_count: usize,
+    /// Vertices in the largest one-ring of a patch.
+    pub largest_ring: usize,
+}
+
+/// The connectivity around a patch: what its weights depend on.
+type Key = Vec<u32>;
+
+/// The one-ring of a patch.
+struct PatchRing {
+    patch: Patch,
+    vertices: Vec<u32>,
+    /// Its type, as numbered within a chunk of patches.
+    kind: u32,
+}
+
+impl StencilTable {
+    /// Builds the table and sorts the patches of each kind by type: `plan` becomes the order of the table.
+    pub fn new(topology: &Topology, plan: &mut PatchPlan) -> Self {
+        let chunk = plan.patches().len().div_ceil(4 * rayon::current_num_threads()).max(256);
+        let chunks: Vec<_> = plan
+            .patches()
+            .par_chunks(chunk)
+            .map(|patches| {
+                // Types are found chunk by chunk, then made one list.
+                let mut keys: HashMap<Key, (u32, usize)> = HashMap::new();
+                let mut rings = Vec::with_capacity(patches.len());
+                for &patch in patches {
+                    let (vertices, key) = patch_ring(topology, patch);
+                    let next = (keys.len() as u32, rings.len());
+                    let (kind, _) = *keys.entry(key).or_insert(next);
+                    rings.push(PatchRing { patch, vertices, kind });
+                }
+                (rings, keys)
+            })
+            .collect();
+
+        let mut table = Self::default();
+        let mut types: HashMap<Key, (u32, u32)> = HashMap::new();
+        let mut rings: Vec<(u32, u32, PatchRing)> = Vec::with_capacity(plan.patches().len());
+        for (chunk, keys) in chunks {
+            let mut keys: Vec<_> = keys.into_iter().collect();
+            keys.sort_unstable_by_key(|(_, (number, _))| *number);
+            let places: Vec<(u32, u32)> = keys
+                .into_iter()
+                .map(|(key, (_, example))| {
+                    let next = types.len() as u32;
+                    *types.entry(key).or_insert_with(|| (next, table.push_type(topology, &chunk[example])))
+                })
+                .collect();
+            rings.extend(chunk.into_iter().map(|ring| {
+                let (number, start) = places[ring.kind as usize];
+                (number, start, ring)
+            }));
+        }
+        table.type_count = types.len();
+        rings.sort_by_key(|(number, _, ring)| (ring.patch.kind, *number));
+        for (_, start, ring) in &rings {
+            table.patches.push([table.vertices.len() as u32, *start]);
+            table.vertices.extend(&ring.vertices);
+            table.largest_ring = table.largest_ring.max(ring.vertices.len());
+        }
+        plan.reorder(rings.into_iter().map(|(_, _, ring)| ring.patch).collect());
+        table
+    }
+
+    pub fn bytes(&self) -> u64 {
+        bytes(&self.patches) + bytes(&self.vertices) + bytes(&self.types)
+    }
+
+    /// Appends the weights for patches connected like `ring`'s. Gives where they start.
+    fn push_type(&mut self, topology: &Topology, ring: &PatchRing) -> u32 {
+        let local: HashMap<u32, u32> = ring.vertices.iter().zip(0..).map(|(&vertex, i)| (vertex, i)).collect();
+        let rows = control_points(topology, ring.patch.face, ring.patch.kind, |vertex| Row::unit(local[&vertex]));
+        let corners = ring.patch.kind.corners();
+        let start = self.types.len();
+        self.types.resize(start + 2 * corners, 0);
+        for k in 0..corners {
+            let owned = corner_rows(ring.patch.kind, &rows, k);
+            let first = self.types.len();
+            for vertex in 0..ring.vertices.len() as u32 {
+                let weights: [f32; POINTS_PER_CORNER] =
+                    std::array::from_fn(|i| owned[i].map_or(0.0, |row| row.weight(vertex) as f32));
+                if weights.iter().any(|&w| w != 0.0) {
+                    self.types.push(vertex);
+                    self.types.extend(weights.map(f32::to_bits));
+                }
+            }
+            self.types[start + 2 * k] = (first - start) as u32;
+            self.types[start + 2 * k + 1] = ((self.types.len() - first) / ENTRY_WORDS) as u32;
+        }
+        start as u32
+    }
+}
+
+/// The control points that corner k owns.
+fn corner_rows(kind: PatchKind, rows: &[Row], k: usize) -> [Option<&Row>; POINTS_PER_CORNER] {
+    let n = kind.corners();
+    if kind == PatchKind::Regular {
+        let [p, plus, minus, face] = CORNER_SLOTS[k].map(|slot| Some(&rows[slot]));
+        [p, plus, minus, face, None]
+    } else {
+        [k, n + 2 * k, n + 2 * k + 1, 3 * n + 2 * k, 3 * n + 2 * k + 1].map(|slot| Some(&rows[slot]))
+    }
+}
+
+/// The vertices of a patch's one-ring and its connectivity, from a walk around it that starts at its first corner.
+/// Patches with the same connectivity are of one type.
+fn patch_ring(topology: &Topology, patch: Patch) -> (Vec<u32>, Key) {
+    let half_edges = topology.mesh().face_corners(patch.face);
+    let mut walk = Walk { vertices: Vec::with_capacity(16), numbers: HashMap::new(), key: Vec::with_capacity(48) };
+    walk.key.push(patch.kind as u32);
+    for h in half_edges.clone() {
+        walk.visit(topology.mesh_vertex(h as u32));
+    }
+    for h in half_edges {
+        let place = topology.place(h as u32);
+        let ring = &topology.rings()[place.ring as usize];
+        let from = if ring.open { 0 } else { place.index };
+        walk.key.extend([ring.kind as u32 * 2 + u32::from(ring.open), ring.faces, place.index - from]);
+        // From the patch itself around a closed ring; along an open one.
+        let (mut at, mut faces) = (if ring.open { ring.start } else { h as u32 }, ring.faces);
+        loop {
+            let head = topology.next(at);
+            walk.key.push(topology.face_size(at));
+            walk.visit(topology.mesh_vertex(head));
+            walk.visit(topology.mesh_vertex(topology.next(head)));
+            faces -= 1;
+            let back = topology.prev(at);
+            match topology.twin(back) {
+                Some(next) if faces > 0 => at = next,
+                _ => {
+                    walk.visit(topology.mesh_vertex(back));
+                    break;
+                }
+            }
+        }
+    }
+    (walk.vertices, walk.key)
+}
+
+/// The vertices met around a patch, numbered as they come.
+struct Walk {
+    vertices: Vec<u32>,
+    /// Numbers of the vertices, once there are too many to search.
+    numbers: HashMap<u32, u32>,
+    key: Key,
+}
+
+impl Walk {
+    fn visit(&mut self, vertex: u32) {
+        const SEARCHED: usize = 48;
+        let next = self.vertices.len() as u32;
+        let number = if self.vertices.len() <= SEARCHED {
+            self.vertices.iter().position(|&v| v == vertex).map_or(next, |i| i as u32)
+        } else {
+            if self.numbers.is_empty() {
+                self.numbers = self.vertices.iter().zip(0..).map(|(&v, i)| (v, i)).collect();
+            }
+            *self.numbers.entry(vertex).or_insert(next)
+        };
+        if number == next {
+            self.vertices.push(vertex);
+        }
+        self.key.push(number);
+    }
+}
