@@ -1,0 +1,6 @@
+//! The SPIR-V of every shader below `glsl/`, one constant for each file and each variant that the file asks for.
+//!
+//! `glsl/evaluate/gregory_quad.tese` is `EVALUATE_GREGORY_QUAD_TESE`; with the macro `CAPTURE` defined it is
+//! `EVALUATE_GREGORY_QUAD_TESE_CAPTURE`. `build.rs` compiles them.
+
+include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
