@@ -6,7 +6,12 @@ pub mod headless;
 pub mod limit;
 pub mod mesh;
 pub mod patch;
+pub mod renderer;
 pub mod table;
 pub mod topology;
 
+pub use gpu::{Allocator, ContextOptions, DeviceContext, Spacing};
 pub use mesh::{ControlMesh, MeshData, MeshError};
+pub use renderer::{
+    Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
+};

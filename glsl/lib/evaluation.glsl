@@ -13,11 +13,12 @@
 #else
 #define SPACING equal_spacing
 #endif
+// Clockwise in the parameter domain, whose v points down in Vulkan: counter-clockwise seen from outside.
 // A captured grid of a triangle is laid over a quad domain: the tessellator's own triangles are no grid.
 #if defined(TRIANGLE) && !defined(CAPTURE_GRID)
-layout(triangles, SPACING, ccw) in;
+layout(triangles, SPACING, cw) in;
 #else
-layout(quads, SPACING, ccw) in;
+layout(quads, SPACING, cw) in;
 #endif
 
 layout(location = 0) in vec3 corner[];

@@ -1,0 +1,12 @@
+// A control vertex as it is: for the faces and edges of the control mesh itself.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+#include "positions.glsl"
+
+layout(location = 0) out vec3 world_position;
+
+void main() {
+    world_position = to_world(vertex_position(uint(gl_VertexIndex)));
+    gl_Position = view.view_projection * vec4(world_position, 1.0);
+}

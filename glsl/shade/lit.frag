@@ -1,0 +1,13 @@
+// The smooth surface under one light and the sky.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+#include "lighting.glsl"
+
+layout(location = 0) in vec3 world_position;
+layout(location = 1) in vec3 world_normal;
+layout(location = 0) out vec4 colour;
+
+void main() {
+    colour = vec4(lit(draw.colour.rgb, world_position, world_normal, view.eye.xyz, view.light.xyz), draw.colour.a);
+}

@@ -1,0 +1,12 @@
+// The direction of the normal as a colour: x red, y green, z blue, from -1 at 0 to 1 at full.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+
+layout(location = 0) in vec3 world_position;
+layout(location = 1) in vec3 world_normal;
+layout(location = 0) out vec4 colour;
+
+void main() {
+    colour = vec4(0.5 + 0.5 * normalize(world_normal), draw.colour.a);
+}

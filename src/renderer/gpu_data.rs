@@ -1,0 +1,85 @@
+//! What the host writes for the shaders, byte for byte as they read it.
+//!
+//! [`ViewData`] is a uniform block (`std140`), [`DrawConstants`] a push-constant block (`std430`): both hold only
+//! 16-byte vectors and trailing 4-byte scalars, for which the two rules agree with `repr(C)`. GLSL twin:
+//! `glsl/lib/draw.glsl`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat3, Mat4, Vec3};
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(super) struct ViewData {
+    pub view_projection: [[f32; 4]; 4],
+    pub eye: [f32; 4],
+    pub light: [f32; 4],
+}
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(super) struct DrawConstants {
+    /// Rows of the object-to-world matrix.
+    pub transform: [[f32; 4]; 3],
+    /// Rows of its cofactor matrix, which turns normals; in the last column outer factor, inner factor, nothing.
+    pub normal_transform: [[f32; 4]; 3],
+    pub colour: [f32; 4],
+    pub first_corner: u32,
+    pub first_patch: u32,
+    pub patches_per_instance: u32,
+    pub flags: u32,
+}
+
+const _: () = assert!(size_of::<ViewData>() == 96);
+const _: () = assert!(std::mem::offset_of!(DrawConstants, colour) == 96);
+const _: () = assert!(std::mem::offset_of!(DrawConstants, first_corner) == 112);
+// Every Vulkan device has at least 128 bytes of push constants.
+const _: () = assert!(size_of::<DrawConstants>() == 128);
+
+impl DrawConstants {
+    /// For an object-to-world matrix given by columns, and a tessellation factor for edges and inside.
+    pub(super) fn new(transform: &[[f32; 4]; 4], factor: f32) -> Self {
+        let transform = Mat4::from_cols_array_2d(transform);
+        let linear = Mat3::from_mat4(transform);
+        let rows = [transform.row(0), transform.row(1), transform.row(2)];
+        let [x, y, z] = [0, 1, 2].map(|i| linear.row(i));
+        let cofactors: [Vec3; 3] = [y.cross(z), z.cross(x), x.cross(y)];
+        // A mirroring transform turns the faces inside out; their normals must go with them.
+        Self {
+            transform: rows.map(Into::into),
+            normal_transform: [
+                cofactors[0].extend(factor).into(),
+                cofactors[1].extend(factor).into(),
+                cofactors[2].extend(0.0).into(),
+            ],
+            ..Self::zeroed()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Quat, Vec4};
+
+    #[test]
+    fn normals_stay_normal_under_any_transform() {
+        let transform = Mat4::from_scale_rotation_translation(
+            Vec3::new(2.0, 0.5, -3.0),
+            Quat::from_rotation_y(0.7) * Quat::from_rotation_x(0.3),
+            Vec3::new(5.0, 6.0, 7.0),
+        );
+        let constants = DrawConstants::new(&transform.to_cols_array_2d(), 9.0);
+        let apply = |rows: &[[f32; 4]; 3], v: Vec4| Vec3::from(rows.map(|row| Vec4::from(row).dot(v)));
+        let (a, b) = (Vec3::new(1.0, 2.0, 0.5), Vec3::new(-1.0, 0.3, 2.0));
+        let turn = |v: Vec3| apply(&constants.transform, v.extend(0.0));
+        let without_factors = constants.normal_transform.map(|[x, y, z, _]| [x, y, z, 0.0]);
+        let normal = apply(&without_factors, a.cross(b).extend(0.0));
+        assert!(normal.dot(turn(a)).abs() < 1e-4 && normal.dot(turn(b)).abs() < 1e-4);
+        // It is the cross product of the turned tangents itself, so it points out where the faces do.
+        assert!((normal - turn(a).cross(turn(b))).length() < 1e-4);
+        assert_eq!(constants.normal_transform[0][3], 9.0);
+        assert_eq!(constants.normal_transform[1][3], 9.0);
+        let moved = apply(&constants.transform, a.extend(1.0));
+        assert!((moved - transform.transform_point3(a)).length() < 1e-5);
+    }
+}

@@ -1,0 +1,446 @@
+//! The drop-in Vulkan module.
+//!
+//! The caller owns instance, device, queues, allocator, command buffers and render targets; this module only records.
+//!
+//! One frame:
+//!
+//! 1. The caller waits until the frame's last submission is done, as always before reusing a frame index.
+//! 2. [`Renderer::set_positions`] writes this frame's control vertices, if they move.
+//! 3. [`Renderer::cmd_prepare`], outside rendering, records the copies and barriers. Once a frame.
+//! 4. [`Renderer::cmd_draw`], inside rendering, records the draws of one view: for every model its regular patches,
+//!    irregular quads and triangles. As often as there are views.
+//!
+//! | pass | reads | writes |
+//! |---|---|---|
+//! | copies | staging buffers | tables, positions |
+//! | VS, two-stage | positions, ring table | limit point and tangent frame a corner |
+//! | TCS | the frames or the stencil table, positions | control points, factors |
+//! | TES | control points | position, normal, texture coordinate |
+//! | FS | those | the caller's attachments |
+
+mod error;
+mod gpu_data;
+mod model;
+mod options;
+mod pipelines;
+mod tables;
+mod view;
+
+pub use error::Error;
+pub use options::{
+    Construction, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style, Target, check, requirements,
+};
+pub use tables::{ModelTables, TableBytes};
+pub use view::View;
+
+pub(crate) use pipelines::Capture;
+
+use crate::gpu::{
+    Buffer, BufferDesc, DeviceContext, Domain, GpuError, MemoryLocation, Owned, VkResultExt, tessellated_vertices,
+};
+use crate::mesh::ControlMesh;
+use crate::table::Notice;
+use crate::topology::PatchKind;
+use ash::vk;
+use gpu_data::{DrawConstants, ViewData};
+use model::Model;
+use pipelines::{GeometryKey, PipelineKey, Pipelines, STAGES, input_points};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Names a model of a [`Renderer`]. Never used again after the model is removed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ModelId(u64);
+
+/// One model drawn once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrawItem {
+    pub model: ModelId,
+    /// Object to world, by columns. Affine.
+    pub transform: [[f32; 4]; 4],
+    /// The tessellation factor of every edge and of the inside, from 1 up; clamped to what the device has (64 at least).
+    pub factor: f32,
+    /// Index into [`Options::styles`].
+    pub style: usize,
+    /// Linear RGBA of regular patches, irregular quads and triangles.
+    pub colours: [[f32; 4]; 3],
+}
+
+impl DrawItem {
+    /// The model where it is, in the first style, in light grey.
+    pub fn new(model: ModelId, factor: f32) -> Self {
+        let transform = glam::Mat4::IDENTITY.to_cols_array_2d();
+        Self { model, transform, factor, style: 0, colours: [[0.7, 0.7, 0.7, 1.0]; 3] }
+    }
+
+    /// All patches in one colour.
+    pub fn colour(self, colour: [f32; 4]) -> Self {
+        Self { colours: [colour; 3], ..self }
+    }
+}
+
+/// Bytes by what they are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MemoryUsage {
+    /// Tables and positions on the device.
+    pub device: u64,
+    /// Staging buffers and view data that the host writes.
+    pub host: u64,
+}
+
+/// Something that must outlive the frames that may still use it.
+struct Retired {
+    /// The frames that may use it; it goes when each has been prepared again.
+    frames: Vec<bool>,
+    _what: RetiredObject,
+}
+
+#[expect(dead_code, reason = "kept only to be dropped later")]
+enum RetiredObject {
+    Model(Box<Model>),
+    Staging(Buffer),
+}
+
+/// Draws subdivision surfaces into the caller's command buffers.
+///
+/// Dropping it destroys its Vulkan objects: the device must be done with every frame they were recorded in.
+pub struct Renderer {
+    context: Arc<DeviceContext>,
+    options: Options,
+    pipelines: Pipelines,
+    models: HashMap<ModelId, Model>,
+    next_id: u64,
+    retired: Vec<Retired>,
+    views: Buffer,
+    view_stride: u64,
+    view_set: vk::DescriptorSet,
+    _view_pool: Owned<vk::DescriptorPool>,
+    /// Views drawn in each frame since it was prepared.
+    views_drawn: Vec<u32>,
+}
+
+impl Renderer {
+    /// A renderer for targets like `target`.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] if `context` was not made with what [`requirements`] asks for; failed Vulkan calls.
+    ///
+    /// # Safety
+    /// * The handles in `target` and `options` are of the context's device and live as long as the renderer, and the
+    ///   caller's fragment shaders match the stage interface ([`Fragment`]) and `target`.
+    /// * The renderer is dropped only when the device is done with all command buffers recorded with it.
+    pub unsafe fn new(context: &Arc<DeviceContext>, target: &Target, options: &Options) -> Result<Self, Error> {
+        // SAFETY: as the caller promises.
+        unsafe { Self::with_capture(context, target, options, Capture::Off) }
+    }
+
+    /// # Safety
+    /// As [`Renderer::new`]; with capture, `options.set_layouts` starts with the layout of the capture buffer.
+    pub(crate) unsafe fn with_capture(
+        context: &Arc<DeviceContext>,
+        target: &Target,
+        options: &Options,
+        capture: Capture,
+    ) -> Result<Self, Error> {
+        options::check_properties(context.properties(), context.features(), target, options)?;
+        let pipelines = Pipelines::new(context, target, options, capture)?;
+        // The largest alignment of uniform offsets that Vulkan allows.
+        let view_stride = (size_of::<ViewData>() as u64).next_multiple_of(256);
+        let count = u64::from(options.frames_in_flight) * u64::from(options.views_per_frame);
+        let views = Buffer::new(
+            context,
+            &BufferDesc {
+                name: "subdiv views",
+                size: count * view_stride,
+                usage: vk::BufferUsageFlags::UNIFORM_BUFFER,
+                location: MemoryLocation::Upload,
+            },
+        )?;
+        let (pool, view_set) = view_set(context, pipelines.view_layout.raw(), &views)?;
+        Ok(Self {
+            context: context.clone(),
+            options: options.clone(),
+            pipelines,
+            models: HashMap::new(),
+            next_id: 0,
+            retired: Vec::new(),
+            views,
+            view_stride,
+            view_set,
+            _view_pool: pool,
+            views_drawn: vec![0; options.frames_in_flight as usize],
+        })
+    }
+
+    /// Adds a model: builds its tables, uploads them with the next [`Renderer::cmd_prepare`], and makes the pipelines
+    /// that it is the first to need.
+    ///
+    /// # Errors
+    /// Meshes that cannot be addressed when refined, tables larger than a shader of the device can see, failed Vulkan
+    /// calls. The renderer is as it was before.
+    pub fn add_model(&mut self, mesh: &ControlMesh, options: &ModelOptions) -> Result<ModelId, Error> {
+        let tables = ModelTables::new(mesh, options)?;
+        self.add_tables(tables, &mesh.positions_f32(), options)
+    }
+
+    /// As [`Renderer::add_model`], with tables that were built elsewhere, such as on another thread, with the same
+    /// options.
+    pub fn add_tables(
+        &mut self,
+        tables: ModelTables,
+        positions: &[[f32; 3]],
+        options: &ModelOptions,
+    ) -> Result<ModelId, Error> {
+        let id = ModelId(self.next_id);
+        if positions.len() != tables.control_vertices {
+            return Err(Error::PositionCount { id, given: positions.len(), needed: tables.control_vertices });
+        }
+        let options = ModelOptions { construction: tables.construction(), ..options.clone() };
+        let model = Model::new(&self.context, &self.pipelines, &self.options, id, &options, tables, positions)?;
+        self.pipelines.make(&model.kinds, options.construction, options.spacing)?;
+        self.next_id += 1;
+        self.models.insert(id, model);
+        Ok(id)
+    }
+
+    /// Removes a model. Its memory is freed when every frame has been prepared again.
+    pub fn remove_model(&mut self, id: ModelId) -> Result<(), Error> {
+        let model = self.models.remove(&id).ok_or(Error::NoSuchModel { id })?;
+        let frames = vec![true; self.options.frames_in_flight as usize];
+        self.retired.push(Retired { frames, _what: RetiredObject::Model(Box::new(model)) });
+        Ok(())
+    }
+
+    /// The tables of a model.
+    pub fn tables(&self, id: ModelId) -> Result<&ModelTables, Error> {
+        Ok(&self.model(id)?.tables)
+    }
+
+    /// What a user will want to know about how a model is drawn, such as that it was refined.
+    pub fn notices(&self, id: ModelId) -> Result<&[Notice], Error> {
+        Ok(self.model(id)?.tables.notices())
+    }
+
+    /// Moves the control vertices of a model, from the next [`Renderer::cmd_prepare`] of `frame_index` on until other
+    /// positions are set in any frame. Object space, one position a vertex of the mesh, in its order.
+    ///
+    /// The last use of `frame_index` must be done on the device.
+    pub fn set_positions(&mut self, id: ModelId, frame_index: u32, positions: &[[f32; 3]]) -> Result<(), Error> {
+        self.check_frame(frame_index)?;
+        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_positions(frame_index, positions)
+    }
+
+    /// Records what has to happen before this frame's draws: copies and barriers. Once a frame.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw. The device is done with what was
+    /// recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue.
+    pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
+        self.check_frame(frame_index)?;
+        self.views_drawn[frame_index as usize] = 0;
+        for retired in &mut self.retired {
+            retired.frames[frame_index as usize] = false;
+        }
+        self.retired.retain(|retired| retired.frames.contains(&true));
+        if !self.models.values().any(|model| model.needs_copies(frame_index)) {
+            return Ok(());
+        }
+        let device = self.context.device();
+        let readers = vk::PipelineStageFlags::VERTEX_INPUT
+            | vk::PipelineStageFlags::VERTEX_SHADER
+            | vk::PipelineStageFlags::TESSELLATION_CONTROL_SHADER;
+        let transfer = vk::PipelineStageFlags::TRANSFER;
+        let none = vk::DependencyFlags::empty();
+        let after_copies = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::INDEX_READ)];
+        let after_writes = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)];
+        // SAFETY: as the caller promises; the copied ranges are of live buffers.
+        unsafe {
+            // The frame before may still read what is overwritten here.
+            device.cmd_pipeline_barrier(cmd, readers | transfer, transfer, none, &after_writes, &[], &[]);
+            for model in self.models.values_mut().filter(|model| model.needs_copies(frame_index)) {
+                for staging in model.cmd_copy(device, cmd, frame_index) {
+                    let mut frames = vec![false; self.options.frames_in_flight as usize];
+                    frames[frame_index as usize] = true;
+                    self.retired.push(Retired { frames, _what: RetiredObject::Staging(staging) });
+                }
+            }
+            device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
+        }
+        Ok(())
+    }
+
+    /// Records the draws of one view. Viewport and scissor are the caller's to set. Binds sets 0 and 1, and pipelines;
+    /// push constants are overwritten.
+    ///
+    /// # Errors
+    /// Unknown models, styles and frames, factors below 1 and more views than [`Options::views_per_frame`]. Items before
+    /// the wrong one are recorded.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, inside rendering that fits [`Target`], after [`Renderer::cmd_prepare`] of the same
+    /// frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`].
+    pub unsafe fn cmd_draw(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        frame_index: u32,
+        view: &View,
+        items: &[DrawItem],
+    ) -> Result<(), Error> {
+        self.check_frame(frame_index)?;
+        let max = self.options.views_per_frame;
+        let drawn = &mut self.views_drawn[frame_index as usize];
+        if *drawn >= max {
+            return Err(Error::TooManyViews { frame: frame_index, max });
+        }
+        let offset = self.view_stride * (u64::from(frame_index) * u64::from(max) + u64::from(*drawn));
+        *drawn += 1;
+        self.views.write(offset, &[view.data()])?;
+        let (device, layout) = (self.context.device(), self.pipelines.layout.raw());
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        // SAFETY: as the caller promises.
+        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 0, &[self.view_set], &[offset as u32]) };
+        let mut bound = Bound::default();
+        for item in items {
+            // SAFETY: as the caller promises.
+            unsafe { self.cmd_draw_item(cmd, item, &mut bound)? };
+        }
+        Ok(())
+    }
+
+    /// The layout that the caller's own descriptor sets are bound with.
+    pub fn pipeline_layout(&self) -> vk::PipelineLayout {
+        self.pipelines.layout.raw()
+    }
+
+    /// Bytes of all models together.
+    pub fn memory_usage(&self) -> MemoryUsage {
+        let mut usage = MemoryUsage { device: 0, host: self.views.size() };
+        for model in self.models.values() {
+            let [device, host] = model.memory();
+            usage.device += device;
+            usage.host += host;
+        }
+        usage
+    }
+
+    unsafe fn cmd_draw_item(&self, cmd: vk::CommandBuffer, item: &DrawItem, bound: &mut Bound) -> Result<(), Error> {
+        let id = item.model;
+        let model = self.model(id)?;
+        let styles = self.pipelines.styles();
+        let style = styles.get(item.style).ok_or(Error::NoSuchStyle { given: item.style, count: styles.len() })?;
+        if !model.prepared {
+            return Err(Error::NotPrepared { id });
+        }
+        if item.factor.is_nan() || item.factor < 1.0 {
+            return Err(Error::BadFactor { id, factor: item.factor });
+        }
+        let device = self.context.device();
+        let properties = self.context.properties();
+        let factor = item.factor.min(properties.max_tessellation_level as f32);
+        let mut constants = DrawConstants::new(&item.transform, factor);
+        // SAFETY: as the caller of `cmd_draw` promises.
+        unsafe {
+            if bound.set != model.set {
+                bound.set = model.set;
+                let point = vk::PipelineBindPoint::GRAPHICS;
+                let layout = self.pipelines.layout.raw();
+                device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set], &[]);
+            }
+            if style.geometry != Geometry::Surface {
+                constants.colour = item.colours[0];
+                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Control }, bound);
+                self.push(cmd, &constants);
+                if let Some(control) = &model.control {
+                    let (first, count) = match style.geometry {
+                        Geometry::ControlEdges => (0, control.edges),
+                        _ => (control.edges, control.faces),
+                    };
+                    device.cmd_bind_index_buffer(cmd, control.buffer.raw(), 0, vk::IndexType::UINT32);
+                    device.cmd_draw_indexed(cmd, count, 1, first, control.vertex_offset, 0);
+                }
+                return Ok(());
+            }
+            let plan = model.tables.plan();
+            let (construction, spacing) = (model.options.construction, model.options.spacing);
+            for &kind in &model.kinds {
+                let geometry = GeometryKey::Patches { kind, construction, spacing };
+                self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
+                let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
+                let vertices = tessellated_vertices(domain, spacing, factor, properties.max_tessellation_level);
+                let points = input_points(kind, construction);
+                constants.colour = item.colours[kind as usize];
+                constants.first_corner = plan.first_corner(kind);
+                constants.first_patch = plan.range(kind).start as u32;
+                for draw in properties.patch_batch.draws(plan.count(kind), points, vertices) {
+                    if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
+                        constants.patches_per_instance = draw.patches_per_instance;
+                        self.push(cmd, &constants);
+                    }
+                    device.cmd_draw(cmd, draw.vertex_count, draw.instance_count, 0, draw.first_instance);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {
+        // Every pipeline of a model's kinds was made when it was added.
+        if let Some(pipeline) = self.pipelines.get(key)
+            && bound.pipeline != pipeline
+        {
+            bound.pipeline = pipeline;
+            // SAFETY: as the caller of `cmd_draw` promises.
+            unsafe { self.context.device().cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
+        }
+    }
+
+    unsafe fn push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
+        let layout = self.pipelines.layout.raw();
+        // SAFETY: as the caller of `cmd_draw` promises.
+        unsafe { self.context.device().cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(constants)) };
+    }
+
+    fn model(&self, id: ModelId) -> Result<&Model, Error> {
+        self.models.get(&id).ok_or(Error::NoSuchModel { id })
+    }
+
+    fn check_frame(&self, given: u32) -> Result<(), Error> {
+        let frames = self.options.frames_in_flight;
+        if given < frames { Ok(()) } else { Err(Error::NoSuchFrame { given, frames }) }
+    }
+}
+
+/// What is bound in a command buffer so far.
+#[derive(Default)]
+struct Bound {
+    pipeline: vk::Pipeline,
+    set: vk::DescriptorSet,
+}
+
+fn view_set(
+    context: &Arc<DeviceContext>,
+    layout: vk::DescriptorSetLayout,
+    views: &Buffer,
+) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
+    let ty = vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC;
+    let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: 1 }];
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+    let layouts = [layout];
+    let buffers = [vk::DescriptorBufferInfo { buffer: views.raw(), offset: 0, range: size_of::<ViewData>() as u64 }];
+    // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
+    unsafe {
+        let device = context.device();
+        let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", "subdiv views")?;
+        let pool = Owned::new(context, pool, "subdiv views");
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
+        let sets = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", "subdiv views")?;
+        let write =
+            vk::WriteDescriptorSet::default().dst_set(sets[0]).dst_binding(0).descriptor_type(ty).buffer_info(&buffers);
+        device.update_descriptor_sets(&[write], &[]);
+        Ok((pool, sets[0]))
+    }
+}

@@ -1,0 +1,255 @@
+//! What the caller says once: where to draw, and how.
+
+use super::Error;
+use crate::gpu::{Blend, DepthBias, DepthState, DeviceProperties, Features, Spacing};
+use ash::vk;
+
+/// What the renderer draws into.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    pub pass: Pass,
+    pub samples: vk::SampleCountFlags,
+    /// Whether there is a depth attachment; without one nothing is hidden by what lies in front.
+    pub depth: bool,
+}
+
+/// The rendering that [`Renderer::cmd_draw`](super::Renderer::cmd_draw) is recorded in.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pass {
+    /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
+    Dynamic { color: Vec<vk::Format>, depth: vk::Format, stencil: vk::Format, view_mask: u32 },
+    /// A subpass that has this many colour attachments. The render pass must live as long as the renderer.
+    RenderPass { render_pass: vk::RenderPass, subpass: u32, color_attachments: u32 },
+}
+
+impl Target {
+    /// Dynamic rendering into one colour attachment and one for depth.
+    pub fn dynamic(color: vk::Format, depth: vk::Format, samples: vk::SampleCountFlags) -> Self {
+        let pass = Pass::Dynamic { color: vec![color], depth, stencil: vk::Format::UNDEFINED, view_mask: 0 };
+        Self { pass, samples, depth: depth != vk::Format::UNDEFINED }
+    }
+}
+
+/// What of a model a [`Style`] draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Geometry {
+    /// The smooth surface, through the tessellation stages.
+    #[default]
+    Surface,
+    /// The faces of the control mesh as they are.
+    ControlFaces,
+    /// The edges of the control mesh, as lines.
+    ControlEdges,
+}
+
+/// The fragment shader of a [`Style`].
+///
+/// Your own SPIR-V sees, for [`Geometry::Surface`], at location 0 the position in world space (`vec3`), at 1 the
+/// normal in world space (`vec3`, not of length one), and at 2 the texture coordinate (`vec2`) if
+/// [`Options::texcoords`] is on; for the control mesh only location 0. Set 0, binding 0 and the push constants are
+/// those of `glsl/lib/draw.glsl`; your own descriptor sets start at set 2
+/// ([`Options::set_layouts`]).
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub enum Fragment {
+    /// One light and the sky; for [`Geometry::ControlFaces`] with the normal of each face.
+    #[default]
+    Lit,
+    /// The normal as a colour.
+    Normals,
+    /// The colour of the draw as it is.
+    Flat,
+    Spirv(Vec<u32>),
+}
+
+/// How a model is drawn: a pipeline state. A draw names one of [`Options::styles`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Style {
+    pub geometry: Geometry,
+    pub fragment: Fragment,
+    /// Draw triangles as lines ([`Features::fill_mode_non_solid`]).
+    pub wireframe: bool,
+    pub cull: vk::CullModeFlags,
+    pub front_face: vk::FrontFace,
+    /// No depth test if none. Not looked at if the target has no depth.
+    pub depth: Option<DepthState>,
+    pub depth_bias: Option<DepthBias>,
+    pub blend: Blend,
+    /// Pixels; other widths than 1 need [`Features::wide_lines`].
+    pub line_width: f32,
+    /// Stop before rasterization: to time the geometry alone.
+    pub rasterizer_discard: bool,
+}
+
+impl Default for Style {
+    /// The lit surface, seen from both sides.
+    ///
+    /// Front faces are `COUNTER_CLOCKWISE` in Vulkan's framebuffer (y down) when the projection flips y, as
+    /// [`View`](super::View)'s constructors do.
+    fn default() -> Self {
+        Self {
+            geometry: Geometry::Surface,
+            fragment: Fragment::Lit,
+            wireframe: false,
+            cull: vk::CullModeFlags::NONE,
+            front_face: vk::FrontFace::COUNTER_CLOCKWISE,
+            depth: Some(DepthState::LESS),
+            depth_bias: None,
+            blend: Blend::Opaque,
+            line_width: 1.0,
+            rasterizer_discard: false,
+        }
+    }
+}
+
+impl Style {
+    /// Lines of the tessellated triangles, to be drawn over a surface.
+    pub fn wireframe() -> Self {
+        Self {
+            fragment: Fragment::Flat,
+            wireframe: true,
+            depth: Some(DepthState::LESS_OR_EQUAL),
+            depth_bias: Some(DepthBias { constant: -2.0, slope: -1.0 }),
+            ..Self::default()
+        }
+    }
+
+    /// The edges of the control mesh, over everything.
+    pub fn cage() -> Self {
+        Self { geometry: Geometry::ControlEdges, fragment: Fragment::Flat, depth: None, ..Self::default() }
+    }
+}
+
+/// What the renderer is to be able to do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Frames that may be on the device at once: frame indices run from 0 to one less.
+    pub frames_in_flight: u32,
+    /// Calls of [`Renderer::cmd_draw`](super::Renderer::cmd_draw) in a frame, at most.
+    pub views_per_frame: u32,
+    /// Draws name these by their index.
+    pub styles: Vec<Style>,
+    /// Give texture coordinates to the fragment stage.
+    pub texcoords: bool,
+    /// The caller's descriptor set layouts, from set 2 on.
+    pub set_layouts: Vec<vk::DescriptorSetLayout>,
+    pub pipeline_cache: vk::PipelineCache,
+}
+
+impl Default for Options {
+    /// Two frames in flight, 16 views a frame, one lit style, no texture coordinates.
+    fn default() -> Self {
+        Self {
+            frames_in_flight: 2,
+            views_per_frame: 16,
+            styles: vec![Style::default()],
+            texcoords: false,
+            set_layouts: Vec::new(),
+            pipeline_cache: vk::PipelineCache::null(),
+        }
+    }
+}
+
+/// How the control points are made on the GPU. Both give the same points but for rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Construction {
+    /// The vertex shader turns each control vertex and its one-ring into limit point and tangents, the control shader
+    /// assembles the patch. The smaller tables.
+    #[default]
+    TwoStage,
+    /// The control shader sums the vertices around the patch with the weights of its type of connectivity.
+    Stencil,
+}
+
+impl Construction {
+    pub const ALL: [Self; 2] = [Self::TwoStage, Self::Stencil];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TwoStage => "two-stage",
+            Self::Stencil => "stencil",
+        }
+    }
+}
+
+/// How one model is drawn.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModelOptions {
+    /// The debug name.
+    pub name: String,
+    pub construction: Construction,
+    pub spacing: Spacing,
+    /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
+    pub refine: u32,
+}
+
+/// What a device must be made with for [`Options`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Requirements {
+    /// The lowest version of Vulkan, for the instance and the device.
+    pub api_version: u32,
+    /// The features to enable; [`Features::chain`] makes the structures for `vkCreateDevice`.
+    pub features: Features,
+    /// Device extensions to enable: none so far.
+    pub device_extensions: Vec<&'static std::ffi::CStr>,
+}
+
+/// What a device must be made with; ask before creating it.
+pub fn requirements(target: &Target, options: &Options) -> Requirements {
+    let features = Features {
+        tessellation: true,
+        dynamic_rendering: matches!(target.pass, Pass::Dynamic { .. }),
+        fill_mode_non_solid: options.styles.iter().any(|s| s.wireframe),
+        wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
+        ..Features::NONE
+    };
+    Requirements { api_version: vk::API_VERSION_1_3, features, device_extensions: features.extensions() }
+}
+
+/// Tells whether a physical device can do what `options` ask.
+///
+/// # Errors
+/// [`Error::Unsupported`] names everything that is missing at once.
+///
+/// # Safety
+/// `physical_device` comes from `instance`, whose version is at least 1.1.
+pub unsafe fn check(
+    instance: &ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    target: &Target,
+    options: &Options,
+) -> Result<(), Error> {
+    // SAFETY: as the caller promises.
+    let properties = unsafe { DeviceProperties::query(instance, physical_device) };
+    check_properties(&properties, properties.features, target, options)
+}
+
+pub(super) fn check_properties(
+    properties: &DeviceProperties,
+    features: Features,
+    target: &Target,
+    options: &Options,
+) -> Result<(), Error> {
+    let needed = requirements(target, options);
+    let mut missing: Vec<String> = features.missing(needed.features).into_iter().map(String::from).collect();
+    if properties.api_version < needed.api_version {
+        let version = properties.api_version;
+        let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));
+        missing.push(format!("Vulkan 1.3 (it has {major}.{minor})"));
+    }
+    if !properties.sample_counts.contains(target.samples) {
+        let counts: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
+        missing.push(format!("{} samples a pixel (it has {})", target.samples.as_raw(), counts.join(", ")));
+    }
+    let width = options.styles.iter().map(|s| s.line_width).fold(0.0, f32::max);
+    if width > 1.0 && width > properties.max_line_width {
+        missing.push(format!("lines {width} pixels wide (it has {})", properties.max_line_width));
+    }
+    for (what, given) in [("frames_in_flight", options.frames_in_flight), ("views_per_frame", options.views_per_frame)]
+    {
+        if given == 0 {
+            return Err(Error::BadOption { what, given });
+        }
+    }
+    if missing.is_empty() { Ok(()) } else { Err(Error::Unsupported { device: properties.name.clone(), missing }) }
+}

@@ -1,0 +1,290 @@
+//! Every pipeline that the models of a renderer need, made when the first such model is added.
+
+use super::{Construction, Fragment, Geometry, Options, Pass, Style, Target};
+use crate::gpu::{
+    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
+    descriptor_set_layout, pipeline_layout, shaders,
+};
+use crate::topology::PatchKind;
+use ash::vk;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What the tessellation stages do besides drawing: nothing, or write down what they computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(crate) enum Capture {
+    #[default]
+    Off,
+    /// Control points, and each evaluated vertex as it comes.
+    Vertices,
+    /// Control points, and the samples of a grid.
+    Grid,
+}
+
+/// What tells pipelines of one renderer apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct PipelineKey {
+    /// Index into the styles.
+    pub style: usize,
+    pub geometry: GeometryKey,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum GeometryKey {
+    Patches { kind: PatchKind, construction: Construction, spacing: Spacing },
+    Control,
+}
+
+/// Layouts and pipelines.
+pub(super) struct Pipelines {
+    context: Arc<DeviceContext>,
+    target: Target,
+    styles: Vec<Style>,
+    texcoords: bool,
+    capture: Capture,
+    cache: vk::PipelineCache,
+    pub view_layout: Owned<vk::DescriptorSetLayout>,
+    pub model_layout: Owned<vk::DescriptorSetLayout>,
+    pub layout: Owned<vk::PipelineLayout>,
+    made: HashMap<PipelineKey, Owned<vk::Pipeline>>,
+}
+
+/// The stages that read set 0, set 1 and the push constants.
+pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw()
+        | vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
+        | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw()
+        | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+);
+
+/// Storage buffers of a model: positions, four tables of the construction, texture coordinates.
+pub(super) const MODEL_BINDINGS: usize = 6;
+
+impl Pipelines {
+    pub(super) fn new(
+        context: &Arc<DeviceContext>,
+        target: &Target,
+        options: &Options,
+        capture: Capture,
+    ) -> Result<Self, GpuError> {
+        let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
+        let model = [(vk::DescriptorType::STORAGE_BUFFER, STAGES); MODEL_BINDINGS];
+        let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
+        let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;
+        let mut sets = vec![view_layout.raw(), model_layout.raw()];
+        sets.extend(&options.set_layouts);
+        let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];
+        // SAFETY: the layouts are of this device; for the caller's own that is part of the contract of `Renderer::new`.
+        let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
+        Ok(Self {
+            context: context.clone(),
+            target: target.clone(),
+            styles: options.styles.clone(),
+            texcoords: options.texcoords,
+            capture,
+            cache: options.pipeline_cache,
+            view_layout,
+            model_layout,
+            layout,
+            made: HashMap::new(),
+        })
+    }
+
+    pub(super) fn styles(&self) -> &[Style] {
+        &self.styles
+    }
+
+    pub(super) fn get(&self, key: PipelineKey) -> Option<vk::Pipeline> {
+        self.made.get(&key).map(Owned::raw)
+    }
+
+    /// Makes what patches of these kinds need in every style.
+    pub(super) fn make(
+        &mut self,
+        kinds: &[PatchKind],
+        construction: Construction,
+        spacing: Spacing,
+    ) -> Result<(), GpuError> {
+        for style in 0..self.styles.len() {
+            if self.styles[style].geometry != Geometry::Surface {
+                self.make_one(PipelineKey { style, geometry: GeometryKey::Control })?;
+                continue;
+            }
+            for &kind in kinds {
+                let geometry = GeometryKey::Patches { kind, construction, spacing };
+                self.make_one(PipelineKey { style, geometry })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn make_one(&mut self, key: PipelineKey) -> Result<(), GpuError> {
+        if self.made.contains_key(&key) {
+            return Ok(());
+        }
+        let style = &self.styles[key.style];
+        let pipeline = match key.geometry {
+            GeometryKey::Control => {
+                let name = format!("subdiv style {} of the control mesh", key.style);
+                let stages = [Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT), fragment(style)];
+                self.create(&name, style, &stages, 0)?
+            }
+            GeometryKey::Patches { kind, construction, spacing } => {
+                let name = format!("subdiv style {} {kind:?} {construction:?} {spacing:?}", key.style);
+                let corners = [Specialization::uint(0, kind.corners() as u32)];
+                let vertex = match construction {
+                    Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
+                    Construction::Stencil => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
+                };
+                let stages = [
+                    vertex,
+                    Shader::tess_control(control_shader(kind, construction, self.capture, self.texcoords)),
+                    Shader::tess_evaluation(evaluation_shader(kind, spacing, self.capture, self.texcoords)),
+                    fragment(style),
+                ];
+                self.create(&name, style, &stages, input_points(kind, construction))?
+            }
+        };
+        self.made.insert(key, pipeline);
+        Ok(())
+    }
+
+    fn create(
+        &self,
+        name: &str,
+        style: &Style,
+        stages: &[Shader],
+        patch_control_points: u32,
+    ) -> Result<Owned<vk::Pipeline>, GpuError> {
+        let target = match &self.target.pass {
+            Pass::Dynamic { color, depth, stencil, view_mask } => {
+                RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: *view_mask }
+            }
+            &Pass::RenderPass { render_pass, subpass, color_attachments } => {
+                RenderTarget::RenderPass { render_pass, subpass, color_attachments }
+            }
+        };
+        let stages = if style.rasterizer_discard { &stages[..stages.len() - 1] } else { stages };
+        let lines = style.geometry == Geometry::ControlEdges;
+        let desc = GraphicsPipelineDesc {
+            patch_control_points,
+            topology: if lines { vk::PrimitiveTopology::LINE_LIST } else { vk::PrimitiveTopology::TRIANGLE_LIST },
+            polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
+            cull_mode: style.cull,
+            front_face: style.front_face,
+            line_width: style.line_width,
+            depth: if self.target.depth { style.depth } else { None },
+            depth_bias: style.depth_bias,
+            blend: style.blend,
+            samples: self.target.samples,
+            rasterizer_discard: style.rasterizer_discard,
+            cache: self.cache,
+            ..GraphicsPipelineDesc::new(name, self.layout.raw(), target, stages)
+        };
+        // SAFETY: the shaders are ours and match; the caller's fragment shader and target do by the contract of
+        // `Renderer::new`.
+        unsafe { desc.create(&self.context) }
+    }
+}
+
+/// Control points that go into the control shader: one a corner, or one a patch that only says which patch it is.
+pub(super) fn input_points(kind: PatchKind, construction: Construction) -> u32 {
+    match construction {
+        Construction::TwoStage => kind.corners() as u32,
+        Construction::Stencil => 1,
+    }
+}
+
+fn fragment(style: &Style) -> Shader<'_> {
+    Shader::fragment(match (&style.fragment, style.geometry) {
+        (Fragment::Spirv(code), _) => code,
+        (Fragment::Lit, Geometry::Surface) => shaders::SHADE_LIT_FRAG,
+        (Fragment::Lit, Geometry::ControlFaces) => shaders::SHADE_FACETS_FRAG,
+        (Fragment::Normals, Geometry::Surface) => shaders::SHADE_NORMALS_FRAG,
+        _ => shaders::SHADE_FLAT_FRAG,
+    })
+}
+
+fn control_shader(kind: PatchKind, construction: Construction, capture: Capture, texcoords: bool) -> &'static [u32] {
+    use shaders::*;
+    let capture = capture != Capture::Off;
+    match (construction, kind) {
+        (Construction::TwoStage, PatchKind::Regular) if capture => CONSTRUCT_REGULAR_TESC_CAPTURE,
+        (Construction::TwoStage, PatchKind::Regular) if texcoords => CONSTRUCT_REGULAR_TESC_TEXCOORD,
+        (Construction::TwoStage, PatchKind::Regular) => CONSTRUCT_REGULAR_TESC,
+        (Construction::TwoStage, PatchKind::IrregularQuad) if capture => CONSTRUCT_GREGORY_TESC_CAPTURE,
+        (Construction::TwoStage, PatchKind::IrregularQuad) if texcoords => CONSTRUCT_GREGORY_TESC_TEXCOORD,
+        (Construction::TwoStage, PatchKind::IrregularQuad) => CONSTRUCT_GREGORY_TESC,
+        (Construction::TwoStage, PatchKind::Triangle) if capture => CONSTRUCT_GREGORY_TESC_TRIANGLE_CAPTURE,
+        (Construction::TwoStage, PatchKind::Triangle) if texcoords => CONSTRUCT_GREGORY_TESC_TRIANGLE_TEXCOORD,
+        (Construction::TwoStage, PatchKind::Triangle) => CONSTRUCT_GREGORY_TESC_TRIANGLE,
+        (Construction::Stencil, PatchKind::Regular) if capture => CONSTRUCT_STENCIL_TESC_REGULAR_CAPTURE,
+        (Construction::Stencil, PatchKind::Regular) if texcoords => CONSTRUCT_STENCIL_TESC_REGULAR_TEXCOORD,
+        (Construction::Stencil, PatchKind::Regular) => CONSTRUCT_STENCIL_TESC_REGULAR,
+        (Construction::Stencil, PatchKind::IrregularQuad) if capture => CONSTRUCT_STENCIL_TESC_CAPTURE,
+        (Construction::Stencil, PatchKind::IrregularQuad) if texcoords => CONSTRUCT_STENCIL_TESC_TEXCOORD,
+        (Construction::Stencil, PatchKind::IrregularQuad) => CONSTRUCT_STENCIL_TESC,
+        (Construction::Stencil, PatchKind::Triangle) if capture => CONSTRUCT_STENCIL_TESC_TRIANGLE_CAPTURE,
+        (Construction::Stencil, PatchKind::Triangle) if texcoords => CONSTRUCT_STENCIL_TESC_TRIANGLE_TEXCOORD,
+        (Construction::Stencil, PatchKind::Triangle) => CONSTRUCT_STENCIL_TESC_TRIANGLE,
+    }
+}
+
+fn evaluation_shader(kind: PatchKind, spacing: Spacing, capture: Capture, texcoords: bool) -> &'static [u32] {
+    /// The variants of one evaluation shader.
+    macro_rules! variants {
+        ($equal:ident, $odd:ident, $even:ident, $equal_uv:ident, $odd_uv:ident, $even_uv:ident,
+         $equal_capture:ident, $odd_capture:ident, $even_capture:ident, $grid:ident) => {
+            match (capture, spacing) {
+                (Capture::Grid, _) => shaders::$grid,
+                (Capture::Vertices, Spacing::Equal) => shaders::$equal_capture,
+                (Capture::Vertices, Spacing::FractionalOdd) => shaders::$odd_capture,
+                (Capture::Vertices, Spacing::FractionalEven) => shaders::$even_capture,
+                (Capture::Off, Spacing::Equal) if texcoords => shaders::$equal_uv,
+                (Capture::Off, Spacing::FractionalOdd) if texcoords => shaders::$odd_uv,
+                (Capture::Off, Spacing::FractionalEven) if texcoords => shaders::$even_uv,
+                (Capture::Off, Spacing::Equal) => shaders::$equal,
+                (Capture::Off, Spacing::FractionalOdd) => shaders::$odd,
+                (Capture::Off, Spacing::FractionalEven) => shaders::$even,
+            }
+        };
+    }
+    match kind {
+        PatchKind::Regular => variants!(
+            EVALUATE_BICUBIC_TESE,
+            EVALUATE_BICUBIC_TESE_FRACTIONAL_ODD,
+            EVALUATE_BICUBIC_TESE_FRACTIONAL_EVEN,
+            EVALUATE_BICUBIC_TESE_TEXCOORD,
+            EVALUATE_BICUBIC_TESE_FRACTIONAL_ODD_TEXCOORD,
+            EVALUATE_BICUBIC_TESE_FRACTIONAL_EVEN_TEXCOORD,
+            EVALUATE_BICUBIC_TESE_CAPTURE,
+            EVALUATE_BICUBIC_TESE_FRACTIONAL_ODD_CAPTURE,
+            EVALUATE_BICUBIC_TESE_FRACTIONAL_EVEN_CAPTURE,
+            EVALUATE_BICUBIC_TESE_CAPTURE_GRID
+        ),
+        PatchKind::IrregularQuad => variants!(
+            EVALUATE_GREGORY_QUAD_TESE,
+            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_ODD,
+            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_EVEN,
+            EVALUATE_GREGORY_QUAD_TESE_TEXCOORD,
+            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_ODD_TEXCOORD,
+            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_EVEN_TEXCOORD,
+            EVALUATE_GREGORY_QUAD_TESE_CAPTURE,
+            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_ODD_CAPTURE,
+            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_EVEN_CAPTURE,
+            EVALUATE_GREGORY_QUAD_TESE_CAPTURE_GRID
+        ),
+        PatchKind::Triangle => variants!(
+            EVALUATE_GREGORY_TRIANGLE_TESE,
+            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_ODD,
+            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_EVEN,
+            EVALUATE_GREGORY_TRIANGLE_TESE_TEXCOORD,
+            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_ODD_TEXCOORD,
+            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_EVEN_TEXCOORD,
+            EVALUATE_GREGORY_TRIANGLE_TESE_CAPTURE,
+            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_ODD_CAPTURE,
+            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_EVEN_CAPTURE,
+            EVALUATE_GREGORY_TRIANGLE_TESE_CAPTURE_GRID
+        ),
+    }
+}

@@ -1,0 +1,76 @@
+//! Where the eye is.
+
+use super::gpu_data::ViewData;
+use glam::{DVec3, Mat4, Vec3};
+
+/// A camera and a light. Matrices are given by columns, as `glam::Mat4::to_cols_array_2d` gives them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// From world space to Vulkan's clip space: y down, depth from 0 to 1.
+    pub view_projection: [[f32; 4]; 4],
+    /// The eye in world space.
+    pub eye: [f32; 3],
+    /// Towards the light, in world space; any length but zero.
+    pub light: [f32; 3],
+}
+
+impl View {
+    /// A perspective camera at `eye` that looks at `target`. `fov_y` is the full vertical angle in radians; the light
+    /// comes from above the left shoulder.
+    pub fn perspective(
+        eye: [f32; 3],
+        target: [f32; 3],
+        up: [f32; 3],
+        fov_y: f32,
+        aspect: f32,
+        [near, far]: [f32; 2],
+    ) -> Self {
+        let (eye, target) = (Vec3::from(eye), Vec3::from(target));
+        let view = Mat4::look_at_rh(eye, target, up.into());
+        // glam's clip space has y up.
+        let projection = Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * Mat4::perspective_rh(fov_y, aspect, near, far);
+        let light = view.inverse().transform_vector3(Vec3::new(-0.45, 0.8, 0.65));
+        Self {
+            view_projection: (projection * view).to_cols_array_2d(),
+            eye: eye.into(),
+            light: light.normalize_or(Vec3::Y).into(),
+        }
+    }
+
+    /// A camera that sees all of a box. `towards` leads from the box to the eye.
+    pub fn framing(bounds: [DVec3; 2], towards: [f32; 3], aspect: f32) -> Self {
+        const FOV_Y: f32 = 0.6;
+        let [low, high] = bounds.map(|b| b.as_vec3());
+        let centre = (low + high) / 2.0;
+        let radius = ((high - low).length() / 2.0).max(f32::MIN_POSITIVE.sqrt());
+        let towards = Vec3::from(towards).normalize_or(Vec3::Z);
+        let up = if towards.cross(Vec3::Y).length_squared() > 1e-6 { Vec3::Y } else { Vec3::NEG_Z };
+        // The eight corners decide, not the sphere around them: boxes fill the picture better.
+        let view = Mat4::look_to_rh(Vec3::ZERO, -towards, up);
+        let (tan_y, tan_x) = ((FOV_Y / 2.0).tan(), (FOV_Y / 2.0).tan() * aspect);
+        let half = (high - low) / 2.0;
+        let mut distance = 0.0f32;
+        for corner in 0..8 {
+            let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            let at = view.transform_vector3(half * Vec3::new(sign(0), sign(1), sign(2)));
+            distance = distance.max(at.z + (at.x.abs() / tan_x).max(at.y.abs() / tan_y));
+        }
+        let distance = distance * 1.04;
+        let near = (distance - radius).max(radius * 1e-3);
+        let eye = centre + towards * distance;
+        Self::perspective(
+            eye.into(),
+            centre.into(),
+            up.into(),
+            FOV_Y,
+            aspect,
+            [near * 0.98, (distance + radius) * 1.02],
+        )
+    }
+
+    pub(super) fn data(&self) -> ViewData {
+        let [x, y, z] = self.eye;
+        let light = Vec3::from(self.light).normalize_or(Vec3::Y);
+        ViewData { view_projection: self.view_projection, eye: [x, y, z, 1.0], light: light.extend(0.0).into() }
+    }
+}
