@@ -259,7 +259,8 @@ fn buffers_copy_and_check_their_bounds() {
     );
     assert!(target.read::<f32>(u64::MAX, 1).is_err());
     assert!(target.write(8, &[1_u64]).is_err());
-    if !headless.properties().driver_name.is_empty() && device.read::<u8>(0, 1).is_err() {
+    // Where all memory can be mapped the allocator may map this too.
+    if device.read::<u8>(0, 1).is_err() {
         assert!(text(device.read::<u8>(0, 1).unwrap_err()).starts_with("device: not mapped"));
     }
     let empty = Buffer::with_data::<f32>(context, "empty", usage, &[]).unwrap();
@@ -329,7 +330,7 @@ fn objects_that_outlive_the_device_are_reported_and_harmless() {
     let headless = headless();
     let kept = Buffer::with_data(headless.context(), "kept", vk::BufferUsageFlags::TRANSFER_SRC, &[0_u32]).unwrap();
     let messages = headless.finish();
-    assert_eq!(messages, ["2 objects of the device are not dropped yet"]);
+    assert_eq!(messages, ["the device is still in use: 2 references to its context are left"]);
     assert_eq!(kept.read::<u32>(0, 1).unwrap(), [0]);
 }
 

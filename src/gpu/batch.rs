@@ -26,7 +26,7 @@ impl Spacing {
     /// (Vulkan 1.3, "Tessellation Primitive Spacing"). A factor that is no number counts as the smallest.
     pub fn segments(self, level: f32, max_level: u32) -> u32 {
         // `as` takes NaN to 0 and everything else into range.
-        let up = level.min(max_level as f32).ceil() as u32;
+        let up = (level.ceil() as u32).min(max_level);
         match self {
             Self::Equal => up.clamp(1, max_level.max(1)),
             Self::FractionalOdd => (up | 1).clamp(1, max_level.max(2) - 1),

@@ -18,6 +18,7 @@ mod layout;
 mod owned;
 mod pipeline;
 pub mod shaders;
+mod stages;
 
 pub use allocator::{Allocation, AllocationRequest, Allocator, AllocatorError, Dedicated, MemoryLocation};
 pub use batch::{Domain, PatchBatch, PatchDraw, Spacing, tessellated_vertices};
@@ -28,6 +29,5 @@ pub use features::Features;
 pub use image::{Image, ImageDesc, aspects};
 pub use layout::{descriptor_set_layout, pipeline_layout};
 pub use owned::{DeviceHandle, Owned};
-pub use pipeline::{
-    Blend, ComputePipelineDesc, DepthBias, DepthState, GraphicsPipelineDesc, RenderTarget, Shader, Specialization,
-};
+pub use pipeline::{Blend, ComputePipelineDesc, DepthBias, DepthState, GraphicsPipelineDesc, RenderTarget};
+pub use stages::{Shader, Specialization};

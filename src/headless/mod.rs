@@ -222,7 +222,10 @@ impl Headless {
         let context = Arc::downgrade(&self.context);
         drop(self);
         if context.strong_count() > 0 {
-            messages.push(format!("{} objects of the device are not dropped yet", context.strong_count()));
+            messages.push(format!(
+                "the device is still in use: {} references to its context are left",
+                context.strong_count()
+            ));
         }
         messages.all()
     }

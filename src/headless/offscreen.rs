@@ -2,7 +2,9 @@
 
 use ash::vk;
 
-use super::{Headless, HeadlessError};
+use super::Headless;
+#[cfg(feature = "png")]
+use super::HeadlessError;
 use crate::gpu::{Buffer, BufferDesc, GpuError, Image, ImageDesc, MemoryLocation, RenderTarget};
 
 /// What an [`Offscreen`] is to be.

@@ -1,0 +1,127 @@
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::{DeviceContext, GpuError, Owned, VkResultExt};
+
+/// A specialization constant: its `constant_id`, and its value as 32 bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Specialization {
+    pub id: u32,
+    pub bits: u32,
+}
+
+impl Specialization {
+    pub fn uint(id: u32, value: u32) -> Self {
+        Self { id, bits: value }
+    }
+
+    pub fn int(id: u32, value: i32) -> Self {
+        Self { id, bits: value.cast_unsigned() }
+    }
+
+    pub fn float(id: u32, value: f32) -> Self {
+        Self { id, bits: value.to_bits() }
+    }
+
+    pub fn bool(id: u32, value: bool) -> Self {
+        Self { id, bits: value.into() }
+    }
+}
+
+/// One shader stage of a pipeline; its entry point is `main`.
+#[derive(Debug, Clone, Copy)]
+pub struct Shader<'a> {
+    pub stage: vk::ShaderStageFlags,
+    /// SPIR-V, such as a constant of [`shaders`](super::shaders).
+    pub code: &'a [u32],
+    pub specialization: &'a [Specialization],
+}
+
+impl<'a> Shader<'a> {
+    pub fn new(stage: vk::ShaderStageFlags, code: &'a [u32]) -> Self {
+        Self { stage, code, specialization: &[] }
+    }
+
+    pub fn vertex(code: &'a [u32]) -> Self {
+        Self::new(vk::ShaderStageFlags::VERTEX, code)
+    }
+
+    pub fn tess_control(code: &'a [u32]) -> Self {
+        Self::new(vk::ShaderStageFlags::TESSELLATION_CONTROL, code)
+    }
+
+    pub fn tess_evaluation(code: &'a [u32]) -> Self {
+        Self::new(vk::ShaderStageFlags::TESSELLATION_EVALUATION, code)
+    }
+
+    pub fn geometry(code: &'a [u32]) -> Self {
+        Self::new(vk::ShaderStageFlags::GEOMETRY, code)
+    }
+
+    pub fn fragment(code: &'a [u32]) -> Self {
+        Self::new(vk::ShaderStageFlags::FRAGMENT, code)
+    }
+
+    pub fn compute(code: &'a [u32]) -> Self {
+        Self::new(vk::ShaderStageFlags::COMPUTE, code)
+    }
+
+    /// The same shader with specialization constants.
+    pub fn specialized(self, specialization: &'a [Specialization]) -> Self {
+        Self { specialization, ..self }
+    }
+}
+
+/// The shader modules of a pipeline while it is made.
+pub(super) struct Stages<'a> {
+    shaders: &'a [Shader<'a>],
+    modules: Vec<Owned<vk::ShaderModule>>,
+    /// For each shader, where its constants lie among 32-bit values.
+    entries: Vec<Vec<vk::SpecializationMapEntry>>,
+    values: Vec<Vec<u32>>,
+}
+
+impl<'a> Stages<'a> {
+    pub fn new(context: &Arc<DeviceContext>, name: &str, shaders: &'a [Shader<'a>]) -> Result<Self, GpuError> {
+        let mut stages = Self { shaders, modules: Vec::new(), entries: Vec::new(), values: Vec::new() };
+        for shader in shaders {
+            let info = vk::ShaderModuleCreateInfo::default().code(shader.code);
+            // SAFETY: the SPIR-V is valid (contract of `create`), and the module is taken over by `Owned`.
+            let module = unsafe {
+                let module = context.device().create_shader_module(&info, None).of("vkCreateShaderModule", name)?;
+                Owned::new(context, module, &format!("{name} {:?}", shader.stage))
+            };
+            stages.modules.push(module);
+            let entry = |(i, s): (usize, &Specialization)| vk::SpecializationMapEntry {
+                constant_id: s.id,
+                offset: 4 * i as u32,
+                size: 4,
+            };
+            stages.entries.push(shader.specialization.iter().enumerate().map(entry).collect());
+            stages.values.push(shader.specialization.iter().map(|s| s.bits).collect());
+        }
+        Ok(stages)
+    }
+
+    pub fn specializations(&self) -> Vec<vk::SpecializationInfo<'_>> {
+        let pairs = self.entries.iter().zip(&self.values);
+        pairs.map(|(e, v)| vk::SpecializationInfo::default().map_entries(e).data(bytemuck::cast_slice(v))).collect()
+    }
+
+    pub fn infos<'b>(
+        &self,
+        specializations: &'b [vk::SpecializationInfo<'b>],
+    ) -> Vec<vk::PipelineShaderStageCreateInfo<'b>> {
+        let stages = self.shaders.iter().zip(&self.modules).zip(specializations);
+        stages
+            .map(|((shader, module), specialization)| {
+                vk::PipelineShaderStageCreateInfo::default()
+                    .stage(shader.stage)
+                    .module(module.raw())
+                    .name(c"main")
+                    .specialization_info(specialization)
+            })
+            .collect()
+    }
+}
