@@ -1,0 +1,205 @@
+//! The creature: a young dragon, grown out of a trunk by extrusion, one half, then mirrored.
+
+use super::sculpt::{Patch, Ring, Sculpt, Tube};
+use glam::{DVec3, dvec3};
+
+/// Columns of half the trunk, and rows of its ends.
+const WIDE: usize = 4;
+const DEEP: usize = 4;
+/// Cells of the trunk's wall, from the front middle round to the back middle.
+const BACK: usize = 2 * WIDE + DEEP - 1;
+
+pub(super) fn build() -> (Vec<[f64; 3]>, Vec<u32>) {
+    let mut s = Sculpt::default();
+    let (bottom, trunk) = trunk(&mut s);
+    jaws(&mut s, &trunk.wall);
+    face(&mut s, &trunk);
+    arm(&mut s, &trunk.wall);
+    wing(&mut s, &trunk.wall);
+    leg(&mut s, &bottom);
+    tail(&mut s, &trunk.wall);
+    spines(&mut s, &trunk.wall);
+    s.relax_half(0.12);
+    s.mirrored().finish()
+}
+
+/// From the seat to the crown of the head: `[y, z, half width, half depth]`.
+const TRUNK: [[f64; 4]; 12] = [
+    [-0.80, 0.00, 0.50, 0.46],
+    [-0.62, 0.00, 0.66, 0.60],
+    [-0.34, 0.04, 0.72, 0.68],
+    [-0.06, 0.03, 0.62, 0.60],
+    [0.16, 0.00, 0.48, 0.46],
+    [0.34, 0.00, 0.36, 0.36],
+    [0.46, 0.06, 0.42, 0.40],
+    [0.60, 0.10, 0.66, 0.56],
+    [0.80, 0.10, 0.78, 0.64],
+    [1.02, 0.08, 0.80, 0.66],
+    [1.24, 0.05, 0.70, 0.58],
+    [1.40, 0.02, 0.46, 0.38],
+];
+
+fn trunk(s: &mut Sculpt) -> (Patch, Tube) {
+    let at = |i: usize, j: usize| {
+        let [y, z, width, depth] = TRUNK[0];
+        let (a, b) = (i as f64 / WIDE as f64, 2.0 * j as f64 / DEEP as f64 - 1.0);
+        dvec3(a * width * 0.8, y - 0.05 * (1.0 - b * b), z + b * depth * 0.8)
+    };
+    let bottom = Patch::new(WIDE, DEEP, |i, j| s.add_vertex(at(i, j))).halved();
+    s.add_faces(&bottom);
+    // The same rim seen from above. No faces: `tube` replaces them.
+    let top = Patch::new(WIDE, DEEP, |i, j| bottom.vertex(i, DEEP - j)).halved();
+    let keep = s.faces.clone();
+    let rings: Vec<_> = TRUNK[1..].iter().map(|r| Ring::new([0.0, r[0], r[1]], [r[2], r[3]])).collect();
+    let tube = s.tube(&top, &rings);
+    s.faces.extend(keep);
+    (bottom, tube)
+}
+
+fn jaws(s: &mut Sculpt, trunk: &Patch) {
+    // Grown one after the other, so that the mouth is open between them.
+    let upper = s.tube(
+        &trunk.sub(0, 8, 3, 1).halved(),
+        &[
+            Ring::new([0.0, 0.92, 0.84], [0.46, 0.16]),
+            Ring::new([0.0, 0.92, 1.02], [0.40, 0.15]),
+            Ring::new([0.0, 0.93, 1.18], [0.32, 0.12]),
+        ],
+    );
+    s.tube(
+        &trunk.sub(0, 7, 3, 1).halved(),
+        &[
+            Ring::new([0.0, 0.68, 0.80], [0.42, 0.09]),
+            Ring::new([0.0, 0.64, 0.96], [0.34, 0.08]),
+            Ring::new([0.0, 0.64, 1.08], [0.24, 0.06]),
+        ],
+    );
+    // Nostrils, and a tooth that shows.
+    let nostril = upper.wall.cell(5, 2);
+    s.bump(&nostril, dvec3(0.2, 1.0, 0.4), &[(0.03, 0.075), (-0.05, 0.045)]);
+    let tooth = upper.wall.cell(2, 1);
+    s.spike(&tooth, dvec3(0.0, -0.14, 0.0), DVec3::ZERO, &[[0.05, 0.05], [0.02, 0.02]]);
+}
+
+fn face(s: &mut Sculpt, trunk: &Tube) {
+    let eye = trunk.wall.sub(2, 9, 2, 2);
+    s.bump(
+        &eye,
+        dvec3(0.45, 0.25, 1.0),
+        &[(0.06, 0.26), (0.02, 0.21), (-0.01, 0.19), (0.07, 0.18), (0.13, 0.11)],
+    );
+    let ear = trunk.wall.sub(5, 9, 2, 1);
+    s.spike(
+        &ear,
+        dvec3(0.62, 0.22, -0.28),
+        dvec3(0.0, -0.3, 0.0),
+        &[[0.12, 0.09], [0.20, 0.09], [0.17, 0.07], [0.05, 0.03]],
+    );
+    let horn = trunk.cap.cell(2, 2);
+    s.spike(
+        &horn,
+        dvec3(0.22, 0.62, -0.30),
+        dvec3(0.45, 0.2, -0.5),
+        &[[0.13, 0.13], [0.12, 0.12], [0.10, 0.10], [0.075, 0.075], [0.045, 0.045], [0.015, 0.015]],
+    );
+    let cheek = trunk.wall.cell(6, 7);
+    s.spike(&cheek, dvec3(0.26, -0.08, -0.12), DVec3::ZERO, &[[0.08, 0.08], [0.05, 0.05], [0.015, 0.015]]);
+}
+
+fn arm(s: &mut Sculpt, trunk: &Patch) {
+    let arm = s.tube(
+        &trunk.sub(4, 4, 3, 1),
+        &[
+            Ring::new([0.58, 0.12, 0.06], [0.20, 0.18]),
+            Ring::new([0.76, 0.00, 0.12], [0.17, 0.16]),
+            Ring::new([0.88, -0.14, 0.24], [0.15, 0.14]),
+            Ring::new([0.92, -0.22, 0.42], [0.13, 0.12]),
+            Ring::new([0.92, -0.24, 0.56], [0.17, 0.11]),
+            Ring::new([0.92, -0.24, 0.68], [0.18, 0.09]),
+        ],
+    );
+    for finger in 0..3 {
+        let side = finger as f64 - 1.0;
+        let reach = dvec3(0.12 * side, -0.08, 0.26);
+        s.spike(
+            &arm.cap.cell(finger, 0),
+            reach,
+            dvec3(0.0, 0.16, 0.0),
+            &[[0.06, 0.06], [0.055, 0.055], [0.02, 0.02]],
+        );
+    }
+}
+
+fn wing(s: &mut Sculpt, trunk: &Patch) {
+    let wing = s.tube(
+        &trunk.sub(8, 2, 1, 3),
+        &[
+            Ring::new([0.52, 0.22, -0.56], [0.06, 0.16]),
+            Ring::new([0.76, 0.42, -0.76], [0.05, 0.17]),
+            Ring::new([1.02, 0.58, -0.90], [0.04, 0.32]),
+            Ring::new([1.30, 0.64, -1.00], [0.035, 0.48]),
+        ],
+    );
+    for finger in 0..3 {
+        let side = finger as f64 - 1.0;
+        s.spike(
+            &wing.cap.cell(0, finger),
+            dvec3(0.34, 0.10 + 0.32 * side, -0.10),
+            DVec3::ZERO,
+            &[[0.035, 0.13], [0.02, 0.03]],
+        );
+    }
+}
+
+fn leg(s: &mut Sculpt, bottom: &Patch) {
+    let leg = s.tube(
+        &bottom.sub(1, 1, 3, 2),
+        &[
+            Ring::new([0.42, -0.98, 0.04], [0.30, 0.30]),
+            Ring::new([0.46, -1.16, 0.06], [0.25, 0.26]),
+            Ring::new([0.48, -1.30, 0.04], [0.26, 0.26]),
+            Ring::new([0.48, -1.46, 0.04], [0.27, 0.27]),
+        ],
+    );
+    let foot = s.tube(&leg.wall.sub(5, 3, 3, 1), &[Ring::new([0.50, -1.38, 0.48], [0.27, 0.11])]);
+    for toe in 0..3 {
+        let side = 1.0 - toe as f64;
+        s.spike(
+            &foot.cap.cell(toe, 0),
+            dvec3(0.08 * side, -0.04, 0.26),
+            dvec3(0.0, 0.16, 0.0),
+            &[[0.09, 0.09], [0.085, 0.085], [0.025, 0.025]],
+        );
+    }
+}
+
+fn tail(s: &mut Sculpt, trunk: &Patch) {
+    let tail = s.tube(
+        &trunk.sub(BACK - 1, 0, 2, 2).turned().halved(),
+        &[
+            Ring::new([0.0, -0.56, -0.80], [0.34, 0.32]),
+            Ring::new([0.0, -0.66, -1.04], [0.27, 0.25]),
+            Ring::new([0.0, -0.70, -1.28], [0.21, 0.20]),
+            Ring::new([0.0, -0.64, -1.52], [0.17, 0.16]),
+            Ring::new([0.0, -0.50, -1.72], [0.13, 0.13]),
+            Ring::new([0.0, -0.30, -1.84], [0.10, 0.10]),
+            Ring::new([0.0, -0.12, -1.88], [0.09, 0.08]),
+            Ring::new([0.0, 0.00, -1.88], [0.26, 0.07]),
+            Ring::new([0.0, 0.16, -1.86], [0.14, 0.05]),
+            Ring::new([0.0, 0.30, -1.82], [0.03, 0.03]),
+        ],
+    );
+    for row in [1, 3] {
+        spine(s, &tail.wall.cell(0, row).halved(), dvec3(0.0, 0.22, -0.06), 0.09);
+    }
+}
+
+fn spines(s: &mut Sculpt, trunk: &Patch) {
+    for (row, size) in [(2, 0.10), (4, 0.10), (6, 0.10), (8, 0.12)] {
+        spine(s, &trunk.cell(BACK, row).turned().halved(), dvec3(0.0, 0.10, -0.26), size);
+    }
+}
+
+fn spine(s: &mut Sculpt, base: &Patch, reach: DVec3, size: f64) {
+    s.spike(base, reach, DVec3::ZERO, &[[size, size], [0.6 * size, 0.6 * size], [0.15 * size, 0.15 * size]]);
+}
