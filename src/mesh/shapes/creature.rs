@@ -28,15 +28,15 @@ const TRUNK: [[f64; 4]; 12] = [
     [-0.80, 0.00, 0.50, 0.46],
     [-0.62, 0.00, 0.66, 0.60],
     [-0.34, 0.04, 0.72, 0.68],
-    [-0.06, 0.03, 0.62, 0.60],
-    [0.16, 0.00, 0.48, 0.46],
+    [-0.06, 0.03, 0.58, 0.58],
+    [0.16, 0.00, 0.45, 0.44],
     [0.34, 0.00, 0.36, 0.36],
     [0.46, 0.06, 0.42, 0.40],
     [0.60, 0.10, 0.66, 0.56],
     [0.80, 0.10, 0.78, 0.64],
     [1.02, 0.08, 0.80, 0.66],
-    [1.24, 0.05, 0.70, 0.58],
-    [1.40, 0.02, 0.46, 0.38],
+    [1.26, 0.04, 0.72, 0.60],
+    [1.46, 0.00, 0.48, 0.40],
 ];
 
 fn trunk(s: &mut Sculpt) -> (Patch, Tube) {
@@ -50,7 +50,8 @@ fn trunk(s: &mut Sculpt) -> (Patch, Tube) {
     // The same rim seen from above. No faces: `tube` replaces them.
     let top = Patch::new(WIDE, DEEP, |i, j| bottom.vertex(i, DEEP - j)).halved();
     let keep = s.faces.clone();
-    let rings: Vec<_> = TRUNK[1..].iter().map(|r| Ring::new([0.0, r[0], r[1]], [r[2], r[3]])).collect();
+    let ring = |&[y, z, width, depth]: &[f64; 4]| Ring { dome: 0.08, ..Ring::new([0.0, y, z], [width, depth]) };
+    let rings: Vec<_> = TRUNK[1..].iter().map(ring).collect();
     let tube = s.tube(&top, &rings);
     s.faces.extend(keep);
     (bottom, tube)
@@ -61,32 +62,32 @@ fn jaws(s: &mut Sculpt, trunk: &Patch) {
     let upper = s.tube(
         &trunk.sub(0, 8, 3, 1).halved(),
         &[
-            Ring::new([0.0, 0.92, 0.84], [0.46, 0.16]),
-            Ring::new([0.0, 0.92, 1.02], [0.40, 0.15]),
-            Ring::new([0.0, 0.93, 1.18], [0.32, 0.12]),
+            Ring::new([0.0, 0.97, 0.84], [0.48, 0.14]),
+            Ring::new([0.0, 0.94, 1.02], [0.42, 0.14]),
+            Ring::new([0.0, 0.93, 1.17], [0.33, 0.12]),
         ],
     );
     s.tube(
         &trunk.sub(0, 7, 3, 1).halved(),
         &[
-            Ring::new([0.0, 0.68, 0.80], [0.42, 0.09]),
-            Ring::new([0.0, 0.64, 0.96], [0.34, 0.08]),
-            Ring::new([0.0, 0.64, 1.08], [0.24, 0.06]),
+            Ring::new([0.0, 0.65, 0.82], [0.44, 0.11]),
+            Ring::new([0.0, 0.645, 0.97], [0.36, 0.09]),
+            Ring::new([0.0, 0.67, 1.10], [0.27, 0.07]),
         ],
     );
     // Nostrils, and a tooth that shows.
     let nostril = upper.wall.cell(5, 2);
-    s.bump(&nostril, dvec3(0.2, 1.0, 0.4), &[(0.03, 0.075), (-0.05, 0.045)]);
+    s.bump(&nostril, dvec3(0.2, 1.0, 0.4), &[(0.035, 0.055), (-0.03, 0.04)]);
     let tooth = upper.wall.cell(2, 1);
-    s.spike(&tooth, dvec3(0.0, -0.14, 0.0), DVec3::ZERO, &[[0.05, 0.05], [0.02, 0.02]]);
+    s.spike(&tooth, dvec3(0.09, -0.12, 0.02), DVec3::ZERO, &[[0.045, 0.045], [0.015, 0.015]]);
 }
 
 fn face(s: &mut Sculpt, trunk: &Tube) {
     let eye = trunk.wall.sub(2, 9, 2, 2);
     s.bump(
         &eye,
-        dvec3(0.45, 0.25, 1.0),
-        &[(0.06, 0.26), (0.02, 0.21), (-0.01, 0.19), (0.07, 0.18), (0.13, 0.11)],
+        dvec3(0.50, 0.30, 1.0),
+        &[(0.12, 0.22), (0.11, 0.195), (0.07, 0.185), (0.13, 0.18), (0.19, 0.11)],
     );
     let ear = trunk.wall.sub(5, 9, 2, 1);
     s.spike(
@@ -110,9 +111,9 @@ fn arm(s: &mut Sculpt, trunk: &Patch) {
     let arm = s.tube(
         &trunk.sub(4, 4, 3, 1),
         &[
-            Ring::new([0.58, 0.12, 0.06], [0.20, 0.18]),
-            Ring::new([0.76, 0.00, 0.12], [0.17, 0.16]),
-            Ring::new([0.88, -0.14, 0.24], [0.15, 0.14]),
+            Ring::new([0.60, 0.20, 0.02], [0.20, 0.14]),
+            Ring::new([0.78, 0.07, 0.08], [0.16, 0.14]),
+            Ring::new([0.90, -0.09, 0.22], [0.15, 0.14]),
             Ring::new([0.92, -0.22, 0.42], [0.13, 0.12]),
             Ring::new([0.92, -0.24, 0.56], [0.17, 0.11]),
             Ring::new([0.92, -0.24, 0.68], [0.18, 0.09]),
@@ -135,18 +136,18 @@ fn wing(s: &mut Sculpt, trunk: &Patch) {
         &trunk.sub(8, 2, 1, 3),
         &[
             Ring::new([0.52, 0.22, -0.56], [0.06, 0.16]),
-            Ring::new([0.76, 0.42, -0.76], [0.05, 0.17]),
-            Ring::new([1.02, 0.58, -0.90], [0.04, 0.32]),
-            Ring::new([1.30, 0.64, -1.00], [0.035, 0.48]),
+            Ring::new([0.76, 0.46, -0.78], [0.05, 0.20]),
+            Ring::new([1.06, 0.66, -0.94], [0.05, 0.42]),
+            Ring::new([1.42, 0.74, -1.04], [0.05, 0.62]),
         ],
     );
     for finger in 0..3 {
         let side = finger as f64 - 1.0;
         s.spike(
             &wing.cap.cell(0, finger),
-            dvec3(0.34, 0.10 + 0.32 * side, -0.10),
+            dvec3(0.34, 0.08 + 0.16 * side, -0.06),
             DVec3::ZERO,
-            &[[0.035, 0.13], [0.02, 0.03]],
+            &[[0.04, 0.15], [0.02, 0.04]],
         );
     }
 }
@@ -157,8 +158,8 @@ fn leg(s: &mut Sculpt, bottom: &Patch) {
         &[
             Ring::new([0.42, -0.98, 0.04], [0.30, 0.30]),
             Ring::new([0.46, -1.16, 0.06], [0.25, 0.26]),
-            Ring::new([0.48, -1.30, 0.04], [0.26, 0.26]),
-            Ring::new([0.48, -1.46, 0.04], [0.27, 0.27]),
+            Ring::new([0.48, -1.30, 0.04], [0.25, 0.25]),
+            Ring::new([0.48, -1.46, 0.06], [0.23, 0.22]),
         ],
     );
     let foot = s.tube(&leg.wall.sub(5, 3, 3, 1), &[Ring::new([0.50, -1.38, 0.48], [0.27, 0.11])]);
@@ -195,7 +196,7 @@ fn tail(s: &mut Sculpt, trunk: &Patch) {
 }
 
 fn spines(s: &mut Sculpt, trunk: &Patch) {
-    for (row, size) in [(2, 0.10), (4, 0.10), (6, 0.10), (8, 0.12)] {
+    for (row, size) in [(2, 0.10), (4, 0.10), (8, 0.11), (10, 0.11)] {
         spine(s, &trunk.cell(BACK, row).turned().halved(), dvec3(0.0, 0.10, -0.26), size);
     }
 }
