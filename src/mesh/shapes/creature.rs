@@ -1,6 +1,8 @@
 //! The creature: a young dragon, grown out of a trunk by extrusion, one half, then mirrored.
 
 use super::sculpt::{Patch, Ring, Sculpt, Tube};
+use super::with_atlas;
+use crate::mesh::{ControlMesh, FaceVarying, MeshData, MeshError};
 use glam::{DVec3, dvec3};
 
 /// Columns of half the trunk, and rows of its ends.
@@ -9,7 +11,39 @@ const DEEP: usize = 4;
 /// Cells of the trunk's wall, from the front middle round to the back middle.
 const BACK: usize = 2 * WIDE + DEEP - 1;
 
-pub(super) fn build() -> (Vec<[f64; 3]>, Vec<u32>) {
+pub(super) fn creature() -> Result<ControlMesh, MeshError> {
+    let (positions, face_vertices) = build();
+    let face_sizes = vec![4; face_vertices.len() / 4];
+    with_atlas(MeshData { positions, face_sizes, face_vertices, ..MeshData::default() })
+}
+
+/// The same with a third of the quads split along their shorter diagonals.
+pub(super) fn mixed(quads: &MeshData) -> MeshData {
+    let at = |vertex: u32| DVec3::from(quads.positions[vertex as usize]);
+    let mut face_sizes = Vec::new();
+    let mut corners = Vec::new();
+    for face in 0..quads.face_sizes.len() {
+        let corner = |k: usize| 4 * face + k % 4;
+        // Hashed, so that the triangles are scattered, and the same in every run.
+        if (face as u32).wrapping_mul(0x9E37_79B9).rotate_left(13).wrapping_mul(0x85EB_CA6B) >> 16 >= 0x1_0000 / 3 {
+            face_sizes.push(4);
+            corners.extend((0..4).map(corner));
+            continue;
+        }
+        let diagonal = |k: usize| at(quads.face_vertices[corner(k)]).distance(at(quads.face_vertices[corner(k + 2)]));
+        let k = usize::from(diagonal(1) < diagonal(0));
+        face_sizes.extend([3, 3]);
+        corners.extend([k, k + 1, k + 2, k, k + 2, k + 3].map(corner));
+    }
+    let texcoords = quads.texcoords.as_ref().map(|attribute| FaceVarying {
+        values: attribute.values.clone(),
+        indices: corners.iter().map(|&corner| attribute.indices[corner]).collect(),
+    });
+    let face_vertices = corners.iter().map(|&corner| quads.face_vertices[corner]).collect();
+    MeshData { positions: quads.positions.clone(), face_sizes, face_vertices, texcoords, ..MeshData::default() }
+}
+
+fn build() -> (Vec<[f64; 3]>, Vec<u32>) {
     let mut s = Sculpt::default();
     let (bottom, trunk) = trunk(&mut s);
     jaws(&mut s, &trunk.wall);
@@ -84,11 +118,7 @@ fn jaws(s: &mut Sculpt, trunk: &Patch) {
 
 fn face(s: &mut Sculpt, trunk: &Tube) {
     let eye = trunk.wall.sub(2, 9, 2, 2);
-    s.bump(
-        &eye,
-        dvec3(0.50, 0.30, 1.0),
-        &[(0.12, 0.22), (0.11, 0.195), (0.07, 0.185), (0.13, 0.18), (0.19, 0.11)],
-    );
+    s.bump(&eye, dvec3(0.50, 0.30, 1.0), &[(0.12, 0.22), (0.11, 0.195), (0.07, 0.185), (0.13, 0.18), (0.19, 0.11)]);
     let ear = trunk.wall.sub(5, 9, 2, 1);
     s.spike(
         &ear,
@@ -122,12 +152,7 @@ fn arm(s: &mut Sculpt, trunk: &Patch) {
     for finger in 0..3 {
         let side = finger as f64 - 1.0;
         let reach = dvec3(0.12 * side, -0.08, 0.26);
-        s.spike(
-            &arm.cap.cell(finger, 0),
-            reach,
-            dvec3(0.0, 0.16, 0.0),
-            &[[0.06, 0.06], [0.055, 0.055], [0.02, 0.02]],
-        );
+        s.spike(&arm.cap.cell(finger, 0), reach, dvec3(0.0, 0.16, 0.0), &[[0.06, 0.06], [0.055, 0.055], [0.02, 0.02]]);
     }
 }
 

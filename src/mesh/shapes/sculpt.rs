@@ -47,9 +47,9 @@ impl Patch {
     }
 
     fn cells(&self) -> impl Iterator<Item = [u32; 4]> {
-        (0..self.rows).flat_map(|j| (0..self.columns).map(move |i| (i, j))).map(|(i, j)| {
-            [self.vertex(i, j), self.vertex(i + 1, j), self.vertex(i + 1, j + 1), self.vertex(i, j + 1)]
-        })
+        (0..self.rows)
+            .flat_map(|j| (0..self.columns).map(move |i| (i, j)))
+            .map(|(i, j)| [self.vertex(i, j), self.vertex(i + 1, j), self.vertex(i + 1, j + 1), self.vertex(i, j + 1)])
     }
 
     /// Lattice places along the rim, counter-clockwise from (0, 0): closed (the last is the first), or for a half
@@ -177,9 +177,14 @@ impl Sculpt {
             last = ring.at;
         }
         let columns = base.rim().len() - 1;
-        let wall = Patch::new(columns, rings.len(), |i, j| {
-            if j == 0 { walls[0].vertex(i, 0) } else { walls[j - 1].vertex(i, 1) }
-        });
+        let wall =
+            Patch::new(
+                columns,
+                rings.len(),
+                |i, j| {
+                    if j == 0 { walls[0].vertex(i, 0) } else { walls[j - 1].vertex(i, 1) }
+                },
+            );
         Tube { cap, wall }
     }
 
