@@ -1,6 +1,6 @@
 //! The machine part: a hub with a bore, a flange with bolt bosses, and ribs; sharp and semi-sharp edges.
 
-use super::sculpt::{Patch, Ring, Sculpt};
+use super::sculpt::{Patch, Sculpt};
 use crate::mesh::{ControlMesh, Corner, Crease, MeshData, MeshError, NO_TWIN, SHARPNESS_INFINITE};
 use glam::{DVec3, dvec3};
 use std::f64::consts::TAU;
@@ -9,14 +9,14 @@ use std::f64::consts::TAU;
 const PROFILE: [[f64; 2]; 17] = [
     [0.36, -0.30],
     [0.72, -0.30],
-    [1.06, -0.30],
+    [1.02, -0.30],
     [1.28, -0.30],
-    [1.50, -0.30],
-    [1.62, -0.30],
-    [1.62, -0.05],
-    [1.50, -0.05],
+    [1.54, -0.30],
+    [1.68, -0.30],
+    [1.68, -0.05],
+    [1.54, -0.05],
     [1.28, -0.05],
-    [1.06, -0.05],
+    [1.02, -0.05],
     [0.90, -0.05],
     [0.74, -0.05],
     [0.71, 0.15],
@@ -75,10 +75,9 @@ fn turned_body(s: &mut Sculpt) -> Patch {
 /// A boss on the flange with a hole through both.
 fn boss(s: &mut Sculpt, body: &Patch, sector: usize) {
     let (top, bottom) = (body.sub(BOLTS_ABOVE, sector, 2, 3), body.sub(BOLTS_BELOW, sector, 2, 3));
-    let axis = s.centre(&top).with_y(0.0).normalize() * 1.28;
-    let ring = |height: f64, radius: f64| Ring::new([axis.x, height, axis.z], [radius; 2]);
-    let top = s.tube(&top, &[ring(BOSS - 1e-3, 0.215), ring(BOSS, 0.12)]).cap;
-    let bottom = s.tube(&bottom, &[ring(-0.301, 0.12)]).cap;
+    let height = BOSS - PROFILE[BOLTS_ABOVE][1];
+    let top = s.bump(&top, DVec3::Y, &[(0.0, 0.215), (height, 0.195), (height, 0.115)]).cap;
+    let bottom = s.bump(&bottom, DVec3::NEG_Y, &[(0.0, 0.115)]).cap;
     s.remove_faces(&top);
     s.remove_faces(&bottom);
     // Columns run inward above and outward below.
@@ -92,7 +91,7 @@ fn boss(s: &mut Sculpt, body: &Patch, sector: usize) {
 
 /// Half the thickness of a rib, and its edge's ends: `[radius, height]`.
 const RIB_HALF: f64 = 0.055;
-const RIB_LOW: [f64; 2] = [1.06, 0.05];
+const RIB_LOW: [f64; 2] = [1.02, 0.05];
 const RIB_HIGH: [f64; 2] = [0.76, 0.42];
 
 /// A rib in the corner between flange and hub, one sector wide.
@@ -119,7 +118,7 @@ fn creases(mesh: &ControlMesh) -> Vec<Crease> {
         let p = |k: usize| mesh.position(mesh.face(half_edge / 4)[k]);
         (p(2) - p(0)).cross(p(3) - p(1))
     };
-    let at = |position: DVec3, height: f64| (position.y - height).abs() < 2e-3;
+    let at = |position: DVec3, height: f64| (position.y - height).abs() < 1e-9;
     let mut creases = Vec::new();
     for face in 0..mesh.face_count() as u32 {
         for (k, half_edge) in mesh.face_corners(face).enumerate() {
