@@ -2,4 +2,4 @@
 
 pub mod mesh;
 
-pub use mesh::{ControlMesh, MeshData, MeshError};
+pub use mesh::{ControlMesh, MeshData, MeshError, ShapeInfo, grid_torus, replicate, shape, shapes};

@@ -3,7 +3,7 @@
 mod adjacency;
 mod control_mesh;
 mod error;
-pub mod shapes;
+mod shapes;
 
 pub use control_mesh::{
     BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,

@@ -45,10 +45,8 @@ impl Chart {
     fn add(&mut self, mesh: &ControlMesh, face: u32, square: [i32; 2], first: usize) {
         self.faces.push((face, square, first));
         self.points.extend(Self::corners(square, first).into_iter().zip(mesh.face(face).iter().copied()));
-        for k in 0..2 {
-            self.low[k] = self.low[k].min(square[k]);
-            self.high[k] = self.high[k].max(square[k] + 1);
-        }
+        self.low = [0, 1].map(|k| self.low[k].min(square[k]));
+        self.high = [0, 1].map(|k| self.high[k].max(square[k] + 1));
     }
 
     fn size(&self) -> [f32; 2] {
