@@ -11,7 +11,7 @@ pub mod table;
 pub mod topology;
 
 pub use gpu::{Allocator, ContextOptions, DeviceContext, Spacing};
-pub use mesh::{ControlMesh, MeshData, MeshError};
+pub use mesh::{ControlMesh, MeshData, MeshError, ShapeInfo, grid_torus, replicate, shape, shapes};
 pub use renderer::{
     Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
 };

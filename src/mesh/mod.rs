@@ -3,11 +3,13 @@
 mod adjacency;
 mod control_mesh;
 mod error;
+mod shapes;
 
 pub use control_mesh::{
     BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,
     SHARPNESS_INFINITE, TriangleRule,
 };
 pub use error::MeshError;
+pub use shapes::{ShapeInfo, grid_torus, replicate, shape, shapes};
 
 pub(crate) use adjacency::NO_TWIN;
