@@ -1,7 +1,8 @@
 //! Where the eye is.
 
 use super::gpu_data::ViewData;
-use glam::{DVec3, Mat4, Vec3};
+use glam::camera::rh::{proj::vulkan, view};
+use glam::{DVec3, Mat3, Vec3};
 
 /// A camera and a light. Matrices are given by columns, as `glam::Mat4::to_cols_array_2d` gives them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,9 +27,8 @@ impl View {
         [near, far]: [f32; 2],
     ) -> Self {
         let (eye, target) = (Vec3::from(eye), Vec3::from(target));
-        let view = Mat4::look_at_rh(eye, target, up.into());
-        // glam's clip space has y up.
-        let projection = Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * Mat4::perspective_rh(fov_y, aspect, near, far);
+        let view = view::look_at_mat4(eye, target, up.into());
+        let projection = vulkan::perspective(fov_y, aspect, near, far);
         let light = view.inverse().transform_vector3(Vec3::new(-0.45, 0.8, 0.65));
         Self {
             view_projection: (projection * view).to_cols_array_2d(),
@@ -46,13 +46,13 @@ impl View {
         let towards = Vec3::from(towards).normalize_or(Vec3::Z);
         let up = if towards.cross(Vec3::Y).length_squared() > 1e-6 { Vec3::Y } else { Vec3::NEG_Z };
         // The eight corners decide, not the sphere around them: boxes fill the picture better.
-        let view = Mat4::look_to_rh(Vec3::ZERO, -towards, up);
+        let view: Mat3 = view::look_to_mat3(-towards, up);
         let (tan_y, tan_x) = ((FOV_Y / 2.0).tan(), (FOV_Y / 2.0).tan() * aspect);
         let half = (high - low) / 2.0;
         let mut distance = 0.0f32;
         for corner in 0..8 {
             let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
-            let at = view.transform_vector3(half * Vec3::new(sign(0), sign(1), sign(2)));
+            let at = view * (half * Vec3::new(sign(0), sign(1), sign(2)));
             distance = distance.max(at.z + (at.x.abs() / tan_x).max(at.y.abs() / tan_y));
         }
         let distance = distance * 1.04;
