@@ -4,6 +4,10 @@ mod adjacency;
 mod control_mesh;
 mod error;
 mod shapes;
+#[cfg(feature = "gltf")]
+mod gltf;
+mod obj;
+mod read;
 
 pub use control_mesh::{
     BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,
@@ -11,5 +15,9 @@ pub use control_mesh::{
 };
 pub use error::MeshError;
 pub use shapes::{ShapeInfo, grid_torus, replicate, shape, shapes};
+#[cfg(feature = "gltf")]
+pub use gltf::GltfOptions;
+pub use obj::ObjOptions;
+pub use read::{ReadOptions, read};
 
 pub(crate) use adjacency::NO_TWIN;
