@@ -167,8 +167,11 @@ impl Builder {
                     let position: [f64; 3] = positions.get(corner as usize);
                     // Adding zero makes -0 and 0 the same.
                     let vertex = *welded.entry(position.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
-                        let position = instance.transform.transform_point3(DVec3::from(position));
-                        self.data.positions.push(position.to_array());
+                        let position = DVec3::from(position);
+                        let placed = instance.transform.transform_point3(position);
+                        // An infinite coordinate would make the others NaN, and hide from the message what is wrong.
+                        let placed = if position.is_finite() { placed } else { position };
+                        self.data.positions.push(placed.to_array());
                         self.data.positions.len() as u32 - 1
                     });
                     let texcoord = texcoords.as_ref().map_or([0.0; 2], |texcoords| texcoords.get(corner as usize));

@@ -35,7 +35,7 @@ pub(super) fn for_each_face<E>(
             if a == b || b == c || c == a {
                 return Ok(());
             }
-            visit(&if i % 2 == 0 { [a, b, c] } else { [b, a, c] })
+            visit(&if i % 2 == 0 { [a, b, c] } else { [a, c, b] })
         }),
         Mode::TriangleFan => match indices.split_first() {
             Some((&hub, rim)) => rim.windows(2).try_for_each(|edge| visit(&[hub, edge[0], edge[1]])),
