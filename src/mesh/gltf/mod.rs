@@ -41,7 +41,8 @@ impl ControlMesh {
     /// Reads a glTF 2.0 or GLB file: all triangles of the default scene, or of the mesh that `options` name.
     ///
     /// * Polygons are those that the extension `FB_ngon_encoding` marks: triangles in a row that share their first
-    ///   corner. Without it, triangles, strips and fans give triangles. Points and lines are passed over.
+    ///   corner and go on where the last ended. Without it, triangles, strips and fans give triangles. Points and lines
+    ///   are passed over.
     /// * Vertices of one mesh whose positions are equal in every bit become one vertex, so that seams of texture
     ///   coordinates or normals are no boundaries of the surface. `TEXCOORD_0` and `NORMAL` are kept a face corner;
     ///   where only some primitives have them, the others get (0, 0) and (0, 0, 0).

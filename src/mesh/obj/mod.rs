@@ -46,6 +46,9 @@ impl ControlMesh {
     /// and faces count from zero. A crease may be a chain of more than two vertices. Where only some faces have
     /// texture coordinates the others get (0, 0), and likewise the normal (0, 0, 0).
     ///
+    /// Without a tag the rules are those of [`MeshData::default`]; OpenSubdiv's own test programs take
+    /// [`EdgeOnly`](super::BoundaryRule::EdgeOnly) for a file without `interpolateboundary`.
+    ///
     /// ```
     /// use ash_subdiv::{ControlMesh, mesh::ObjOptions};
     /// let quad = ControlMesh::from_obj_str("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4", &ObjOptions::default())?;

@@ -76,6 +76,12 @@ fn all_meshes_are_taken_as_one_in_the_order_of_the_nodes() {
     assert_eq!(data.positions.len(), 11);
     assert_eq!(data.face_vertices, (0..11).collect::<Vec<_>>());
     assert_eq!(data.positions[7], [1., 0., 0.]);
+    let mut file = three_nodes();
+    file.json["nodes"][2]["children"] = json!([1, 0]);
+    file.json["scenes"][0]["nodes"] = json!([2]);
+    let data = file.read();
+    assert_eq!(data.face_sizes, [3, 4, 4]);
+    assert_eq!(data.positions[3], [1., 0., 0.]);
 }
 
 #[test]
