@@ -3,21 +3,21 @@
 mod adjacency;
 mod control_mesh;
 mod error;
-mod shapes;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod obj;
 mod read;
+mod shapes;
 
 pub use control_mesh::{
     BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,
     SHARPNESS_INFINITE, TriangleRule,
 };
 pub use error::MeshError;
-pub use shapes::{ShapeInfo, grid_torus, replicate, shape, shapes};
 #[cfg(feature = "gltf")]
 pub use gltf::GltfOptions;
 pub use obj::ObjOptions;
 pub use read::{ReadOptions, read};
+pub use shapes::{ShapeInfo, grid_torus, replicate, shape, shapes};
 
 pub(crate) use adjacency::NO_TWIN;
