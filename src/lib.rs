@@ -13,7 +13,11 @@ pub mod table;
 pub mod topology;
 
 pub use gpu::{Allocator, ContextOptions, DeviceContext, Spacing};
-pub use mesh::{ControlMesh, MeshData, MeshError, ShapeInfo, grid_torus, replicate, shape, shapes};
+#[cfg(feature = "gltf")]
+pub use mesh::GltfOptions;
+pub use mesh::{
+    ControlMesh, MeshData, MeshError, ObjOptions, ReadOptions, ShapeInfo, grid_torus, replicate, shape, shapes,
+};
 pub use renderer::{
     Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
 };
