@@ -1,7 +1,9 @@
 //! What several integration tests need.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+pub mod edges;
 pub mod limit;
+pub mod random;
 
 use std::path::PathBuf;
 
