@@ -5,7 +5,6 @@
 
 mod common;
 
-use ash_subdiv::ControlMesh;
 use ash_subdiv::mesh::SHARPNESS_INFINITE;
 use ash_subdiv::patch::{Blend, control_points, evaluate};
 use ash_subdiv::topology::{PatchKind, RingKind, Topology};
@@ -21,11 +20,6 @@ fn names() -> Vec<String> {
     let mut names: Vec<_> = names.filter(|n| n != "catmark_fan" && n != "catmark_nonman_verts").collect();
     names.sort();
     names
-}
-
-fn largest_coordinate(mesh: &ControlMesh) -> f64 {
-    let [low, high] = mesh.bounds();
-    low.abs().max(high.abs()).max_element()
 }
 
 /// Why a patch need not meet the limit surface at a vertex.
@@ -113,7 +107,7 @@ struct Errors {
 impl Errors {
     fn add(&mut self, topology: &Topology, face: u32, limit: &Limit, samples: &[LimitSample]) {
         let mesh = topology.mesh();
-        let scale = largest_coordinate(mesh);
+        let scale = common::largest_coordinate(mesh);
         let kind = PatchKind::Regular;
         let points = control_points(topology, face, kind, |v| mesh.position(v));
         let points_f32: Vec<Vec3> = control_points(topology, face, kind, |v| mesh.position(v).as_vec3());
