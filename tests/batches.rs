@@ -1,8 +1,11 @@
 //! Frames of thousands of patches at every size of batch: nothing is missing, nothing is drawn twice.
 //!
 //! lavapipe draws wrong pictures without an error when a draw instance has more than 65 536 tessellated vertices (bug A
-//! of Mesa's llvmpipe), so patches are drawn in batches: [`ash_subdiv::gpu::PatchBatch`]. With `PatchBatch::Unlimited` in
-//! its place, see below what fails.
+//! of Mesa's llvmpipe), so patches are drawn in batches: [`ash_subdiv::gpu::PatchBatch`].
+//!
+//! What was seen with `PatchBatch::Unlimited` in their place: all counts and captured vertices stay right, the pictures
+//! do not. Of the million pixels of a sheet, at factor 1 none was wrong, at factor 16 (5000 patches) all, at factor 8
+//! (100 000 patches) half; and a frame took up to 60 times as long.
 
 mod common;
 
@@ -138,9 +141,7 @@ fn every_pixel_is_covered_once() {
         for &factor in factors {
             let constructions = if factor == 16 { &Construction::ALL[..] } else { &[Construction::TwoStage] };
             for &construction in constructions {
-                let start = std::time::Instant::now();
                 let picture = draw(&headless, &mesh, construction, factor as f32, &straight_down());
-                println!("{columns} x {rows} {mixed} {factor} {construction:?}: {:?}", start.elapsed());
                 let inside = |at: u32| (MARGIN..MARGIN + 1000).contains(&at);
                 let wrong = (0..SIDE * SIDE)
                     .filter(|i| picture.pixels[*i as usize] != u8::from(inside(i % SIDE) && inside(i / SIDE)))
@@ -169,7 +170,6 @@ fn every_patch_is_evaluated_with_all_its_vertices() {
         assert_eq!(captured.tables().plan(), surface.plan());
         let patches = surface.plan().patches();
         for &factor in factors {
-            let start = std::time::Instant::now();
             let vertices = captured.vertices(factor as f32).expect("a capture");
             check_presence(what, patches.iter().map(|p| p.kind), factor, &vertices);
             // A few units of rounding at the largest coordinate.
@@ -181,7 +181,6 @@ fn every_patch_is_evaluated_with_all_its_vertices() {
                 let error = (Vec3::from(vertex.position).as_dvec3() - twin.position).length();
                 assert!(error < tolerance, "{what} at factor {factor}: {vertex:?}, not {}", twin.position);
             }
-            println!("{what} {factor}: {:?}", start.elapsed());
         }
     }
     headless.finish_silent();
