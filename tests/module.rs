@@ -196,8 +196,11 @@ fn removed_models_stay_until_their_frames_are_done() {
     for round in 0..4 {
         let model = renderer.add_model(&creature, &ModelOptions::default()).unwrap();
         let used = renderer.memory_usage();
-        assert!(used.device > empty.device + 100_000 && used.host > empty.host);
+        assert!(used.tables > 90_000 && used.positions == 12 * creature.vertex_count() as u64);
+        assert_eq!(used.control_meshes, 4 * (2 * creature.edge_count() + 6 * creature.face_count()) as u64);
         stage.prepare(&mut renderer, round % 2);
+        // Uploads are done; what is left is a copy of the positions for each frame.
+        assert_eq!(renderer.memory_usage().staging, 2 * used.positions);
         let items = [DrawItem::new(model, 2.0), DrawItem { style: 1, ..DrawItem::new(model, 1.0) }];
         stage.draw(&mut renderer, round % 2, &items).unwrap();
         renderer.remove_model(model).unwrap();

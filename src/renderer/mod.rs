@@ -82,10 +82,23 @@ impl DrawItem {
 /// Bytes by what they are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MemoryUsage {
-    /// Tables and positions on the device.
-    pub device: u64,
-    /// Staging buffers and view data that the host writes.
-    pub host: u64,
+    /// Connectivity or stencils, and texture coordinates, on the device.
+    pub tables: u64,
+    /// Control vertices on the device.
+    pub positions: u64,
+    /// Edges and faces of control meshes on the device, if a style draws them.
+    pub control_meshes: u64,
+    /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
+    pub staging: u64,
+    /// What the host writes for each view.
+    pub views: u64,
+}
+
+impl MemoryUsage {
+    /// All together.
+    pub fn total(self) -> u64 {
+        self.tables + self.positions + self.control_meshes + self.staging + self.views
+    }
 }
 
 /// Something that must outlive the frames that may still use it.
@@ -318,12 +331,8 @@ impl Renderer {
 
     /// Bytes of all models together.
     pub fn memory_usage(&self) -> MemoryUsage {
-        let mut usage = MemoryUsage { device: 0, host: self.views.size() };
-        for model in self.models.values() {
-            let [device, host] = model.memory();
-            usage.device += device;
-            usage.host += host;
-        }
+        let mut usage = MemoryUsage { views: self.views.size(), ..MemoryUsage::default() };
+        self.models.values().for_each(|model| model.add_memory(&mut usage));
         usage
     }
 

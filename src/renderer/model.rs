@@ -1,7 +1,7 @@
 //! A model on the GPU.
 
 use super::pipelines::{MODEL_BINDINGS, Pipelines};
-use super::{Error, Geometry, ModelId, ModelOptions, ModelTables, Options};
+use super::{Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::topology::PatchKind;
 use ash::vk;
@@ -178,11 +178,12 @@ impl Model {
         uploads.into_iter().map(|(staged, _)| staged).collect()
     }
 
-    /// Bytes on the device, and bytes that the host writes for it.
-    pub(super) fn memory(&self) -> [u64; 2] {
-        let control = self.control.as_ref().map_or(0, |c| c.buffer.size());
-        let staged: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
-        [self.table_buffer.size() + self.positions.size() + control, self.staged_positions.size() + staged]
+    pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
+        usage.tables += self.table_buffer.size();
+        usage.positions += self.positions.size();
+        usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
+        let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
+        usage.staging += self.staged_positions.size() + uploads;
     }
 }
 
