@@ -223,8 +223,8 @@ fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     if data.face_sizes.is_empty() {
         return Err(MeshError::Empty { what: "faces" });
     }
-    // The top bit of an index is a flag in the GPU tables, and u32::MAX means "none".
-    let max = (u32::MAX >> 1) as usize;
+    // Ring tables have up to three entries a face corner, counted in u32; the top bit of an index is a flag there.
+    let max = 1 << 30;
     for (what, count) in [("vertices", count), ("face corners", data.face_vertices.len())] {
         if count > max {
             return Err(MeshError::TooLarge { what, count, max });
