@@ -69,10 +69,12 @@
 //!
 //! # Tolerances
 //!
-//! * Regular patches are the limit surface, and all patches have its positions and tangent planes at their corners, but for
-//!   rounding: about 1e-15 of the size of the mesh in `f64`, 1e-6 on the GPU.
-//! * Irregular patches lie off the limit surface between their corners: on meshes of characters by some 3e-5 of the
-//!   diagonal in the mean (root mean square of the nearest distance over all faces), and by half a degree in the normal.
+//! * Regular patches are the limit surface, and every patch has its positions and tangent planes at the corners, but for
+//!   rounding: that of `f64` in [`patch`], that of `f32` on the GPU. Creases and corners of finite sharpness are excepted:
+//!   see [`topology::SHARP_FROM`].
+//! * Irregular patches lie off the limit surface between their corners. On the two character meshes of Loop et al. 2009, an
+//!   independent implementation of the same patches in `f64` measures, as root mean squares over all faces, 2e-5 to 4e-5 of
+//!   the diagonal (nearest distance) and half a degree (normal).
 //! * Neighbouring patches share their edge curve and tangent planes along it (G1). The GPU evaluates the curve once for each
 //!   patch, and may round differently: edges are not yet bitwise watertight.
 //! * The two constructions on the GPU ([`Construction`]) make the same control points but for rounding.
@@ -86,6 +88,8 @@
 //!   tangents at vertices.
 //! * Hoppe et al., *Piecewise smooth surface reconstruction*, 1994, and DeRose, Kass, Truong, *Subdivision surfaces in
 //!   character animation*, 1998: creases, corners, and their sharpness.
+//! * Biermann, Levin, Zorin, *Piecewise smooth subdivision surfaces with normal control*, 2000: tangents across boundaries
+//!   and creases.
 //! * Tags and their defaults (boundary and crease rules, sharpness 10 as infinite) are those of OpenSubdiv.
 //!
 //! Comments say "patch_maths" for the collection of these formulas, corrected and checked, that the code was written from.

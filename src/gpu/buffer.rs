@@ -13,7 +13,9 @@ pub struct BufferDesc<'a> {
     pub name: &'a str,
     /// Bytes; rounded up to a multiple of 4, and at least 4.
     pub size: u64,
+    /// What Vulkan is to use it for.
     pub usage: vk::BufferUsageFlags,
+    /// Who reads and writes it.
     pub location: MemoryLocation,
 }
 
@@ -30,6 +32,10 @@ pub struct Buffer {
 }
 
 impl Buffer {
+    /// A new buffer, with memory.
+    ///
+    /// # Errors
+    /// No memory, or a size the device does not have.
     pub fn new(context: &Arc<DeviceContext>, desc: &BufferDesc<'_>) -> Result<Self, GpuError> {
         let BufferDesc { name, usage, location, .. } = *desc;
         let max = context.properties().max_buffer_size;
@@ -99,6 +105,7 @@ impl Buffer {
         self.size
     }
 
+    /// The debug name.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -55,6 +55,7 @@ pub struct ModelId(u64);
 /// One model drawn once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawItem {
+    /// Which.
     pub model: ModelId,
     /// Object to world, by columns. Affine.
     pub transform: [[f32; 4]; 4],

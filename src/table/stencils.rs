@@ -94,6 +94,7 @@ impl StencilTable {
         table
     }
 
+    /// Bytes of all arrays together.
     pub fn bytes(&self) -> u64 {
         bytes(&self.patches) + bytes(&self.vertices) + bytes(&self.types)
     }

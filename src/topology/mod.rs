@@ -42,7 +42,9 @@ pub struct Topology<'m> {
 /// corner of the face) ring edge `index`, its *minus* edge ring edge `index + 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
+    /// Index into [`Topology::rings`].
     pub ring: u32,
+    /// Index of the face in the ring.
     pub index: u32,
 }
 
