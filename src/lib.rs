@@ -9,7 +9,7 @@
 //!                              └── limit (refinement) ─┘
 //! ```
 //!
-//! 1. [`mesh`]: a [`ControlMesh`] is checked once: manifold, oriented, finite. From here on nothing about it can fail but
+//! 1. [`mesh`]: a [`ControlMesh`], from a file ([`mesh::read`]) or from arrays ([`MeshData`]), is checked once: manifold, oriented, finite. From here on nothing about it can fail but
 //!    its size.
 //! 2. [`table::prepare`]: a mesh with faces of five or more corners is refined once ([`limit::refine`]), so that every face
 //!    is a triangle or a quad. The caller may ask for more steps.
@@ -25,13 +25,14 @@
 //!
 //! | floor | module | holds | knows nothing of |
 //! |---|---|---|---|
+//! | 7 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
 //! | 6 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
 //! | 5 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
 //! | 4 | [`table`] | what the GPU reads | Vulkan |
 //! | 4 | [`limit`] | Catmull-Clark refinement | patch schemes |
 //! | 3 | [`patch`] | construction and evaluation of patches, generic over the value | Vulkan |
 //! | 2 | [`topology`] | half-edges, one-rings, sharp edges, patch kinds | positions |
-//! | 1 | [`mesh`] | control meshes and built-in shapes | all above |
+//! | 1 | [`mesh`] | control meshes, the readers (OBJ, glTF), built-in shapes | all above |
 //! | 1 | [`gpu`] | device facts, memory, shaders, pipelines | meshes |
 //!
 //! # Example
@@ -96,6 +97,8 @@
 
 #![warn(missing_docs)]
 
+#[cfg(feature = "headless")]
+pub mod capture;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
@@ -107,7 +110,12 @@ pub mod table;
 pub mod topology;
 
 pub use gpu::{Allocator, ContextOptions, DeviceContext, Spacing};
-pub use mesh::{ControlMesh, MeshData, MeshError, ShapeInfo, grid_torus, replicate, shape, shapes};
+#[cfg(feature = "gltf")]
+pub use mesh::GltfOptions;
+pub use mesh::{
+    ControlMesh, MeshData, MeshError, ObjOptions, ReadOptions, ShapeInfo, grid_torus, replicate, shape, shapes,
+};
+pub use patch::Scheme;
 pub use renderer::{
     Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
 };

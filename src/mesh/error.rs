@@ -61,6 +61,8 @@ pub enum MeshError {
     InFile { path: PathBuf, error: Box<MeshError> },
     #[error("{message}")]
     Format { message: String },
+    #[error("there is no mesh or node named \"{name}\" in the scene: {known}")]
+    UnknownMesh { name: String, known: String },
     #[error("there is no shape named \"{name}\": choose one of {known}")]
     UnknownShape { name: String, known: String },
 }

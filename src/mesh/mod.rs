@@ -3,6 +3,10 @@
 mod adjacency;
 mod control_mesh;
 mod error;
+#[cfg(feature = "gltf")]
+mod gltf;
+mod obj;
+mod read;
 mod shapes;
 
 pub use control_mesh::{
@@ -10,6 +14,10 @@ pub use control_mesh::{
     SHARPNESS_INFINITE, TriangleRule,
 };
 pub use error::MeshError;
+#[cfg(feature = "gltf")]
+pub use gltf::GltfOptions;
+pub use obj::ObjOptions;
+pub use read::{ReadOptions, read};
 pub use shapes::{ShapeInfo, grid_torus, replicate, shape, shapes};
 
 pub(crate) use adjacency::NO_TWIN;

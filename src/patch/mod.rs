@@ -16,10 +16,31 @@ mod point;
 mod ring;
 
 pub use blend::{Blend, Row};
+pub(crate) use point::scalar;
 pub use point::{Point, Sample};
 pub use ring::{Frame, RingShape, RingValues};
 
 use crate::topology::{PatchKind, Topology};
+
+/// A way to approximate the Catmull-Clark surface by patches, one a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Scheme {
+    /// Gregory patches for irregular faces ([`gregory`]), bicubic patches for regular ones ([`bicubic`]).
+    #[default]
+    Gregory,
+}
+
+impl Scheme {
+    /// Every scheme.
+    pub const ALL: [Self; 1] = [Self::Gregory];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gregory => "gregory",
+        }
+    }
+}
 
 /// The control points of the patch of one face, `vertex(v)` being the value at mesh vertex `v`.
 ///

@@ -2,6 +2,7 @@
 
 use super::Error;
 use crate::gpu::{Blend, DepthBias, DepthState, DeviceProperties, Features, Spacing};
+use crate::patch::Scheme;
 use ash::vk;
 
 /// What the renderer draws into.
@@ -204,6 +205,8 @@ impl Construction {
 pub struct ModelOptions {
     /// The debug name.
     pub name: String,
+    /// Which patches faces become.
+    pub scheme: Scheme,
     /// How the control points are made.
     pub construction: Construction,
     /// Where the tessellator puts its vertices along an edge.

@@ -1,0 +1,245 @@
+//! glTF 2.0 and GLB.
+//!
+//! Only the JSON types of the crate `gltf` are used: its accessors, and even its validation, panic on files whose
+//! indices are wrong, so ranges are checked here where they are used.
+
+mod accessor;
+mod container;
+mod polygons;
+mod scene;
+#[cfg(test)]
+mod tests;
+
+use super::{ControlMesh, FaceVarying, MeshData, MeshError};
+use ::gltf::json;
+use accessor::Accessor;
+use glam::{DMat3, DVec3};
+use json::accessor::Type;
+use json::mesh::{Primitive, Semantic};
+use json::validation::Checked;
+use scene::Instance;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+/// How [`ControlMesh::from_gltf_bytes`] reads.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct GltfOptions {
+    /// Only the mesh of this name, or the mesh of the node of this name; all as one mesh if `None`.
+    pub mesh: Option<String>,
+    /// Where files that the glTF names are looked for.
+    pub folder: Option<PathBuf>,
+}
+
+const NGONS: &str = "FB_ngon_encoding";
+
+/// Extensions that a file may require: they are understood here, or do not concern the shape.
+const EXTENSIONS: [&str; 2] = [NGONS, "KHR_mesh_quantization"];
+const EXTENSIONS_OF_LOOKS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"];
+
+impl ControlMesh {
+    /// Reads a glTF 2.0 or GLB file: all triangles of the default scene, or of the mesh that `options` name.
+    ///
+    /// * Polygons are those that the extension `FB_ngon_encoding` marks: triangles in a row that share their first
+    ///   corner and go on where the last ended. Without it, triangles, strips and fans give triangles. Points and lines
+    ///   are passed over.
+    /// * Vertices of one mesh whose positions are equal in every bit become one vertex, so that seams of texture
+    ///   coordinates or normals are no boundaries of the surface. `TEXCOORD_0` and `NORMAL` are kept a face corner;
+    ///   where only some primitives have them, the others get (0, 0) and (0, 0, 0).
+    /// * The transforms of the nodes are applied; one that mirrors turns the faces round. Skins and morph targets are
+    ///   not applied.
+    ///
+    /// Vertices that no face uses do not count. Faces that repeat a vertex after welding are errors.
+    ///
+    /// # Errors
+    /// [`MeshError::Format`] for a file that is broken or requires extensions that change the shape,
+    /// [`MeshError::UnknownMesh`], and those of [`ControlMesh::new`].
+    pub fn from_gltf_bytes(bytes: &[u8], options: &GltfOptions) -> Result<Self, MeshError> {
+        let (json, binary) = container::split(bytes)?;
+        let root = container::parse(json)?;
+        check_extensions(&root)?;
+        let mut instances = scene::instances(&root)?;
+        if let Some(name) = &options.mesh {
+            instances = scene::choose(instances, name)?;
+        }
+        let buffers = container::buffers(&root, binary, options.folder.as_deref())?;
+        let mut builder = Builder::default();
+        for instance in &instances {
+            builder.add_instance(&root, &buffers, instance)?;
+        }
+        if builder.data.face_sizes.is_empty() {
+            return Err(format_error("the scene has no triangles: points and lines have no surface"));
+        }
+        Self::new(builder.finish())
+    }
+}
+
+fn format_error(message: impl Into<String>) -> MeshError {
+    MeshError::Format { message: message.into() }
+}
+
+fn check_extensions(root: &json::Root) -> Result<(), MeshError> {
+    let known =
+        |name: &str| EXTENSIONS.contains(&name) || EXTENSIONS_OF_LOOKS.iter().any(|looks| name.starts_with(looks));
+    match root.extensions_required.iter().find(|name| !known(name)) {
+        None => Ok(()),
+        Some(name) => Err(format_error(format!(
+            "the file requires the extension {name}, which is not supported: export it without"
+        ))),
+    }
+}
+
+/// Gathers the faces of one instance after the other.
+#[derive(Default)]
+struct Builder {
+    data: MeshData,
+    /// Of every pair of mesh and vertex of a primitive that a face uses.
+    texcoords: Vec<[f32; 2]>,
+    normals: Vec<[f32; 3]>,
+    /// Of every face corner, into both of the above.
+    attributes: Vec<u32>,
+    has_texcoords: bool,
+    has_normals: bool,
+}
+
+/// What a vertex of a primitive became.
+#[derive(Clone, Copy)]
+struct Local {
+    vertex: u32,
+    attribute: u32,
+}
+
+impl Builder {
+    fn add_instance(
+        &mut self,
+        root: &json::Root,
+        buffers: &[Cow<'_, [u8]>],
+        instance: &Instance<'_>,
+    ) -> Result<(), MeshError> {
+        let mut welded = HashMap::new();
+        for primitive in &instance.mesh.primitives {
+            self.add_primitive(root, buffers, instance, primitive, &mut welded)?;
+        }
+        Ok(())
+    }
+
+    fn add_primitive(
+        &mut self,
+        root: &json::Root,
+        buffers: &[Cow<'_, [u8]>],
+        instance: &Instance<'_>,
+        primitive: &Primitive,
+        welded: &mut HashMap<[u64; 3], u32>,
+    ) -> Result<(), MeshError> {
+        let Checked::Valid(mode) = primitive.mode else {
+            return Err(format_error("a primitive has an unknown mode: it must be 0 to 6"));
+        };
+        let attribute = |semantic: Semantic, kind| {
+            let index = primitive.attributes.get(&Checked::Valid(semantic));
+            index.map(|index| Accessor::open(root, buffers, index.value(), kind)).transpose()
+        };
+        let Some(positions) = attribute(Semantic::Positions, Type::Vec3)? else {
+            // Allowed, and nothing is to be drawn.
+            return Ok(());
+        };
+        let texcoords = attribute(Semantic::TexCoords(0), Type::Vec2)?;
+        let normals = attribute(Semantic::Normals, Type::Vec3)?;
+        for (name, accessor) in [("TEXCOORD_0", &texcoords), ("NORMAL", &normals)] {
+            if let Some(accessor) = accessor.as_ref().filter(|accessor| accessor.count() != positions.count()) {
+                let (given, needed) = (accessor.count(), positions.count());
+                return Err(format_error(format!("{name} has {given} elements, but POSITION has {needed}")));
+            }
+        }
+        let indices = indices(root, buffers, primitive, &positions)?;
+        let ngons = primitive.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(NGONS));
+
+        let linear = DMat3::from_mat4(instance.transform);
+        let mirrored = linear.determinant() < 0.0;
+        let normal_transform = cofactors(linear) * if mirrored { -1.0 } else { 1.0 };
+        let mut locals: HashMap<u32, Local> = HashMap::new();
+        polygons::for_each_face(&indices, mode, ngons, |corners| {
+            let first = self.data.face_vertices.len();
+            for &corner in corners {
+                if corner as usize >= positions.count() {
+                    let count = positions.count();
+                    return Err(format_error(format!("an index is {corner}, but POSITION has {count} elements")));
+                }
+                let local = *locals.entry(corner).or_insert_with(|| {
+                    let position: [f64; 3] = positions.get(corner as usize);
+                    // Adding zero makes -0 and 0 the same.
+                    let vertex = *welded.entry(position.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
+                        let position = DVec3::from(position);
+                        let placed = instance.transform.transform_point3(position);
+                        // An infinite coordinate would make the others NaN, and hide from the message what is wrong.
+                        let placed = if position.is_finite() { placed } else { position };
+                        self.data.positions.push(placed.to_array());
+                        self.data.positions.len() as u32 - 1
+                    });
+                    let texcoord = texcoords.as_ref().map_or([0.0; 2], |texcoords| texcoords.get(corner as usize));
+                    let normal = normals.as_ref().map_or([0.0; 3], |normals| normals.get(corner as usize));
+                    let normal = (normal_transform * DVec3::from(normal)).normalize_or_zero();
+                    self.texcoords.push(texcoord.map(|x| x as f32));
+                    self.normals.push(normal.as_vec3().to_array());
+                    Local { vertex, attribute: self.texcoords.len() as u32 - 1 }
+                });
+                self.data.face_vertices.push(local.vertex);
+                self.attributes.push(local.attribute);
+            }
+            if mirrored {
+                // All but the first corner, which stays the first.
+                self.data.face_vertices[first + 1..].reverse();
+                self.attributes[first + 1..].reverse();
+            }
+            self.data.face_sizes.push(corners.len() as u32);
+            Ok(())
+        })?;
+        self.has_texcoords |= texcoords.is_some();
+        self.has_normals |= normals.is_some();
+        Ok(())
+    }
+
+    fn finish(mut self) -> MeshData {
+        if self.has_texcoords {
+            self.data.texcoords = Some(FaceVarying { values: self.texcoords, indices: self.attributes.clone() });
+        }
+        if self.has_normals {
+            self.data.normals = Some(FaceVarying { values: self.normals, indices: self.attributes });
+        }
+        self.data
+    }
+}
+
+/// The vertices that a primitive draws, in order.
+fn indices(
+    root: &json::Root,
+    buffers: &[Cow<'_, [u8]>],
+    primitive: &Primitive,
+    positions: &Accessor<'_>,
+) -> Result<Vec<u32>, MeshError> {
+    // Elements without data cost no bytes in the file, so there could be any number of them to go through.
+    let unbacked = |what| format_error(format!("{what} need a buffer view: write the file again"));
+    let Some(index) = primitive.indices else {
+        if !positions.is_backed() {
+            return Err(unbacked("positions that are drawn without indices"));
+        }
+        return Ok((0..positions.count() as u32).collect());
+    };
+    let accessor = Accessor::open(root, buffers, index.value(), Type::Scalar)?;
+    if !accessor.is_backed() {
+        return Err(unbacked("indices"));
+    }
+    if !accessor.is_unsigned() {
+        return Err(format_error(format!("accessor {index} has indices that are not unsigned integers")));
+    }
+    // Exact: every u32 is an f64.
+    Ok((0..accessor.count()).map(|i| accessor.get::<1>(i)[0] as u32).collect())
+}
+
+/// Turns normals as `linear` turns surfaces, up to length and (where it mirrors) sign.
+fn cofactors(linear: DMat3) -> DMat3 {
+    DMat3::from_cols(
+        linear.y_axis.cross(linear.z_axis),
+        linear.z_axis.cross(linear.x_axis),
+        linear.x_axis.cross(linear.y_axis),
+    )
+}

@@ -1,0 +1,82 @@
+//! Which meshes a scene shows, and where.
+
+use super::format_error;
+use crate::mesh::MeshError;
+use ::gltf::json;
+use glam::{DMat4, DQuat, DVec3};
+
+/// A mesh at a place in the scene.
+pub(super) struct Instance<'a> {
+    pub mesh: &'a json::Mesh,
+    /// From the mesh's space to the scene's.
+    pub transform: DMat4,
+    node: Option<&'a str>,
+}
+
+/// The meshes of the default scene (or else the first), in the order of its nodes. A file without scenes is a library:
+/// all its meshes, as they are.
+pub(super) fn instances(root: &json::Root) -> Result<Vec<Instance<'_>>, MeshError> {
+    let scene = match root.scene {
+        None => root.scenes.first(),
+        Some(index) => {
+            let missing = || format_error(format!("scene {index} does not exist, but is the default scene"));
+            Some(root.scenes.get(index.value()).ok_or_else(missing)?)
+        }
+    };
+    let Some(scene) = scene else {
+        let place = |mesh| Instance { mesh, transform: DMat4::IDENTITY, node: None };
+        return Ok(root.meshes.iter().map(place).collect());
+    };
+    let mut instances = Vec::new();
+    let mut visited = vec![false; root.nodes.len()];
+    let mut stack: Vec<_> = scene.nodes.iter().rev().map(|&index| (index, DMat4::IDENTITY)).collect();
+    while let Some((index, parent)) = stack.pop() {
+        let missing = || format_error(format!("node {index} does not exist, but the scene names it"));
+        let node = root.nodes.get(index.value()).ok_or_else(missing)?;
+        // The nodes must form a tree. Otherwise they could go round for ever.
+        if std::mem::replace(&mut visited[index.value()], true) {
+            return Err(format_error(format!("node {index} is reached twice: give a node one parent")));
+        }
+        let transform = parent * local_transform(node);
+        if let Some(mesh) = node.mesh {
+            let missing = || format_error(format!("mesh {mesh} does not exist, but node {index} names it"));
+            let mesh = root.meshes.get(mesh.value()).ok_or_else(missing)?;
+            instances.push(Instance { mesh, transform, node: node.name.as_deref() });
+        }
+        stack.extend(node.children.iter().flatten().rev().map(|&child| (child, transform)));
+    }
+    Ok(instances)
+}
+
+fn local_transform(node: &json::Node) -> DMat4 {
+    if let Some(matrix) = node.matrix {
+        return DMat4::from_cols_array(&matrix.map(f64::from));
+    }
+    let vector = |vector: [f32; 3]| DVec3::from(vector.map(f64::from));
+    // Unit only to single precision as written.
+    let rotation = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
+    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
+    DMat4::from_scale_rotation_translation(
+        vector(node.scale.unwrap_or([1.0; 3])),
+        rotation,
+        vector(node.translation.unwrap_or_default()),
+    )
+}
+
+/// Keeps the instances whose mesh or node has this name.
+pub(super) fn choose<'a>(instances: Vec<Instance<'a>>, name: &str) -> Result<Vec<Instance<'a>>, MeshError> {
+    let names = |instance: &Instance<'a>| [instance.mesh.name.as_deref(), instance.node];
+    let (chosen, others): (Vec<_>, Vec<_>) =
+        instances.into_iter().partition(|instance| names(instance).contains(&Some(name)));
+    if !chosen.is_empty() {
+        return Ok(chosen);
+    }
+    let mut known: Vec<_> = others.iter().flat_map(names).flatten().collect();
+    known.sort_unstable();
+    known.dedup();
+    let known = match known.as_slice() {
+        [] => "its meshes have no names; leave the name out to read them all".to_owned(),
+        known => format!("choose one of \"{}\"", known.join("\", \"")),
+    };
+    Err(MeshError::UnknownMesh { name: name.to_owned(), known })
+}

@@ -1,0 +1,261 @@
+//! Wavefront OBJ, with the tags OpenSubdiv's regression shapes have.
+
+mod statements;
+mod tags;
+#[cfg(test)]
+mod tests;
+
+use super::{ControlMesh, FaceVarying, MeshData, MeshError};
+use statements::{ABSENT, face_corner, for_each_statement, number, number_f32};
+
+/// How [`ControlMesh::from_obj_str`] reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ObjOptions {
+    /// Take out vertices that belong to no face, and their corner tags, and number the others anew. Otherwise such a
+    /// vertex is the error [`MeshError::IsolatedVertex`].
+    pub drop_isolated: bool,
+}
+
+/// The line of every element that an error may name.
+#[derive(Default)]
+struct Lines {
+    vertices: Vec<usize>,
+    faces: Vec<usize>,
+    creases: Vec<usize>,
+    corners: Vec<usize>,
+    /// With the face, since [`ControlMesh::new`] tells which face is wrong, not which hole.
+    holes: Vec<(u32, usize)>,
+}
+
+/// The file as far as it has been read.
+#[derive(Default)]
+struct ObjFile {
+    data: MeshData,
+    lines: Lines,
+    texcoords: FaceVarying<[f32; 2]>,
+    normals: FaceVarying<[f32; 3]>,
+}
+
+impl ControlMesh {
+    /// Reads the text of an OBJ file. Objects, groups, materials and smoothing are passed over: all faces of the file
+    /// become one mesh, and polygons stay polygons.
+    ///
+    /// Understood are `v` (more than three components are ignored), `vt` (one to three; the third is ignored), `vn`,
+    /// `f` with indices that count from one or back, and the tags `t crease`, `corner`, `hole`,
+    /// `interpolateboundary`, `creasemethod`, `smoothtriangles` and `facevaryinginterpolateboundary`, whose vertices
+    /// and faces count from zero. A crease may be a chain of more than two vertices. Where only some faces have
+    /// texture coordinates the others get (0, 0), and likewise the normal (0, 0, 0).
+    ///
+    /// Without a tag the rules are those of [`MeshData::default`]; OpenSubdiv's own test programs take
+    /// [`EdgeOnly`](super::BoundaryRule::EdgeOnly) for a file without `interpolateboundary`.
+    ///
+    /// ```
+    /// use ash_subdiv::{ControlMesh, mesh::ObjOptions};
+    /// let quad = ControlMesh::from_obj_str("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4", &ObjOptions::default())?;
+    /// assert_eq!(quad.face(0), [0, 1, 2, 3]);
+    /// # Ok::<(), ash_subdiv::MeshError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MeshError::Syntax`] for a statement that can't be read, and those of [`ControlMesh::new`] with their line
+    /// ([`MeshError::AtLine`]); in these, vertices and faces count from zero as everywhere.
+    pub fn from_obj_str(text: &str, options: &ObjOptions) -> Result<Self, MeshError> {
+        let mut file = ObjFile::default();
+        for_each_statement(text, |line, statement| {
+            file.read(line, statement).map_err(|message| MeshError::Syntax { line, message })
+        })?;
+        file.into_mesh(options)
+    }
+
+    /// As [`ControlMesh::from_obj_str`], from the bytes of a file.
+    ///
+    /// # Errors
+    /// Also where the bytes are not UTF-8.
+    pub fn from_obj_bytes(bytes: &[u8], options: &ObjOptions) -> Result<Self, MeshError> {
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
+            MeshError::Syntax { line, message: "the text is not UTF-8: save the file in that encoding".into() }
+        })?;
+        Self::from_obj_str(text, options)
+    }
+}
+
+impl ObjFile {
+    fn read(&mut self, line: usize, statement: &str) -> Result<(), String> {
+        let mut words = statement.split_ascii_whitespace();
+        match words.next() {
+            Some("f") => return self.read_face(line, words),
+            Some("v") => {
+                self.data.positions.push(components(words, "v", number)?);
+                self.lines.vertices.push(line);
+            }
+            Some("vt") => {
+                let u = number_f32(words.next().ok_or("\"vt\" needs one number or more, but has none")?)?;
+                self.texcoords.values.push([u, words.next().map_or(Ok(0.0), number_f32)?]);
+            }
+            Some("vn") => self.normals.values.push(components(words, "vn", number_f32)?),
+            Some("t") => return tags::read(words, line, &mut self.data, &mut self.lines),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn read_face<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a str>) -> Result<(), String> {
+        let counts = [self.data.positions.len(), self.texcoords.values.len(), self.normals.values.len()];
+        let first = self.data.face_vertices.len();
+        for word in words {
+            let [vertex, texcoord, normal] = face_corner(word, counts)?;
+            self.data.face_vertices.push(vertex);
+            self.texcoords.indices.push(texcoord);
+            self.normals.indices.push(normal);
+        }
+        for (what, indices) in [("texture coordinate", &self.texcoords.indices), ("normal", &self.normals.indices)] {
+            if indices[first..].windows(2).any(|pair| (pair[0] == ABSENT) != (pair[1] == ABSENT)) {
+                return Err(format!(
+                    "some corners of the face have a {what} and some have none: give it to all or none"
+                ));
+            }
+        }
+        self.data.face_sizes.push((self.data.face_vertices.len() - first) as u32);
+        self.lines.faces.push(line);
+        Ok(())
+    }
+
+    fn into_mesh(self, options: &ObjOptions) -> Result<ControlMesh, MeshError> {
+        self.check_indices()?;
+        let Self { mut data, mut lines, texcoords, normals } = self;
+        data.texcoords = completed(texcoords, [0.0; 2]);
+        data.normals = completed(normals, [0.0; 3]);
+        // Without faces all vertices would go, and the error would be the wrong one.
+        let droppable = !data.positions.is_empty() && !data.face_sizes.is_empty();
+        let kept = (options.drop_isolated && droppable).then(|| drop_isolated(&mut data, &mut lines)).transpose()?;
+        ControlMesh::new(data).map_err(|mut error| {
+            if let Some(kept) = kept {
+                number_as_in_file(&mut error, &kept);
+            }
+            lines.locate(error)
+        })
+    }
+
+    /// Indices may point forward in the file, so they can be checked only when all of it is read.
+    fn check_indices(&self) -> Result<(), MeshError> {
+        let [vertices, texcoords, normals] =
+            [self.data.positions.len(), self.texcoords.values.len(), self.normals.values.len()];
+        let mut corner = 0;
+        for (face, &size) in self.data.face_sizes.iter().enumerate() {
+            for corner in corner..corner + size as usize {
+                let at_line = |error| MeshError::AtLine { line: self.lines.faces[face], error: Box::new(error) };
+                let vertex = self.data.face_vertices[corner];
+                if vertex as usize >= vertices && vertices > 0 {
+                    let face = face as u32;
+                    return Err(at_line(MeshError::IndexOutOfRange { face, vertex, count: vertices }));
+                }
+                for (what, index, count) in [
+                    ("texture coordinate", self.texcoords.indices[corner], texcoords),
+                    ("normal", self.normals.indices[corner], normals),
+                ] {
+                    if index != ABSENT && index as usize >= count {
+                        return Err(at_line(MeshError::CornerIndex { what, corner, index, count }));
+                    }
+                }
+            }
+            corner += size as usize;
+        }
+        Ok(())
+    }
+}
+
+fn components<'a, T: Copy + Default, const N: usize>(
+    mut words: impl Iterator<Item = &'a str>,
+    statement: &str,
+    number: impl Fn(&str) -> Result<T, String>,
+) -> Result<[T; N], String> {
+    let mut components = [T::default(); N];
+    for (i, component) in components.iter_mut().enumerate() {
+        let word = words.next().ok_or_else(|| format!("\"{statement}\" needs {N} numbers, but has {i}"))?;
+        *component = number(word)?;
+    }
+    Ok(components)
+}
+
+/// Gives corners that have no value the value `fill`; none at all if no corner has one.
+fn completed<T>(mut attribute: FaceVarying<T>, fill: T) -> Option<FaceVarying<T>> {
+    if attribute.indices.iter().all(|&index| index == ABSENT) {
+        return None;
+    }
+    if attribute.indices.contains(&ABSENT) {
+        let index = attribute.values.len() as u32;
+        attribute.values.push(fill);
+        attribute.indices.iter_mut().filter(|index| **index == ABSENT).for_each(|absent| *absent = index);
+    }
+    Some(attribute)
+}
+
+/// Takes out vertices without a face. Gives the number in the file of every vertex kept.
+fn drop_isolated(data: &mut MeshData, lines: &mut Lines) -> Result<Vec<u32>, MeshError> {
+    let mut numbers = vec![ABSENT; data.positions.len()];
+    data.face_vertices.iter().for_each(|&vertex| numbers[vertex as usize] = 0);
+    let mut kept = Vec::with_capacity(numbers.len());
+    for (vertex, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number != ABSENT) {
+        *number = kept.len() as u32;
+        kept.push(vertex as u32);
+    }
+    data.positions = kept.iter().map(|&vertex| data.positions[vertex as usize]).collect();
+    lines.vertices = kept.iter().map(|&vertex| lines.vertices[vertex as usize]).collect();
+    data.face_vertices.iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
+
+    for (crease, tag) in data.creases.iter_mut().enumerate() {
+        let edge = tag.vertices;
+        tag.vertices = edge.map(|vertex| numbers.get(vertex as usize).copied().unwrap_or(ABSENT));
+        if tag.vertices.contains(&ABSENT) {
+            return Err(lines.locate(MeshError::NoSuchEdge { crease, edge }));
+        }
+    }
+    let corners = std::mem::take(&mut data.corners).into_iter().zip(std::mem::take(&mut lines.corners));
+    for (corner, (mut tag, line)) in corners.enumerate() {
+        match numbers.get(tag.vertex as usize) {
+            Some(&ABSENT) => {}
+            Some(&number) => {
+                tag.vertex = number;
+                data.corners.push(tag);
+                lines.corners.push(line);
+            }
+            None => {
+                let error = MeshError::NoSuchVertex { corner, vertex: tag.vertex, count: numbers.len() };
+                return Err(MeshError::AtLine { line, error: Box::new(error) });
+            }
+        }
+    }
+    Ok(kept)
+}
+
+/// Puts the numbers that vertices have in the file into an error about the mesh they were renumbered for.
+fn number_as_in_file(error: &mut MeshError, kept: &[u32]) {
+    let renumber = |vertex: &mut u32| *vertex = kept[*vertex as usize];
+    match error {
+        MeshError::RepeatedVertex { vertex, .. } => renumber(vertex),
+        MeshError::NonManifoldEdge { edge, .. }
+        | MeshError::InconsistentOrientation { edge, .. }
+        | MeshError::NoSuchEdge { edge, .. } => edge.iter_mut().for_each(renumber),
+        _ => {}
+    }
+}
+
+impl Lines {
+    /// Adds the line of the element that `error` is about.
+    fn locate(&self, error: MeshError) -> MeshError {
+        let line = match &error {
+            MeshError::IsolatedVertex { vertex } => Some(self.vertices[*vertex as usize]),
+            MeshError::NoSuchEdge { crease, .. } => Some(self.creases[*crease]),
+            MeshError::NoSuchVertex { corner, .. } => Some(self.corners[*corner]),
+            MeshError::NoSuchFace { face, .. } => self.holes.iter().find(|hole| hole.0 == *face).map(|hole| hole.1),
+            MeshError::BadSharpness { what: "crease", index, .. } => Some(self.creases[*index]),
+            MeshError::BadSharpness { index, .. } => Some(self.corners[*index]),
+            error => error.face().map(|face| self.faces[face as usize]),
+        };
+        match line {
+            Some(line) => MeshError::AtLine { line, error: Box::new(error) },
+            None => error,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! OBJ's lines, words and numbers.
+
+use crate::mesh::MeshError;
+
+/// Calls `visit` with the line (from one) and the text of every statement that is not empty: comments are taken off,
+/// and lines that end in a backslash are joined with the next; the line is then that of the first.
+pub(super) fn for_each_statement(
+    text: &str,
+    mut visit: impl FnMut(usize, &str) -> Result<(), MeshError>,
+) -> Result<(), MeshError> {
+    // Editors on Windows put a byte order mark before the first line.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut joined = String::new();
+    let mut first = None;
+    for (index, line) in text.lines().enumerate() {
+        let line = line.split_once('#').map_or(line, |(statement, _)| statement).trim();
+        if let Some(part) = line.strip_suffix('\\') {
+            first.get_or_insert(index + 1);
+            joined.push_str(part);
+            joined.push(' ');
+        } else if let Some(first) = first.take() {
+            joined.push_str(line);
+            visit(first, &joined)?;
+            joined.clear();
+        } else if !line.is_empty() {
+            visit(index + 1, line)?;
+        }
+    }
+    match first {
+        Some(first) => visit(first, &joined),
+        None => Ok(()),
+    }
+}
+
+/// A finite number.
+pub(super) fn number(word: &str) -> Result<f64, String> {
+    match word.parse() {
+        Ok(number) if f64::is_finite(number) => Ok(number),
+        _ => Err(format!("\"{word}\" is not a finite number: write it like 1.5 or -2e3")),
+    }
+}
+
+/// A finite number in single precision.
+pub(super) fn number_f32(word: &str) -> Result<f32, String> {
+    let number = number(word)? as f32;
+    if number.is_finite() { Ok(number) } else { Err(format!("\"{word}\" is too large: at most {:e}", f32::MAX)) }
+}
+
+/// What the part of a face corner that is not written counts as.
+pub(super) const ABSENT: u32 = u32::MAX;
+
+/// The vertex, texture coordinate and normal of a face corner, counted from zero, [`ABSENT`] where not given.
+///
+/// `counts` tells how many of each came before, for indices that count back.
+pub(super) fn face_corner(word: &str, counts: [usize; 3]) -> Result<[u32; 3], String> {
+    let mut corner = [ABSENT; 3];
+    let mut parts = word.split('/');
+    for ((index, what), count) in corner.iter_mut().zip(["vertex", "texture coordinate", "normal"]).zip(counts) {
+        match parts.next() {
+            None | Some("") => {}
+            Some(part) => *index = face_index(part, what, count)?,
+        }
+    }
+    if corner[0] == ABSENT || parts.next().is_some() {
+        return Err(format!("\"{word}\" is not a face corner: write v, v/vt, v//vn or v/vt/vn"));
+    }
+    Ok(corner)
+}
+
+fn face_index(word: &str, what: &str, count: usize) -> Result<u32, String> {
+    let wrong = || format!("\"{word}\" is not the index of a {what}: indices count from 1, or back from -1");
+    match word.parse::<i64>().map_err(|_| wrong())? {
+        0 => Err(wrong()),
+        index @ 1.. => u32::try_from(index - 1).ok().filter(|&index| index != ABSENT).ok_or_else(wrong),
+        back => usize::try_from(back.unsigned_abs())
+            .ok()
+            .and_then(|back| count.checked_sub(back))
+            .and_then(|index| u32::try_from(index).ok())
+            .ok_or_else(|| format!("{what} {word} counts back too far: {count} come before this line")),
+    }
+}

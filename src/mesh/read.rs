@@ -1,0 +1,57 @@
+use super::{ControlMesh, MeshError, ObjOptions};
+use std::path::Path;
+
+/// How [`read`] reads a file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ReadOptions {
+    /// Take out vertices that belong to no face (OBJ; meshes from glTF never have any).
+    pub drop_isolated: bool,
+    /// Which mesh of a glTF scene, by the name of the mesh or of its node; all as one mesh if `None`.
+    pub mesh: Option<String>,
+}
+
+/// Reads a control mesh from a file whose name ends in `.obj`, `.gltf` or `.glb` (in any case).
+///
+/// # Errors
+/// [`MeshError::Unreadable`] where there is no such file or its ending is unknown; otherwise what the reader says,
+/// with the path ([`MeshError::InFile`]).
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<ControlMesh, MeshError> {
+    let path = path.as_ref();
+    let unreadable = |message: String| MeshError::Unreadable { path: path.to_owned(), message };
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    let reader = match ending.as_deref() {
+        Some("obj") => read_obj,
+        Some("gltf" | "glb") => read_gltf,
+        Some(other) => {
+            return Err(unreadable(format!("files ending in .{other} can't be read: use .obj, .gltf or .glb")));
+        }
+        None => return Err(unreadable("the name has no ending: it must be .obj, .gltf or .glb".into())),
+    };
+    if path.is_dir() {
+        return Err(unreadable("this is a directory: name a file in it".into()));
+    }
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => unreadable("there is no such file".into()),
+        _ => unreadable(error.to_string()),
+    })?;
+    reader(path, &bytes, options).map_err(|error| MeshError::InFile { path: path.to_owned(), error: Box::new(error) })
+}
+
+fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions) -> Result<ControlMesh, MeshError> {
+    if let Some(mesh) = &options.mesh {
+        let message = format!("\"{mesh}\" can't be chosen: an OBJ file is read as one mesh; leave the name out");
+        return Err(MeshError::Format { message });
+    }
+    ControlMesh::from_obj_bytes(bytes, &ObjOptions { drop_isolated: options.drop_isolated })
+}
+
+#[cfg(feature = "gltf")]
+fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<ControlMesh, MeshError> {
+    let folder = path.parent().map(Path::to_owned);
+    ControlMesh::from_gltf_bytes(bytes, &super::GltfOptions { mesh: options.mesh.clone(), folder })
+}
+
+#[cfg(not(feature = "gltf"))]
+fn read_gltf(_: &Path, _: &[u8], _: &ReadOptions) -> Result<ControlMesh, MeshError> {
+    Err(MeshError::Format { message: "this build can't read glTF: turn on the cargo feature \"gltf\"".into() })
+}
