@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     unsafe { draw(&std::env::args().nth(1).unwrap_or("creature.png".into())) }
 }
 
-pub unsafe fn draw(path: &str) -> Result<(), Box<dyn Error>> {
+pub(crate) unsafe fn draw(path: &str) -> Result<(), Box<dyn Error>> {
     // subdiv: what to draw into and in which styles; from that follows what the device must have.
     let target = Target::dynamic(COLOR, DEPTH, SAMPLES);
     let options = Options { frames_in_flight: 1, ..Options::default() };
