@@ -9,17 +9,18 @@
 //!                              └── limit (refinement) ─┘
 //! ```
 //!
-//! 1. [`mesh`]: a [`ControlMesh`], from a file ([`mesh::read`]) or from arrays ([`MeshData`]), is checked once: manifold, oriented, finite. From here on nothing about it can fail but
-//!    its size.
-//! 2. [`table::prepare`]: a mesh with faces of five or more corners is refined once ([`limit::refine`]), so that every face
-//!    is a triangle or a quad. The caller may ask for more steps.
+//! 1. [`mesh`]: a [`ControlMesh`], from a file ([`mesh::read`]) or from arrays ([`MeshData`]), is checked once:
+//!    manifold, oriented, finite. From here on nothing about it can fail but its size.
+//! 2. [`table::prepare`]: a mesh with faces of five or more corners is refined once ([`limit::refine`]), so that
+//!    every face is a triangle or a quad. The caller may ask for more steps.
 //! 3. [`topology`]: every vertex gets its ordered one-ring, every face its [`PatchKind`](topology::PatchKind).
-//! 4. [`patch`]: the control points of a patch are sums of the control vertices in the one-rings of its corners. The code
-//!    that makes them is written once, over values that can be summed: points give control points, rows of weights give
-//!    stencils.
+//! 4. [`patch`]: the control points of a patch are sums of the control vertices in the one-rings of its corners.
+//!    The code that makes them is written once, over values that can be summed: points give control points, rows of
+//!    weights give stencils.
 //! 5. [`table`]: connectivity and weights, as plain arrays for the GPU. They do not depend on positions.
-//! 6. [`renderer`]: the arrays become buffers of a model. Every frame the shaders make the control points anew from this
-//!    frame's vertices (vertex and control stage) and evaluate them (evaluation stage), so vertices may move freely.
+//! 6. [`renderer`]: the arrays become buffers of a model. Every frame the shaders make the control points anew
+//!    from this frame's vertices (vertex and control stage) and evaluate them (evaluation stage), so vertices may
+//!    move freely.
 //!
 //! Each module knows only those below it:
 //!
@@ -56,8 +57,8 @@
 //!
 //! # Conventions
 //!
-//! * **Numbers** of vertices, faces and face corners count from zero. A face corner and the half-edge that starts there
-//!   have the same number.
+//! * **Numbers** of vertices, faces and face corners count from zero. A face corner and the half-edge that starts
+//!   there have the same number.
 //! * **Winding**: faces are counter-clockwise seen from outside; normals point outwards.
 //! * **Parameters**: a quad has its corners at (u, v) = (0, 0), (1, 0), (1, 1), (0, 1); a triangle has barycentric
 //!   (u, v, w), one at its corners 0, 1, 2. `gl_TessCoord` is the same.
@@ -70,30 +71,31 @@
 //!
 //! # Tolerances
 //!
-//! * Regular patches are the limit surface, and every patch has its positions and tangent planes at the corners, but for
-//!   rounding: that of `f64` in [`patch`], that of `f32` on the GPU. Creases and corners of finite sharpness are excepted:
-//!   see [`topology::SHARP_FROM`].
-//! * Irregular patches lie off the limit surface between their corners. On the two character meshes of Loop et al. 2009, an
-//!   independent implementation of the same patches in `f64` measures, as root mean squares over all faces, 2e-5 to 4e-5 of
-//!   the diagonal (nearest distance) and half a degree (normal).
-//! * Neighbouring patches share their edge curve and tangent planes along it (G1). The GPU evaluates the curve once for each
-//!   patch, and may round differently: edges are not yet bitwise watertight.
+//! * Regular patches are the limit surface, and every patch has its positions and tangent planes at the corners,
+//!   but for rounding: that of `f64` in [`patch`], that of `f32` on the GPU. Creases and corners of finite sharpness
+//!   are excepted: see [`topology::SHARP_FROM`].
+//! * Irregular patches lie off the limit surface between their corners. On the two character meshes of Loop et al.
+//!   2009, an independent implementation of the same patches in `f64` measures, as root mean squares over all faces,
+//!   2e-5 to 4e-5 of the diagonal (nearest distance) and half a degree (normal).
+//! * Neighbouring patches share their edge curve and tangent planes along it (G1). The GPU evaluates the curve once
+//!   for each patch, and may round differently: edges are not yet bitwise watertight.
 //! * The two constructions on the GPU ([`Construction`]) make the same control points but for rounding.
 //!
 //! # Where the formulas come from
 //!
-//! * Loop, Schaefer, Ni, Castaño, *Approximating Subdivision Surfaces with Gregory Patches for Hardware Tessellation*,
-//!   2009: the patches, their constructions, and the division of work among the shader stages.
+//! * Loop, Schaefer, Ni, Castaño, *Approximating Subdivision Surfaces with Gregory Patches for Hardware
+//!   Tessellation*, 2009: the patches, their constructions, and the division of work among the shader stages.
 //! * Catmull, Clark, *Recursively generated B-spline surfaces on arbitrary topological meshes*, 1978: the surface.
-//! * Halstead, Kass, DeRose, *Efficient, fair interpolation using Catmull-Clark surfaces*, 1993: limit positions and
-//!   tangents at vertices.
+//! * Halstead, Kass, DeRose, *Efficient, fair interpolation using Catmull-Clark surfaces*, 1993: limit positions
+//!   and tangents at vertices.
 //! * Hoppe et al., *Piecewise smooth surface reconstruction*, 1994, and DeRose, Kass, Truong, *Subdivision surfaces in
 //!   character animation*, 1998: creases, corners, and their sharpness.
-//! * Biermann, Levin, Zorin, *Piecewise smooth subdivision surfaces with normal control*, 2000: tangents across boundaries
-//!   and creases.
+//! * Biermann, Levin, Zorin, *Piecewise smooth subdivision surfaces with normal control*, 2000: tangents across
+//!   boundaries and creases.
 //! * Tags and their defaults (boundary and crease rules, sharpness 10 as infinite) are those of OpenSubdiv.
 //!
-//! Comments say "patch_maths" for the collection of these formulas, corrected and checked, that the code was written from.
+//! Comments say "patch_maths" for the collection of these formulas, corrected and checked, that the code was written
+//! from.
 
 #![warn(missing_docs)]
 

@@ -12,11 +12,15 @@
 //!
 //! | pass | reads | writes |
 //! |---|---|---|
-//! | copies | staging buffers | tables, positions |
-//! | VS, two-stage | positions, ring table | limit point and tangent frame a corner |
-//! | TCS | the frames or the stencil table, positions | control points, factors |
-//! | TES | control points | position, normal, texture coordinate |
-//! | FS | those | the caller's attachments |
+//! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
+//! | VS, two-stage | patch corners, rings and their weights, positions | limit point and tangent frame, for each patch corner |
+//! | VS, stencil | nothing | the number of the patch, for each patch |
+//! | TCS, two-stage | the frames of its corners, their rings, positions | control points, factors |
+//! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
+//! | TES | control points, the view | position, normal, texture coordinate |
+//! | FS | those, the view | the caller's attachments |
+//!
+//! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
 
 mod error;
 mod gpu_data;

@@ -263,7 +263,10 @@ pub(super) fn check_properties(
     options: &Options,
 ) -> Result<(), Error> {
     let needed = requirements(target, options);
-    let mut missing: Vec<String> = features.missing(needed.features).into_iter().map(String::from).collect();
+    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
+    let lacking = properties.features.missing(needed.features);
+    let name = |name| if lacking.contains(&name) { String::from(name) } else { format!("{name} {off}") };
+    let mut missing: Vec<String> = features.missing(needed.features).into_iter().map(name).collect();
     if properties.api_version < needed.api_version {
         let version = properties.api_version;
         let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));
