@@ -77,6 +77,9 @@ impl<'h> Captured<'h> {
     }
 
     /// The control points of every patch, as the control shader made them, in the orders of [`crate::patch`].
+    ///
+    /// # Errors
+    /// Failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn control_points(&self) -> Result<Vec<Vec<[f32; 3]>>, Error> {
         let words = self.capture(
             Capture::Points,
@@ -126,6 +129,9 @@ impl<'h> Captured<'h> {
     /// Every vertex that the tessellator made with this factor and the model's spacing, in no order.
     ///
     /// A device may evaluate a vertex more than once; then it is there more than once.
+    ///
+    /// # Errors
+    /// [`Error::BadFactor`]; failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn vertices(&self, factor: f32) -> Result<Vec<CapturedVertex>, Error> {
         let max = self.headless.properties().max_tessellation_level;
         let bytes = |kind| {

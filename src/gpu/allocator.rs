@@ -118,6 +118,9 @@ unsafe impl Sync for Allocation {}
 /// [`MemoryLocation::Readback`] is host-coherent, and mapped for as long as the allocation lives.
 pub unsafe trait Allocator: Send + Sync {
     /// Memory for one buffer or image.
+    ///
+    /// # Errors
+    /// There is no such memory left; the crate passes the reason on in [`GpuError::Allocation`](super::GpuError::Allocation).
     fn allocate(&self, request: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError>;
 
     /// Takes back an allocation.

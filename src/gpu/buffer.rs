@@ -83,6 +83,9 @@ impl Buffer {
     }
 
     /// A buffer for the host to fill, filled with `data`.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`]; [`GpuError::NotMapped`] where the host cannot write.
     pub fn with_data<T: NoUninit>(
         context: &Arc<DeviceContext>,
         name: &str,
@@ -116,6 +119,9 @@ impl Buffer {
     }
 
     /// Copies `data` to `offset`, in bytes from the start of the buffer.
+    ///
+    /// # Errors
+    /// [`GpuError::NotMapped`] and [`GpuError::OutOfBounds`].
     pub fn write<T: NoUninit>(&mut self, offset: u64, data: &[T]) -> Result<(), GpuError> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let target = self.mapped(offset, bytes.len() as u64, "written")?;
@@ -125,6 +131,9 @@ impl Buffer {
     }
 
     /// Copies `count` values out of the buffer, from `offset` bytes on.
+    ///
+    /// # Errors
+    /// [`GpuError::NotMapped`] and [`GpuError::OutOfBounds`].
     pub fn read<T: AnyBitPattern + NoUninit>(&self, offset: u64, count: usize) -> Result<Vec<T>, GpuError> {
         let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
         let source = self.mapped(offset, bytes, "read")?;

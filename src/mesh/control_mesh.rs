@@ -126,6 +126,9 @@ pub struct MeshData {
 ///
 /// Vertices, faces and face corners keep the numbers they were given. A *corner number* (also: half-edge number) is
 /// an index into [`MeshData::face_vertices`]; half-edge `h` runs from its corner to the next corner of the face.
+///
+/// # Panics
+/// Methods that take the number of a vertex or a face panic if there is none with that number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControlMesh {
     data: MeshData,
@@ -185,9 +188,6 @@ impl ControlMesh {
     }
 
     /// Where a vertex is, in object space.
-    ///
-    /// # Panics
-    /// If there is no such vertex.
     pub fn position(&self, vertex: u32) -> DVec3 {
         self.data.positions[vertex as usize].into()
     }

@@ -190,6 +190,9 @@ impl Renderer {
 
     /// As [`Renderer::add_model`], with tables that were built elsewhere, such as on another thread, with the same
     /// options.
+    ///
+    /// # Errors
+    /// As [`Renderer::add_model`]; [`Error::PositionCount`].
     pub fn add_tables(
         &mut self,
         tables: ModelTables,
@@ -209,6 +212,9 @@ impl Renderer {
     }
 
     /// Removes a model. Its memory is freed when every frame has been prepared again.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`].
     pub fn remove_model(&mut self, id: ModelId) -> Result<(), Error> {
         let model = self.models.remove(&id).ok_or(Error::NoSuchModel { id })?;
         let frames = vec![true; self.options.frames_in_flight as usize];
@@ -217,11 +223,17 @@ impl Renderer {
     }
 
     /// The tables of a model.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`].
     pub fn tables(&self, id: ModelId) -> Result<&ModelTables, Error> {
         Ok(&self.model(id)?.tables)
     }
 
     /// What a user will want to know about how a model is drawn, such as that it was refined.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`].
     pub fn notices(&self, id: ModelId) -> Result<&[Notice], Error> {
         Ok(self.model(id)?.tables.notices())
     }
@@ -230,12 +242,18 @@ impl Renderer {
     /// positions are set in any frame. Object space, one position a vertex of the mesh, in its order.
     ///
     /// The last use of `frame_index` must be done on the device.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`], [`Error::NoSuchFrame`], [`Error::PositionCount`].
     pub fn set_positions(&mut self, id: ModelId, frame_index: u32, positions: &[[f32; 3]]) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_positions(frame_index, positions)
     }
 
     /// Records what has to happen before this frame's draws: copies and barriers. Once a frame.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchFrame`]; nothing is recorded then.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw. The device is done with what was
