@@ -3,14 +3,15 @@
 #![cfg(feature = "headless")]
 
 use ash::vk;
-use ash_subdiv::gpu::Features;
+use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};
 use ash_subdiv::headless::{Headless, HeadlessOptions, Offscreen, OffscreenDesc};
 use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::renderer::{Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Error, ModelOptions, Options, Renderer, Style, Target, View, check,
-    requirements, shape,
+    Construction, ContextOptions, ControlMesh, DeviceContext, DrawItem, Error, ModelOptions, Options, Renderer, Style,
+    Target, View, check, requirements, shape,
 };
+use std::sync::Arc;
 
 #[allow(dead_code, reason = "other tests use the other shaders")]
 mod shaders {
@@ -319,5 +320,32 @@ fn what_a_device_lacks_is_named_at_once() {
         let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
         assert_eq!(error, format!("{what} of Options is 0: it must be at least 1"));
     }
+    stage.finish();
+}
+
+/// Has nothing to give.
+struct NoMemory;
+
+// SAFETY: no allocation is ever made.
+unsafe impl Allocator for NoMemory {
+    fn allocate(&self, _: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError> {
+        Err("no memory".into())
+    }
+
+    unsafe fn free(&self, _: Allocation) {}
+}
+
+#[test]
+fn features_that_the_context_was_not_told_of_are_named() {
+    let stage = Stage::new();
+    let (instance, device) = (stage.headless.instance(), stage.headless.device());
+    let made = ContextOptions::default();
+    // SAFETY: the device is of the instance and outlives the context; nothing is made from the context.
+    let error = unsafe {
+        let context = DeviceContext::new(instance, stage.headless.physical_device(), device, Arc::new(NoMemory), made);
+        Renderer::new(&context, &stage.target(), &Options::default()).err().expect("an error").to_string()
+    };
+    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
+    assert!(error.contains(&format!("missing tessellationShader {off}, dynamicRendering {off}:")), "{error}");
     stage.finish();
 }

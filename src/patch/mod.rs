@@ -31,6 +31,7 @@ pub enum Scheme {
 }
 
 impl Scheme {
+    /// Every scheme.
     pub const ALL: [Self; 1] = [Self::Gregory];
 
     /// As the program calls it.

@@ -106,6 +106,7 @@ impl ModelTables {
         }
     }
 
+    /// How many patches of a kind there are.
     pub fn patch_count(&self, kind: PatchKind) -> u32 {
         self.plan.count(kind)
     }

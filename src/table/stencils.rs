@@ -103,6 +103,7 @@ impl StencilTable {
         Ok(table)
     }
 
+    /// Bytes of all arrays together.
     pub fn bytes(&self) -> u64 {
         bytes(&self.patches) + bytes(&self.vertices) + bytes(&self.types)
     }
