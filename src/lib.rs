@@ -1,5 +1,7 @@
 //! Catmull-Clark control meshes, drawn smooth by Vulkan's tessellation stages.
 
+#[cfg(feature = "headless")]
+pub mod capture;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;

@@ -250,7 +250,7 @@ fn buffers_copy_and_check_their_bounds() {
         })
         .unwrap();
     assert_eq!(target.read::<f32>(0, 3).unwrap(), [1.5, 2.5, 3.5]);
-    assert_eq!(target.read::<f32>(12, 0).unwrap(), []);
+    assert!(target.read::<f32>(12, 0).unwrap().is_empty());
 
     let text = |error: GpuError| error.to_string();
     assert_eq!(

@@ -1,6 +1,6 @@
 // Second stage of the two-stage construction: the control points of a Gregory patch from the frames of its corners.
 // Rust twin: `gregory_points` in src/patch/gregory.rs.
-// variants: TRIANGLE, CAPTURE, TRIANGLE+CAPTURE, TEXCOORD, TRIANGLE+TEXCOORD
+// variants: TRIANGLE, CAPTURE, TRIANGLE+CAPTURE, CAPTURE_POINTS, TRIANGLE+CAPTURE_POINTS, TEXCOORD, TRIANGLE+TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,6 +1,6 @@
 // Second stage of the two-stage construction for regular faces: a bicubic Bezier patch from the frames of its corners.
 // Rust twin: `bicubic_points` in src/patch/bicubic.rs.
-// variants: CAPTURE, TEXCOORD
+// variants: CAPTURE, CAPTURE_POINTS, TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define REGULAR

@@ -1,6 +1,6 @@
 // The stencil construction: every control point is a weighted sum of the vertices around the patch, with the weights of
 // its type of connectivity (Loop et al. 2009, section 4).
-// variants: TRIANGLE, REGULAR, CAPTURE, TRIANGLE+CAPTURE, REGULAR+CAPTURE, TEXCOORD, TRIANGLE+TEXCOORD, REGULAR+TEXCOORD
+// variants: TRIANGLE, REGULAR, CAPTURE, TRIANGLE+CAPTURE, REGULAR+CAPTURE, CAPTURE_POINTS, TRIANGLE+CAPTURE_POINTS, REGULAR+CAPTURE_POINTS, TEXCOORD, TRIANGLE+TEXCOORD, REGULAR+TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

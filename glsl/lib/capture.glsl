@@ -1,5 +1,5 @@
-// Writing what a stage computed into a buffer, for tests, `subdiv patches` and `subdiv sample`.
-// Rust twin: src/headless/capture.rs.
+// Writing what one stage computed into a buffer, for tests, `subdiv patches` and `subdiv sample`.
+// Rust twin: src/capture.rs.
 #ifndef CAPTURE_GLSL
 #define CAPTURE_GLSL
 
@@ -7,8 +7,8 @@ layout(set = 2, binding = 0, std430) buffer Capture {
     uint capture_first_patch;  // patches before this one are not captured
     uint capture_patches;      // nor those from first + patches on
     uint capture_grid;         // samples along a side of a patch, or 0: every evaluated vertex as it comes
-    uint capture_count;        // records written when capture_grid is 0
     uint capture_capacity;     // records that fit
+    uint capture_count;        // records written when capture_grid is 0
     float captured[];
 };
 

@@ -4,7 +4,7 @@
 #define CONTROL_GLSL
 
 #include "draw.glsl"
-#ifdef CAPTURE
+#ifdef CAPTURE_POINTS
 #include "capture.glsl"
 #endif
 
@@ -43,10 +43,12 @@ void finish_corner(uint patch_number, uint corners) {
     texcoord[gl_InvocationID] = texcoords[draw.first_corner + patch_number * corners + uint(gl_InvocationID)];
 #endif
 #ifdef CAPTURE
-    uint patch_index = draw.first_patch + patch_number;
     if (gl_InvocationID == 0) {
-        captured_patch = patch_index;
+        captured_patch = draw.first_patch + patch_number;
     }
+#endif
+#ifdef CAPTURE_POINTS
+    uint patch_index = draw.first_patch + patch_number;
     uint k = uint(gl_InvocationID);
 #ifdef REGULAR
     const uint slots[16] = uint[](0, 4, 1, 5, 12, 13, 8, 9, 15, 11, 14, 10, 3, 2, 7, 6);

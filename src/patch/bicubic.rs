@@ -6,6 +6,9 @@ use super::gregory::PatchCorner;
 use super::point::{scalar, unit_normal};
 use super::{Blend, Point, Sample};
 
+/// Control points of a patch.
+pub const POINTS: usize = 16;
+
 /// Where corner k's point, plus edge point, minus edge point and face point stand among the 16.
 pub const CORNER_SLOTS: [[usize; 4]; 4] = [[0, 4, 1, 5], [12, 13, 8, 9], [15, 11, 14, 10], [3, 2, 7, 6]];
 

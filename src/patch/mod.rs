@@ -16,6 +16,7 @@ mod point;
 mod ring;
 
 pub use blend::{Blend, Row};
+pub(crate) use point::scalar;
 pub use point::{Point, Sample};
 pub use ring::{Frame, RingShape, RingValues};
 

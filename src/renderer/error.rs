@@ -28,6 +28,8 @@ pub enum Error {
     NoSuchStyle { given: usize, count: usize },
     #[error("model {}: the tessellation factor {factor} is no number from 1 up", id.0)]
     BadFactor { id: ModelId, factor: f32 },
+    #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
+    BadGrid { given: u32, max: u32 },
     #[error("{what} of Options is {given}: it must be at least 1")]
     BadOption { what: &'static str, given: u32 },
 }

@@ -15,9 +15,11 @@ use std::sync::Arc;
 pub(crate) enum Capture {
     #[default]
     Off,
-    /// Control points, and each evaluated vertex as it comes.
+    /// The control points.
+    Points,
+    /// Each evaluated vertex as it comes.
     Vertices,
-    /// Control points, and the samples of a grid.
+    /// The samples of a grid.
     Grid,
 }
 
@@ -206,27 +208,54 @@ fn fragment(style: &Style) -> Shader<'_> {
 }
 
 fn control_shader(kind: PatchKind, construction: Construction, capture: Capture, texcoords: bool) -> &'static [u32] {
-    use shaders::*;
-    let capture = capture != Capture::Off;
+    /// The variants of one control shader.
+    macro_rules! variants {
+        ($plain:ident, $texcoord:ident, $capture:ident, $points:ident) => {
+            match capture {
+                Capture::Points => shaders::$points,
+                Capture::Vertices | Capture::Grid => shaders::$capture,
+                Capture::Off if texcoords => shaders::$texcoord,
+                Capture::Off => shaders::$plain,
+            }
+        };
+    }
     match (construction, kind) {
-        (Construction::TwoStage, PatchKind::Regular) if capture => CONSTRUCT_REGULAR_TESC_CAPTURE,
-        (Construction::TwoStage, PatchKind::Regular) if texcoords => CONSTRUCT_REGULAR_TESC_TEXCOORD,
-        (Construction::TwoStage, PatchKind::Regular) => CONSTRUCT_REGULAR_TESC,
-        (Construction::TwoStage, PatchKind::IrregularQuad) if capture => CONSTRUCT_GREGORY_TESC_CAPTURE,
-        (Construction::TwoStage, PatchKind::IrregularQuad) if texcoords => CONSTRUCT_GREGORY_TESC_TEXCOORD,
-        (Construction::TwoStage, PatchKind::IrregularQuad) => CONSTRUCT_GREGORY_TESC,
-        (Construction::TwoStage, PatchKind::Triangle) if capture => CONSTRUCT_GREGORY_TESC_TRIANGLE_CAPTURE,
-        (Construction::TwoStage, PatchKind::Triangle) if texcoords => CONSTRUCT_GREGORY_TESC_TRIANGLE_TEXCOORD,
-        (Construction::TwoStage, PatchKind::Triangle) => CONSTRUCT_GREGORY_TESC_TRIANGLE,
-        (Construction::Stencil, PatchKind::Regular) if capture => CONSTRUCT_STENCIL_TESC_REGULAR_CAPTURE,
-        (Construction::Stencil, PatchKind::Regular) if texcoords => CONSTRUCT_STENCIL_TESC_REGULAR_TEXCOORD,
-        (Construction::Stencil, PatchKind::Regular) => CONSTRUCT_STENCIL_TESC_REGULAR,
-        (Construction::Stencil, PatchKind::IrregularQuad) if capture => CONSTRUCT_STENCIL_TESC_CAPTURE,
-        (Construction::Stencil, PatchKind::IrregularQuad) if texcoords => CONSTRUCT_STENCIL_TESC_TEXCOORD,
-        (Construction::Stencil, PatchKind::IrregularQuad) => CONSTRUCT_STENCIL_TESC,
-        (Construction::Stencil, PatchKind::Triangle) if capture => CONSTRUCT_STENCIL_TESC_TRIANGLE_CAPTURE,
-        (Construction::Stencil, PatchKind::Triangle) if texcoords => CONSTRUCT_STENCIL_TESC_TRIANGLE_TEXCOORD,
-        (Construction::Stencil, PatchKind::Triangle) => CONSTRUCT_STENCIL_TESC_TRIANGLE,
+        (Construction::TwoStage, PatchKind::Regular) => variants!(
+            CONSTRUCT_REGULAR_TESC,
+            CONSTRUCT_REGULAR_TESC_TEXCOORD,
+            CONSTRUCT_REGULAR_TESC_CAPTURE,
+            CONSTRUCT_REGULAR_TESC_CAPTURE_POINTS
+        ),
+        (Construction::TwoStage, PatchKind::IrregularQuad) => variants!(
+            CONSTRUCT_GREGORY_TESC,
+            CONSTRUCT_GREGORY_TESC_TEXCOORD,
+            CONSTRUCT_GREGORY_TESC_CAPTURE,
+            CONSTRUCT_GREGORY_TESC_CAPTURE_POINTS
+        ),
+        (Construction::TwoStage, PatchKind::Triangle) => variants!(
+            CONSTRUCT_GREGORY_TESC_TRIANGLE,
+            CONSTRUCT_GREGORY_TESC_TRIANGLE_TEXCOORD,
+            CONSTRUCT_GREGORY_TESC_TRIANGLE_CAPTURE,
+            CONSTRUCT_GREGORY_TESC_TRIANGLE_CAPTURE_POINTS
+        ),
+        (Construction::Stencil, PatchKind::Regular) => variants!(
+            CONSTRUCT_STENCIL_TESC_REGULAR,
+            CONSTRUCT_STENCIL_TESC_REGULAR_TEXCOORD,
+            CONSTRUCT_STENCIL_TESC_REGULAR_CAPTURE,
+            CONSTRUCT_STENCIL_TESC_REGULAR_CAPTURE_POINTS
+        ),
+        (Construction::Stencil, PatchKind::IrregularQuad) => variants!(
+            CONSTRUCT_STENCIL_TESC,
+            CONSTRUCT_STENCIL_TESC_TEXCOORD,
+            CONSTRUCT_STENCIL_TESC_CAPTURE,
+            CONSTRUCT_STENCIL_TESC_CAPTURE_POINTS
+        ),
+        (Construction::Stencil, PatchKind::Triangle) => variants!(
+            CONSTRUCT_STENCIL_TESC_TRIANGLE,
+            CONSTRUCT_STENCIL_TESC_TRIANGLE_TEXCOORD,
+            CONSTRUCT_STENCIL_TESC_TRIANGLE_CAPTURE,
+            CONSTRUCT_STENCIL_TESC_TRIANGLE_CAPTURE_POINTS
+        ),
     }
 }
 
@@ -243,9 +272,9 @@ fn evaluation_shader(kind: PatchKind, spacing: Spacing, capture: Capture, texcoo
                 (Capture::Off, Spacing::Equal) if texcoords => shaders::$equal_uv,
                 (Capture::Off, Spacing::FractionalOdd) if texcoords => shaders::$odd_uv,
                 (Capture::Off, Spacing::FractionalEven) if texcoords => shaders::$even_uv,
-                (Capture::Off, Spacing::Equal) => shaders::$equal,
-                (Capture::Off, Spacing::FractionalOdd) => shaders::$odd,
-                (Capture::Off, Spacing::FractionalEven) => shaders::$even,
+                (Capture::Off | Capture::Points, Spacing::Equal) => shaders::$equal,
+                (Capture::Off | Capture::Points, Spacing::FractionalOdd) => shaders::$odd,
+                (Capture::Off | Capture::Points, Spacing::FractionalEven) => shaders::$even,
             }
         };
     }

@@ -1,0 +1,92 @@
+//! The CPU twin: every patch of a mesh, constructed and evaluated on the host.
+
+use super::{FaceOrigin, PatchPlan, Prepared, prepare};
+use crate::mesh::{ControlMesh, MeshError};
+use crate::patch::{Blend, Point, Sample, control_points, evaluate};
+use crate::topology::{PatchKind, Topology};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// The patches of a mesh on the CPU, in the order in which the two-stage construction stores them.
+///
+/// ```
+/// use ash_subdiv::{shape, table::CpuSurface};
+/// let torus = shape("torus")?;
+/// let surface = CpuSurface::new(&torus, 0)?;
+/// let points = surface.control_points(|position| position);
+/// let samples = surface.grid(&points, 5);
+/// assert_eq!(samples[0].len(), 25);
+/// # Ok::<(), ash_subdiv::MeshError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct CpuSurface<'m> {
+    prepared: Prepared<'m>,
+    plan: PatchPlan,
+}
+
+impl<'m> CpuSurface<'m> {
+    /// Prepares `mesh` as [`prepare`] does, with at least `refine` steps of refinement.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if a refined mesh cannot be addressed.
+    pub fn new(mesh: &'m ControlMesh, refine: u32) -> Result<Self, MeshError> {
+        let prepared = prepare(mesh, refine)?;
+        let plan = PatchPlan::new(&Topology::new(&prepared.mesh));
+        Ok(Self { prepared, plan })
+    }
+
+    pub fn plan(&self) -> &PatchPlan {
+        &self.plan
+    }
+
+    pub fn prepared(&self) -> &Prepared<'m> {
+        &self.prepared
+    }
+
+    /// Where each patch comes from.
+    pub fn origins(&self) -> Vec<FaceOrigin> {
+        self.plan.patches().iter().map(|patch| self.prepared.origin(patch.face)).collect()
+    }
+
+    /// The control points of every patch, combined from `value` of each position.
+    pub fn control_points<T: Blend + Send>(&self, value: impl Fn(DVec3) -> T + Sync) -> Vec<Vec<T>> {
+        let mesh = &*self.prepared.mesh;
+        let topology = Topology::new(mesh);
+        let of_patch = |patch: &super::Patch| {
+            control_points(&topology, patch.face, patch.kind, |vertex| value(mesh.position(vertex)))
+        };
+        self.plan.patches().par_iter().map(of_patch).collect()
+    }
+
+    /// Every patch at the parameters of [`grid_parameters`].
+    ///
+    /// # Panics
+    /// If `points` are not those of all patches, or `n` is below 2.
+    pub fn grid<P: Point>(&self, points: &[Vec<P>], n: u32) -> Vec<Vec<Sample<P>>> {
+        assert_eq!(points.len(), self.plan.patches().len(), "control points of every patch");
+        let grids = PatchKind::ALL.map(|kind| grid_parameters(kind, n));
+        let patches = self.plan.patches().par_iter().zip(points);
+        let scalar = crate::patch::scalar::<P>;
+        let sample = |(patch, points): (&super::Patch, &Vec<P>)| {
+            let parameters = grids[patch.kind as usize].iter();
+            parameters.map(|&[u, v]| evaluate(patch.kind, points, scalar(u), scalar(v))).collect()
+        };
+        patches.map(sample).collect()
+    }
+}
+
+/// A grid of parameters on a patch, `n` along each side.
+///
+/// Quads: `n * n` of them, number `j * n + i` at u = i / (n - 1), v = j / (n - 1). Triangles: `n (n + 1) / 2`, in rows
+/// r = 0..n with u = 1 - r / (n - 1), in each row w = k / (n - 1) for k = 0..=r; given are (u, v).
+///
+/// # Panics
+/// If `n` is below 2.
+pub fn grid_parameters(kind: PatchKind, n: u32) -> Vec<[f64; 2]> {
+    assert!(n >= 2, "a grid has at least two samples along a side");
+    let at = |i: u32| f64::from(i) / f64::from(n - 1);
+    match kind {
+        PatchKind::Triangle => (0..n).flat_map(|r| (0..=r).map(move |k| [at(n - 1 - r), at(r - k)])).collect(),
+        _ => (0..n).flat_map(|j| (0..n).map(move |i| [at(i), at(j)])).collect(),
+    }
+}

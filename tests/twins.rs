@@ -1,0 +1,143 @@
+//! The shaders against their CPU twins: control points and evaluated vertices, captured.
+
+use ash_subdiv::capture::Captured;
+use ash_subdiv::headless::{Headless, HeadlessOptions};
+use ash_subdiv::table::CpuSurface;
+use ash_subdiv::topology::PatchKind;
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, Spacing, shape};
+use glam::{DVec3, Vec3};
+use std::collections::HashMap;
+
+const SHAPES: [&str; 12] = [
+    "cube",
+    "tetrahedron",
+    "torus",
+    "creature",
+    "creature-mixed",
+    "cloth",
+    "valences",
+    "polygons",
+    "machine-part",
+    "strip",
+    "single-quad",
+    "fan",
+];
+
+fn headless() -> Headless {
+    Headless::new(&HeadlessOptions { validation: true, ..HeadlessOptions::default() }).expect("a Vulkan device")
+}
+
+/// A few units in the last place of the largest coordinate.
+fn tolerance(mesh: &ControlMesh) -> f64 {
+    let [low, high] = mesh.bounds();
+    8.0 * f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element()
+}
+
+/// The control points of the twin by face and part, since each construction sorts patches in its own way.
+fn reference(mesh: &ControlMesh) -> HashMap<(u32, i64), (PatchKind, Vec<DVec3>)> {
+    let surface = CpuSurface::new(mesh, 0).expect("small");
+    // The GPU starts from f32 positions.
+    let points = surface.control_points(|position| position.as_vec3().as_dvec3());
+    let patches = surface.plan().patches().iter().zip(surface.origins()).zip(points);
+    patches.map(|((patch, origin), points)| ((origin.face, origin.sub), (patch.kind, points))).collect()
+}
+
+#[test]
+fn control_points() {
+    let headless = headless();
+    for name in SHAPES {
+        let mesh = shape(name).expect("built in");
+        let expected = reference(&mesh);
+        for construction in Construction::ALL {
+            let options = ModelOptions { construction, ..ModelOptions::default() };
+            let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+            let points = captured.control_points().expect("a capture");
+            let tables = captured.tables();
+            assert_eq!(points.len(), expected.len(), "{name}");
+            for ((patch, origin), points) in tables.plan().patches().iter().zip(tables.origins()).zip(points) {
+                let (kind, expected) = &expected[&(origin.face, origin.sub)];
+                assert_eq!((patch.kind, points.len()), (*kind, expected.len()), "{name} {origin:?}");
+                for (i, (ours, expected)) in points.iter().zip(expected).enumerate() {
+                    let error = (Vec3::from(*ours).as_dvec3() - *expected).length();
+                    assert!(
+                        error < tolerance(&mesh),
+                        "{name} {construction:?} {origin:?} {kind:?} point {i}: {ours:?}, not {expected}"
+                    );
+                }
+            }
+        }
+    }
+    headless.finish_silent();
+}
+
+#[test]
+fn grids() {
+    let headless = headless();
+    for name in SHAPES {
+        let mesh = shape(name).expect("built in");
+        let expected = reference(&mesh);
+        for construction in Construction::ALL {
+            let options = ModelOptions { construction, ..ModelOptions::default() };
+            let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+            let tables = captured.tables();
+            for (origin, samples) in tables.origins().iter().zip(captured.grid(6).expect("a capture")) {
+                let (kind, points) = &expected[&(origin.face, origin.sub)];
+                let parameters = ash_subdiv::table::grid_parameters(*kind, 6);
+                assert_eq!(samples.len(), parameters.len());
+                for (sample, [u, v]) in samples.iter().zip(parameters) {
+                    let twin = ash_subdiv::patch::evaluate(*kind, points, u, v);
+                    check(name, &mesh, sample.position, sample.normal, twin);
+                }
+            }
+        }
+    }
+    headless.finish_silent();
+}
+
+fn check(name: &str, mesh: &ControlMesh, position: [f32; 3], normal: [f32; 3], twin: ash_subdiv::patch::Sample<DVec3>) {
+    let error = (Vec3::from(position).as_dvec3() - twin.position).length();
+    assert!(error < tolerance(mesh), "{name}: {position:?}, not {}: off by {error}", twin.position);
+    let normal = Vec3::from(normal).as_dvec3();
+    let error = (normal - twin.normal).length();
+    assert!(error < 2e-4, "{name}: normal {normal}, not {}: off by {error}", twin.normal);
+}
+
+#[test]
+fn evaluated_vertices() {
+    let headless = headless();
+    for name in ["creature-mixed", "cloth", "torus"] {
+        let mesh = shape(name).expect("built in");
+        let expected = reference(&mesh);
+        for construction in Construction::ALL {
+            for (spacing, factor) in [
+                (Spacing::Equal, 1.0),
+                (Spacing::Equal, 7.0),
+                (Spacing::FractionalOdd, 4.3),
+                (Spacing::FractionalEven, 4.3),
+            ] {
+                let options = ModelOptions { construction, spacing, ..ModelOptions::default() };
+                let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+                let tables = captured.tables();
+                let vertices = captured.vertices(factor).expect("a capture");
+                let mut seen = vec![0; tables.origins().len()];
+                for vertex in &vertices {
+                    seen[vertex.patch as usize] += 1;
+                    let origin = tables.origins()[vertex.patch as usize];
+                    let (kind, points) = &expected[&(origin.face, origin.sub)];
+                    let [u, v, _] = vertex.coordinate.map(f64::from);
+                    let twin = ash_subdiv::patch::evaluate(*kind, points, u, v);
+                    check(name, &mesh, vertex.position, vertex.normal, twin);
+                }
+                for (patch, seen) in tables.plan().patches().iter().zip(seen) {
+                    let domain = match patch.kind {
+                        PatchKind::Triangle => ash_subdiv::gpu::Domain::Triangles,
+                        _ => ash_subdiv::gpu::Domain::Quads,
+                    };
+                    let count = ash_subdiv::gpu::tessellated_vertices(domain, spacing, factor, 64);
+                    assert!(seen >= count, "{name} {spacing:?} {factor}: {seen} vertices of {count}");
+                }
+            }
+        }
+    }
+    headless.finish_silent();
+}
