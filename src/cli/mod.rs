@@ -2,6 +2,8 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `camera`, `shading`, `picture` | what `render` needs |
+//! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
 //! | `parse` | values of options |
@@ -18,6 +20,7 @@ mod patches;
 mod picture;
 mod render;
 mod sample;
+mod shading;
 mod shapes;
 mod source;
 

@@ -39,14 +39,17 @@ pub(super) fn note(message: impl Display) {
 }
 
 /// Rows of text whose columns stand under each other.
-#[derive(Default)]
 pub(super) struct Table {
     rows: Vec<Vec<String>>,
     /// Columns of numbers, which stand at the right.
-    pub right: &'static [usize],
+    right: &'static [usize],
 }
 
 impl Table {
+    pub(super) fn new(right: &'static [usize]) -> Self {
+        Self { rows: Vec::new(), right }
+    }
+
     pub(super) fn row<const N: usize>(&mut self, cells: [&dyn Display; N]) {
         self.rows.push(cells.map(|cell| cell.to_string()).into());
     }
@@ -54,7 +57,8 @@ impl Table {
     /// Writes the rows to standard output.
     pub(super) fn print(&self) -> Result<(), CliError> {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let width = |column| self.rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
+        let width =
+            |column: usize| self.rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
         let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
         with_stdout(|out| {
             for row in &self.rows {
@@ -105,10 +109,7 @@ impl Drop for Progress {
 }
 
 /// Writes a file beside `path` and then puts it in its place, so that nobody finds half of it. Makes missing folders.
-pub(super) fn write_file(
-    path: &Path,
-    write: impl FnOnce(&Path) -> Result<(), CliError>,
-) -> Result<(), CliError> {
+pub(super) fn write_file(path: &Path, write: impl FnOnce(&Path) -> Result<(), CliError>) -> Result<(), CliError> {
     let error = |error: io::Error| CliError::Work(format!("{}: {error}", path.display()));
     let Some(name) = path.file_name().filter(|_| !path.is_dir()) else {
         return Err(CliError::Work(format!("{}: this is a folder: name a file", path.display())));

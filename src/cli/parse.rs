@@ -79,6 +79,11 @@ impl Colour {
         Self([r, g, b, 255])
     }
 
+    /// Whether there is nothing to be seen of it.
+    pub(super) fn is_transparent(self) -> bool {
+        self.0[3] == 0
+    }
+
     /// Linear RGB and opacity, not premultiplied.
     pub(super) fn linear(self) -> [f32; 4] {
         let [r, g, b, a] = self.0;
