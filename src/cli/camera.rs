@@ -14,7 +14,7 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "DEGREES", default_value_t = -32.0, allow_negative_numbers = true, value_parser = parse::angle)]
     yaw: f32,
     /// Lift the eye: degrees above the horizon.
-    #[arg(long, value_name = "DEGREES", default_value_t = 12.0, allow_negative_numbers = true, value_parser = parse::angle)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 20.0, allow_negative_numbers = true, value_parser = parse::angle)]
     pitch: f32,
     /// Come nearer: 2 fills twice the picture.
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = parse::positive)]

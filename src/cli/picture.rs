@@ -12,17 +12,19 @@ pub(super) fn encode_srgb(value: f32) -> f32 {
 
 /// Divides colours by opacity, as PNG wants them.
 ///
-/// Drawing over nothing leaves linear colours multiplied by coverage where the samples of a pixel differ; they are
-/// stored in sRGB, so the division is done in linear light.
-pub(super) fn unpremultiply(rgba: &mut [u8]) {
+/// Drawing over nothing leaves colours multiplied by coverage where the samples of a pixel differ: in linear light if
+/// they are stored as `srgb`.
+pub(super) fn unpremultiply(rgba: &mut [u8], srgb: bool) {
+    let decode = |value| if srgb { decode_srgb(value) } else { value };
+    let encode = |value| if srgb { encode_srgb(value) } else { value };
     for pixel in rgba.chunks_exact_mut(4) {
         let alpha = f32::from(pixel[3]) / 255.0;
         if alpha == 0.0 || alpha == 1.0 {
             continue;
         }
         for channel in &mut pixel[..3] {
-            let linear = decode_srgb(f32::from(*channel) / 255.0) / alpha;
-            *channel = (255.0 * encode_srgb(linear.min(1.0))).round() as u8;
+            let whole = decode(f32::from(*channel) / 255.0) / alpha;
+            *channel = (255.0 * encode(whole.min(1.0))).round() as u8;
         }
     }
 }
@@ -36,10 +38,13 @@ mod tests {
         let colour = [200u8, 100, 30];
         let half = colour.map(|c| (255.0 * encode_srgb(decode_srgb(f32::from(c) / 255.0) / 2.0)).round() as u8);
         let mut pixels = [half[0], half[1], half[2], 128, 7, 8, 9, 255, 0, 0, 0, 0];
-        unpremultiply(&mut pixels);
+        unpremultiply(&mut pixels, true);
         for (got, want) in pixels.iter().zip(colour) {
             assert!(got.abs_diff(want) <= 2, "{pixels:?}");
         }
         assert_eq!(pixels[3..], [128, 7, 8, 9, 255, 0, 0, 0, 0]);
+        let mut pixel = [50, 100, 20, 128];
+        unpremultiply(&mut pixel, false);
+        assert_eq!(pixel, [100, 199, 40, 128]);
     }
 }

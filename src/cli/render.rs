@@ -102,7 +102,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     })?;
     progress.now("writing the picture");
     if args.background.is_transparent() {
-        unpremultiply(&mut pixels);
+        unpremultiply(&mut pixels, args.shading.format() == vk::Format::R8G8B8A8_SRGB);
     }
     write_file(&args.output, |part| Ok(save_png(part, vk::Extent2D { width, height }, &pixels)?))?;
     drop(progress);
@@ -172,8 +172,8 @@ impl RenderArgs {
     ) -> Result<Vec<u8>, CliError> {
         let samples = vk::SampleCountFlags::from_raw(samples);
         let [width, height] = self.size;
-        let target = Offscreen::new(headless, &OffscreenDesc { samples, ..OffscreenDesc::new(width, height) })?;
-        let desc = target.desc();
+        let desc = OffscreenDesc { samples, color: self.shading.format(), ..OffscreenDesc::new(width, height) };
+        let target = Offscreen::new(headless, &desc)?;
         let options = Options { styles: self.shading.styles(), ..Options::default() };
         let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
         // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
@@ -184,6 +184,10 @@ impl RenderArgs {
         headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
         // SAFETY: inside rendering that fits the target, after the frame was prepared.
         let record = |cmd| unsafe { renderer.cmd_draw(cmd, 0, view, &draws) };
-        Ok(target.draw(headless, self.background.linear(), record)?)
+        let background = match desc.color {
+            vk::Format::R8G8B8A8_SRGB => self.background.linear(),
+            _ => self.background.0.map(|byte| f32::from(byte) / 255.0),
+        };
+        Ok(target.draw(headless, background, record)?)
     }
 }

@@ -1,6 +1,7 @@
 //! What a picture shows: the pipeline states and colours of each kind of shading.
 
 use super::parse::Colour;
+use ash::vk;
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::renderer::{Fragment, Geometry};
 use ash_subdiv::{DrawItem, ModelId, Style};
@@ -23,11 +24,13 @@ pub(super) enum Shading {
     ControlMesh,
 }
 
-const CLAY: Colour = Colour::rgb(0xcdc4b8);
+const CLAY: Colour = Colour::rgb(0xddd3c6);
 /// Regular patches, irregular quads, triangles.
 const KINDS: [Colour; 3] = [Colour::rgb(0xe3b448), Colour::rgb(0x8a63b8), Colour::rgb(0x5aa469)];
-const WIRE: Colour = Colour([0x1c, 0x20, 0x28, 150]);
+const WIRE: Colour = Colour([0x1c, 0x20, 0x28, 110]);
 const CAGE: Colour = Colour::rgb(0x1f5fae);
+/// Where it runs inside the surface or behind it.
+const HIDDEN_CAGE: Colour = Colour([0x1f, 0x5f, 0xae, 56]);
 const EDGES: Colour = Colour::rgb(0x2a2d33);
 
 /// One style and the colours it is drawn in, by kind of patch.
@@ -56,6 +59,11 @@ impl Shading {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }
 
+    /// How colours are stored. Normals are numbers, not light: they are stored as they are.
+    pub(super) fn format(self) -> vk::Format {
+        if self == Self::Normals { vk::Format::R8G8B8A8_UNORM } else { vk::Format::R8G8B8A8_SRGB }
+    }
+
     /// What is drawn, one over the other.
     fn layers(self) -> Vec<Layer> {
         let lit = |colours| Layer::surface(Fragment::Lit, colours);
@@ -66,7 +74,7 @@ impl Shading {
             Self::Wireframe => vec![lit([CLAY; 3]), Layer::lines(Style::wireframe(), WIRE)],
             Self::Cage => {
                 let cage = Style { depth: Some(DepthState::LESS_OR_EQUAL), ..Style::cage() };
-                vec![lit([CLAY; 3]), Layer::lines(cage, CAGE)]
+                vec![lit([CLAY; 3]), Layer::lines(Style::cage(), HIDDEN_CAGE), Layer::lines(cage, CAGE)]
             }
             Self::ControlMesh => {
                 let faces = Style {
