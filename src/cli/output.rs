@@ -109,21 +109,22 @@ impl Drop for Progress {
 }
 
 /// Writes a file beside `path` and then puts it in its place, so that nobody finds half of it. Makes missing folders.
-pub(super) fn write_file(path: &Path, write: impl FnOnce(&Path) -> Result<(), CliError>) -> Result<(), CliError> {
-    let error = |error: io::Error| CliError::Work(format!("{}: {error}", path.display()));
+/// `write` says what went wrong without naming the file.
+pub(super) fn write_file(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Result<(), CliError> {
+    let error = |message: String| CliError::Work(format!("{}: {message}", path.display()));
     let Some(name) = path.file_name().filter(|_| !path.is_dir()) else {
-        return Err(CliError::Work(format!("{}: this is a folder: name a file", path.display())));
+        return Err(error("this is a folder: name a file".into()));
     };
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(error)?;
+        std::fs::create_dir_all(folder).map_err(|e| error(format!("its folder can't be made: {e}")))?;
     }
     let mut hidden = OsString::from(".");
     hidden.push(name);
     hidden.push(format!(".{}.part", std::process::id()));
     let part = path.with_file_name(hidden);
-    let written = write(&part).and_then(|()| std::fs::rename(&part, path).map_err(error));
+    let written = write(&part).and_then(|()| std::fs::rename(&part, path).map_err(|e| e.to_string()));
     if written.is_err() {
         let _ = std::fs::remove_file(&part);
     }
-    written
+    written.map_err(error)
 }

@@ -92,9 +92,7 @@ pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
         Maker::Cpu => {
             progress.now("making control points");
             let surface = CpuSurface::new(&mesh, args.mesh.refine)?;
-            for notice in &surface.prepared().notices {
-                progress.note(notice);
-            }
+            tell_notices(&surface.prepared().notices, &progress);
             let points = surface.control_points(|p| p);
             drop(progress);
             let points: Vec<Vec<[f64; 3]>> =
@@ -117,7 +115,7 @@ fn on_device(
         progress.now("building tables");
         let options = ModelOptions { construction, refine: args.mesh.refine, ..ModelOptions::default() };
         let captured = Captured::new(headless, mesh, &options)?;
-        tell_notices(captured.tables(), &progress);
+        tell_notices(captured.tables().notices(), &progress);
         progress.now("making control points");
         let points = captured.control_points()?;
         Ok((captured.tables().clone(), points))

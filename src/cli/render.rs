@@ -10,7 +10,7 @@ use super::shading::Shading;
 use super::source::{DeviceArgs, MeshArgs, tell_notices};
 use ash::vk;
 use ash_subdiv::gpu::DeviceProperties;
-use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, save_png};
+use ash_subdiv::headless::{Headless, HeadlessError, Offscreen, OffscreenDesc, save_png};
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::table::CpuSurface;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Options, Renderer, Spacing, Target, View};
@@ -90,7 +90,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         refine: args.mesh.refine,
     };
     let tables = ModelTables::new(&mesh, &options)?;
-    tell_notices(&tables, &progress);
+    tell_notices(tables.notices(), &progress);
     let patches = Patches::of(&tables);
     let [width, height] = args.size;
     let view = args.camera.view(&args.seen_points(&mesh)?, f64::from(width) / f64::from(height))?;
@@ -104,7 +104,10 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     if args.background.is_transparent() {
         unpremultiply(&mut pixels, args.shading.format() == vk::Format::R8G8B8A8_SRGB);
     }
-    write_file(&args.output, |part| Ok(save_png(part, vk::Extent2D { width, height }, &pixels)?))?;
+    write_file(&args.output, |part| match save_png(part, vk::Extent2D { width, height }, &pixels) {
+        Err(HeadlessError::Picture { message, .. }) => Err(message),
+        result => result.map_err(|error| error.to_string()),
+    })?;
     drop(progress);
     if json {
         return output::json_pretty(&RenderOut {

@@ -120,9 +120,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
     if args.cpu {
         progress.now("sampling");
         let surface = CpuSurface::new(&mesh, args.mesh.refine)?;
-        for notice in &surface.prepared().notices {
-            progress.note(notice);
-        }
+        tell_notices(&surface.prepared().notices, &progress);
         let samples = surface.grid(&surface.control_points(|p| p), args.grid);
         drop(progress);
         return write(args, json, surface.plan().patches(), &surface.origins(), &samples);
@@ -137,7 +135,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
         let options =
             ModelOptions { construction: args.construction, refine: args.mesh.refine, ..ModelOptions::default() };
         let captured = Captured::new(headless, &mesh, &options)?;
-        tell_notices(captured.tables(), &progress);
+        tell_notices(captured.tables().notices(), &progress);
         progress.now("sampling");
         let samples = captured.grid(args.grid)?;
         Ok((captured.tables().clone(), samples))

@@ -6,8 +6,8 @@ use super::output::{self, Table, write_file};
 use ash_subdiv::{shape, shapes};
 use clap::Args;
 use serde::Serialize;
-use std::io::{BufWriter, Write};
-use std::path::PathBuf;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  subdiv shapes\n  subdiv shapes machine-part --obj machine-part.obj")]
@@ -37,11 +37,12 @@ struct WrittenOut<'a> {
 pub(super) fn run(args: &ShapesArgs, json: bool) -> Result<(), CliError> {
     if let (Some(name), Some(path)) = (&args.name, &args.obj) {
         let mesh = shape(name)?;
-        write_file(path, |part| {
+        let write = |part: &Path| -> io::Result<()> {
             let mut out = BufWriter::new(std::fs::File::create(part)?);
             obj::write(&mut out, &mesh)?;
-            Ok(out.flush()?)
-        })?;
+            out.flush()
+        };
+        write_file(path, |part| write(part).map_err(|error| error.to_string()))?;
         let file = path.display().to_string();
         return match json {
             true => output::json_pretty(&WrittenOut { shape: name, file }),

@@ -5,7 +5,7 @@ use super::output::Progress;
 use ash_subdiv::ControlMesh;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, read, shape};
-use ash_subdiv::renderer::ModelTables;
+use ash_subdiv::table::Notice;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -59,10 +59,8 @@ impl MeshArgs {
 }
 
 /// Tells what a user will want to know about how a mesh is drawn.
-pub(super) fn tell_notices(tables: &ModelTables, progress: &Progress) {
-    for notice in tables.notices() {
-        progress.note(notice);
-    }
+pub(super) fn tell_notices(notices: &[Notice], progress: &Progress) {
+    notices.iter().for_each(|notice| progress.note(notice));
 }
 
 /// The device that works.
