@@ -18,6 +18,7 @@ pub use mesh::GltfOptions;
 pub use mesh::{
     ControlMesh, MeshData, MeshError, ObjOptions, ReadOptions, ShapeInfo, grid_torus, replicate, shape, shapes,
 };
+pub use patch::Scheme;
 pub use renderer::{
     Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
 };

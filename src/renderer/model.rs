@@ -129,7 +129,7 @@ impl Model {
             table_buffer,
             positions,
             staged_positions,
-            dirty: vec![true; options.frames_in_flight as usize],
+            dirty: vec![false; options.frames_in_flight as usize],
             control,
             uploads,
             prepared: false,
@@ -152,7 +152,7 @@ impl Model {
     }
 
     pub(super) fn needs_copies(&self, frame: u32) -> bool {
-        self.dirty[frame as usize] || !self.uploads.is_empty()
+        self.dirty[frame as usize] || !self.prepared
     }
 
     /// Records the copies that are due, and gives away the staging buffers to be kept until the frame is done.
@@ -166,12 +166,9 @@ impl Model {
             unsafe { device.cmd_copy_buffer(cmd, from, to, &[region]) };
         };
         let bytes = self.position_bytes();
-        if std::mem::take(&mut self.dirty[frame as usize]) {
+        // Before the first copy every frame's region holds the first positions, or newer ones.
+        if std::mem::take(&mut self.dirty[frame as usize]) || !self.prepared {
             copy(self.staged_positions.raw(), u64::from(frame) * bytes, self.positions.raw(), bytes);
-            if !self.prepared {
-                // The other frames hold the same first positions.
-                self.dirty.fill(false);
-            }
         }
         let uploads = std::mem::take(&mut self.uploads);
         for (staged, target) in &uploads {

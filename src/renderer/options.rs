@@ -2,6 +2,7 @@
 
 use super::Error;
 use crate::gpu::{Blend, DepthBias, DepthState, DeviceProperties, Features, Spacing};
+use crate::patch::Scheme;
 use ash::vk;
 
 /// What the renderer draws into.
@@ -177,6 +178,7 @@ impl Construction {
 pub struct ModelOptions {
     /// The debug name.
     pub name: String,
+    pub scheme: Scheme,
     pub construction: Construction,
     pub spacing: Spacing,
     /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.

@@ -57,7 +57,7 @@ impl ModelTables {
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
             patch_vertices: prepared.mesh.vertex_count(),
-            notices: prepared.notices,
+            notices: prepared.notices(&topology),
             steps: prepared.steps,
         })
     }
