@@ -82,7 +82,7 @@ pub(super) fn run(args: &InfoArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
     progress.now("building tables");
-    let options = ModelOptions { construction: args.construction, refine: args.mesh.refine, ..ModelOptions::default() };
+    let options = args.mesh.model_options(args.construction);
     let tables = ModelTables::new(&mesh, &options)?;
     let info = Info::new(&mesh, &tables, &options);
     drop(progress);

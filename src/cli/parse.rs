@@ -1,15 +1,28 @@
 //! Values of options.
 
-use ash_subdiv::{Construction, Spacing};
+use ash_subdiv::{Construction, Scheme, Spacing};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 
+/// One of these by its name.
+fn named<T, const N: usize>(all: [(&'static str, T); N]) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(all.map(|(name, _)| name)).map(move |given| {
+        // The parser lets none but these names through.
+        all.into_iter().find(|(name, _)| *name == given).unwrap_or(all[0]).1
+    })
+}
+
+/// A scheme by its name.
+pub(super) fn scheme() -> impl TypedValueParser<Value = Scheme> {
+    named(Scheme::ALL.map(|scheme| (scheme.name(), scheme)))
+}
+
 /// A construction by its name.
 pub(super) fn construction() -> impl TypedValueParser<Value = Construction> {
-    PossibleValuesParser::new(Construction::ALL.map(Construction::name)).map(|given| {
-        let named = |construction: &Construction| construction.name() == given;
-        Construction::ALL.into_iter().find(named).unwrap_or_default()
-    })
+    named(Construction::ALL.map(|construction| (construction.name(), construction)))
 }
 
 const SPACINGS: [(&str, Spacing); 3] =
@@ -17,10 +30,7 @@ const SPACINGS: [(&str, Spacing); 3] =
 
 /// A spacing by its name.
 pub(super) fn spacing() -> impl TypedValueParser<Value = Spacing> {
-    PossibleValuesParser::new(SPACINGS.map(|(name, _)| name)).map(|given| {
-        let found = SPACINGS.into_iter().find(|(name, _)| *name == given);
-        found.map_or(Spacing::Equal, |(_, spacing)| spacing)
-    })
+    named(SPACINGS)
 }
 
 /// What [`spacing`] calls it.

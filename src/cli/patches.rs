@@ -4,9 +4,9 @@ use super::error::CliError;
 use super::output::{self, Progress};
 use super::source::{DeviceArgs, MeshArgs, tell_notices};
 use ash_subdiv::capture::Captured;
-use ash_subdiv::table::{CpuSurface, FaceOrigin, Patch};
+use ash_subdiv::table::{FaceOrigin, Patch};
 use ash_subdiv::topology::PatchKind;
-use ash_subdiv::{Construction, ControlMesh, ModelOptions};
+use ash_subdiv::{Construction, ControlMesh};
 use clap::{Args, ValueEnum};
 use serde::{Serialize, Serializer};
 use std::fmt::Display;
@@ -91,8 +91,7 @@ pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
     match args.construction {
         Maker::Cpu => {
             progress.now("making control points");
-            let surface = CpuSurface::new(&mesh, args.mesh.refine)?;
-            tell_notices(&surface.prepared().notices, &progress);
+            let surface = args.mesh.cpu_surface(&mesh, &progress)?;
             let points = surface.control_points(|p| p);
             drop(progress);
             let points: Vec<Vec<[f64; 3]>> =
@@ -113,7 +112,7 @@ fn on_device(
 ) -> Result<(), CliError> {
     let (tables, points) = args.device.run(|headless| {
         progress.now("building tables");
-        let options = ModelOptions { construction, refine: args.mesh.refine, ..ModelOptions::default() };
+        let options = args.mesh.model_options(construction);
         let captured = Captured::new(headless, mesh, &options)?;
         tell_notices(captured.tables().notices(), &progress);
         progress.now("making control points");

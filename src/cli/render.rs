@@ -83,12 +83,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
     progress.now("building tables");
-    let options = ModelOptions {
-        name: "mesh".into(),
-        construction: args.construction,
-        spacing: args.spacing,
-        refine: args.mesh.refine,
-    };
+    let options = ModelOptions { spacing: args.spacing, ..args.mesh.model_options(args.construction) };
     let tables = ModelTables::new(&mesh, &options)?;
     tell_notices(tables.notices(), &progress);
     let patches = Patches::of(&tables);

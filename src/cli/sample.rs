@@ -5,10 +5,10 @@ use super::output::{self, Progress};
 use super::parse;
 use super::patches::{by_origin, heading};
 use super::source::{DeviceArgs, MeshArgs, tell_notices};
+use ash_subdiv::Construction;
 use ash_subdiv::capture::{Captured, CapturedVertex};
 use ash_subdiv::patch::Sample;
-use ash_subdiv::table::{CpuSurface, FaceOrigin, Patch, grid_parameters};
-use ash_subdiv::{Construction, ModelOptions};
+use ash_subdiv::table::{FaceOrigin, Patch, grid_parameters};
 use clap::Args;
 use glam::DVec3;
 use serde::{Serialize, Serializer};
@@ -119,8 +119,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
     let mesh = args.mesh.load()?;
     if args.cpu {
         progress.now("sampling");
-        let surface = CpuSurface::new(&mesh, args.mesh.refine)?;
-        tell_notices(&surface.prepared().notices, &progress);
+        let surface = args.mesh.cpu_surface(&mesh, &progress)?;
         let samples = surface.grid(&surface.control_points(|p| p), args.grid);
         drop(progress);
         return write(args, json, surface.plan().patches(), &surface.origins(), &samples);
@@ -132,8 +131,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
             return Err(CliError::Work(format!("--grid {grid}: {device} evaluates at most {max}; more with --cpu")));
         }
         progress.now("building tables");
-        let options =
-            ModelOptions { construction: args.construction, refine: args.mesh.refine, ..ModelOptions::default() };
+        let options = args.mesh.model_options(args.construction);
         let captured = Captured::new(headless, &mesh, &options)?;
         tell_notices(captured.tables().notices(), &progress);
         progress.now("sampling");

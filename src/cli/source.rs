@@ -2,19 +2,14 @@
 
 use super::error::CliError;
 use super::output::Progress;
-use ash_subdiv::ControlMesh;
+use super::parse;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, read, shape};
-use ash_subdiv::table::Notice;
-use clap::{Args, ValueEnum};
+use ash_subdiv::table::{CpuSurface, Notice};
+use ash_subdiv::topology::Topology;
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme};
+use clap::Args;
 use std::path::PathBuf;
-
-/// Which patches faces become.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Scheme {
-    /// A bicubic patch where a face is regular, a Gregory patch elsewhere.
-    Gregory,
-}
 
 /// The mesh, and the surface it is the control mesh of.
 #[derive(Debug, Args)]
@@ -31,14 +26,32 @@ pub(super) struct MeshArgs {
     #[arg(long, value_name = "NAME", conflicts_with = "shape")]
     mesh_name: Option<String>,
     /// Which patches faces become.
-    #[arg(long, value_enum, default_value_t = Scheme::Gregory)]
-    pub scheme: Scheme,
+    #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::scheme())]
+    scheme: Scheme,
     /// Steps of Catmull-Clark refinement before patches are made; each makes four times as many faces.
     #[arg(long, value_name = "STEPS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub refine: u32,
 }
 
 impl MeshArgs {
+    /// How the mesh is to be drawn, with this construction.
+    pub(super) fn model_options(&self, construction: Construction) -> ModelOptions {
+        let name = self.shape.clone().unwrap_or_else(|| "mesh".into());
+        ModelOptions { name, scheme: self.scheme, construction, refine: self.refine, ..ModelOptions::default() }
+    }
+
+    /// The patches of the mesh on the CPU; tells the notices about it.
+    pub(super) fn cpu_surface<'m>(
+        &self,
+        mesh: &'m ControlMesh,
+        progress: &Progress,
+    ) -> Result<CpuSurface<'m>, CliError> {
+        let surface = CpuSurface::new(mesh, self.refine)?;
+        let prepared = surface.prepared();
+        tell_notices(&prepared.notices(&Topology::new(&prepared.mesh)), progress);
+        Ok(surface)
+    }
+
     /// Reads the file, or makes the shape.
     pub(super) fn load(&self) -> Result<ControlMesh, CliError> {
         match (&self.mesh, &self.shape) {
