@@ -443,6 +443,20 @@ fn files_are_written_whole_or_not_at_all() {
 }
 
 #[test]
+fn a_file_that_does_not_fit_leaves_the_older_one() {
+    let folder = folder("full");
+    let path = folder.join("x.obj");
+    fs::write(&path, "older").unwrap();
+    let script = "trap '' XFSZ; ulimit -f 1; exec \"$0\" shapes creature --obj \"$1\"";
+    let output = Command::new("sh").args(["-c", script, env!("CARGO_BIN_EXE_subdiv")]).arg(&path).output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(stderr, format!("error: {}: File too large (os error 27)\n", path.display()));
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(fs::read(&path).unwrap(), b"older");
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+}
+
+#[test]
 fn a_reader_that_leaves_early_is_no_error() {
     for arguments in ["patches --shape creature --construction cpu", "sample --shape creature --cpu --json"] {
         let mut child =
