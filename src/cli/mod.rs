@@ -36,7 +36,7 @@ struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Write JSON to standard output, and nothing else there.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = 1000)]
     json: bool,
 }
 
