@@ -83,7 +83,8 @@ void emit(Sample surface, vec3 at) {
 #endif
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);
-    gl_Position = view.view_projection * vec4(world_position, 1.0);
+    precise vec4 clip = view.view_projection * vec4(world_position, 1.0);
+    gl_Position = clip;
 }
 
 #endif

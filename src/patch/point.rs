@@ -62,6 +62,8 @@ pub(crate) fn unit_normal<P: Point>(du: P, dv: P, fallback: P) -> P {
     use num_traits::Float;
     let normal = du.cross(dv);
     let (squared, zero) = (normal.dot(normal), scalar::<P>(0.0));
-    let (normal, squared) = if squared > zero { (normal, squared) } else { (fallback, fallback.dot(fallback)) };
+    // Within 1e-5 rad of each other: what is left of the cross product is rounding.
+    let least = scalar::<P>(1e-10) * (du.dot(du) * dv.dot(dv));
+    let (normal, squared) = if squared > least { (normal, squared) } else { (fallback, fallback.dot(fallback)) };
     if squared > zero { normal * squared.sqrt().recip() } else { normal }
 }

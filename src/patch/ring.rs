@@ -57,9 +57,9 @@ impl RingShape {
         self.edge_direction(1)[0]
     }
 
-    /// Whether [`RingValues::edge_point`] is the frame's: everywhere but around a corner with several faces, which is a cone.
+    /// Whether [`RingValues::edge_point`] is the frame's: everywhere but in a corner, which is a cone.
     pub fn has_frame(&self) -> bool {
-        self.kind != RingKind::Corner || (self.open && self.faces() == 1)
+        self.kind != RingKind::Corner
     }
 }
 
@@ -139,12 +139,14 @@ impl<T: Blend> RingValues<T> {
 
     /// Limit point and tangent frame (Loop et al. 2009, sections 3.2, 3.3 and 4.6; patch_maths A and B).
     ///
-    /// At a corner with several faces `a` and `b` are zero: see [`RingValues::edge_point`].
+    /// At a corner `a` and `b` are zero: see [`RingValues::edge_point`].
+    ///
+    /// Along a crease the rings on both sides give the same bits for `p`, and `a` but for its sign.
     pub fn frame(&self) -> Frame<T> {
         match self.shape.kind {
             RingKind::Smooth => self.smooth_frame(),
             RingKind::Crease => self.crease_frame(),
-            RingKind::Corner => self.corner_frame(),
+            RingKind::Corner => Frame { p: self.centre.clone(), ..Frame::default() },
         }
     }
 
@@ -176,7 +178,8 @@ impl<T: Blend> RingValues<T> {
     fn crease_frame(&self) -> Frame<T> {
         let faces = self.shape.faces();
         let (first, last) = (self.edge(0), self.edge(faces));
-        let p = T::sum([(4.0 / 6.0, &self.centre), (1.0 / 6.0, first), (1.0 / 6.0, last)]);
+        // The ends first: the ring on the other side of the crease has them the other way round, and the same sum.
+        let p = T::sum([(1.0 / 6.0, first), (1.0 / 6.0, last), (4.0 / 6.0, &self.centre)]);
         let a = T::sum([(1.0 / 6.0, first), (-1.0 / 6.0, last)]);
         let mut b = T::default();
         if faces == 1 {
@@ -202,15 +205,6 @@ impl<T: Blend> RingValues<T> {
             }
         }
         Frame { p, a, b }
-    }
-
-    fn corner_frame(&self) -> Frame<T> {
-        let mut frame = Frame { p: self.centre.clone(), ..Frame::default() };
-        if self.shape.has_frame() {
-            frame.a = T::sum([(1.0 / 3.0, self.edge(0)), (-1.0 / 3.0, &self.centre)]);
-            frame.b = T::sum([(1.0 / 3.0, self.edge(1)), (-1.0 / 3.0, &self.centre)]);
-        }
-        frame
     }
 
     /// The edge point `e_j`: the second Bezier point of the curve along edge j.

@@ -183,7 +183,8 @@ impl<'m> Topology<'m> {
         (0..self.mesh.corner_count() as u32)
             .map(|h| {
                 let (a, b) = (self.mesh_vertex(h), self.mesh_vertex(self.next(h)));
-                sharpness.contains_key(&(a.min(b), a.max(b)))
+                // A boundary that is tagged as well would count twice.
+                self.twin(h).is_some() && sharpness.contains_key(&(a.min(b), a.max(b)))
             })
             .collect()
     }
