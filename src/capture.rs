@@ -22,7 +22,9 @@ pub struct CapturedVertex {
     pub coordinate: [f32; 3],
     /// The number of the patch in the order of [`ModelTables::plan`].
     pub patch: u32,
+    /// Object space.
     pub position: [f32; 3],
+    /// Of length one, towards the side from which the patch is counter-clockwise.
     pub normal: [f32; 3],
 }
 
@@ -69,11 +71,15 @@ impl<'h> Captured<'h> {
         Ok(Self { headless, options: options.clone(), tables, positions: mesh.positions_f32() })
     }
 
+    /// The arrays that the shaders read, with the order of the patches.
     pub fn tables(&self) -> &ModelTables {
         &self.tables
     }
 
     /// The control points of every patch, as the control shader made them, in the orders of [`crate::patch`].
+    ///
+    /// # Errors
+    /// Failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn control_points(&self) -> Result<Vec<Vec<[f32; 3]>>, Error> {
         let words = self.capture(
             Capture::Points,
@@ -123,6 +129,9 @@ impl<'h> Captured<'h> {
     /// Every vertex that the tessellator made with this factor and the model's spacing, in no order.
     ///
     /// A device may evaluate a vertex more than once; then it is there more than once.
+    ///
+    /// # Errors
+    /// [`Error::BadFactor`]; failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn vertices(&self, factor: f32) -> Result<Vec<CapturedVertex>, Error> {
         let max = self.headless.properties().max_tessellation_level;
         let bytes = |kind| {

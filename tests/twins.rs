@@ -1,4 +1,5 @@
 //! The shaders against their CPU twins: control points and evaluated vertices, captured.
+#![cfg(feature = "headless")]
 
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};

@@ -4,7 +4,8 @@
 #include "draw.glsl"
 
 layout(location = 0) in vec3 world_position;
-layout(location = 1) in vec3 world_normal;
+// Taken inside the triangle: at a silhouette, a normal from beyond its edge may face away.
+layout(location = 1) centroid in vec3 world_normal;
 layout(location = 0) out vec4 colour;
 
 void main() {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 ///
 /// Face, vertex and corner numbers count from zero; `line` numbers from one. A reader that knows the line of the
 /// offending element wraps the error in [`MeshError::AtLine`].
+#[allow(missing_docs, reason = "the messages say it")]
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {

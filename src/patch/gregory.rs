@@ -12,7 +12,9 @@ use crate::patch::bicubic::{Basis, cubic, evaluate_tensor};
 /// What a corner of a patch takes from its one-ring.
 #[derive(Debug)]
 pub struct PatchCorner<'r, T> {
+    /// The one-ring around the corner.
     pub ring: &'r RingValues<T>,
+    /// Its limit point and tangents.
     pub frame: &'r Frame<T>,
     /// The ring edge that is the corner's plus edge; the next one is its minus edge.
     pub index: usize,

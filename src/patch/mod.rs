@@ -22,6 +22,26 @@ pub use ring::{Frame, RingShape, RingValues};
 
 use crate::topology::{PatchKind, Topology};
 
+/// A way to approximate the Catmull-Clark surface by patches, one a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Scheme {
+    /// Gregory patches for irregular faces ([`gregory`]), bicubic patches for regular ones ([`bicubic`]).
+    #[default]
+    Gregory,
+}
+
+impl Scheme {
+    /// Every scheme.
+    pub const ALL: [Self; 1] = [Self::Gregory];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gregory => "gregory",
+        }
+    }
+}
+
 /// The control points of the patch of one face, `vertex(v)` being the value at mesh vertex `v`.
 ///
 /// 16 for [`PatchKind::Regular`] (see [`bicubic`]), 20 and 15 for the others (see [`gregory`]).

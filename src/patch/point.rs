@@ -7,9 +7,12 @@ use std::ops::{Add, Mul, Sub};
 pub trait Point:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<Self::Scalar, Output = Self> + Send + Sync
 {
+    /// Of its coordinates.
     type Scalar: num_traits::Float + Send + Sync;
 
+    /// The cross product.
     fn cross(self, other: Self) -> Self;
+    /// The scalar product.
     fn dot(self, other: Self) -> Self::Scalar;
 }
 
@@ -40,6 +43,7 @@ impl Point for DVec3 {
 /// A point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample<P> {
+    /// Object space.
     pub position: P,
     /// Of length one, towards the side from which the patch is counter-clockwise.
     pub normal: P,

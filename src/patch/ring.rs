@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 /// The connectivity of a one-ring, without the values: what all of its weights depend on.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct RingShape {
+    /// The rule for its limit point and tangents.
     pub kind: RingKind,
     /// Whether the first and the last edge differ: always for [`RingKind::Crease`], never for [`RingKind::Smooth`].
     pub open: bool,
@@ -25,10 +26,12 @@ impl RingShape {
         Self { kind: ring.kind, open: ring.open, triangles }
     }
 
+    /// Number of faces.
     pub fn faces(&self) -> usize {
         self.triangles.len()
     }
 
+    /// Number of edges: as many as faces, and one more if the ring is open.
     pub fn edges(&self) -> usize {
         self.faces() + usize::from(self.open)
     }
@@ -73,6 +76,7 @@ fn cos_sin(num: usize, den: usize) -> [f64; 2] {
 /// A one-ring of quads and triangles with a value at each vertex.
 #[derive(Debug, Clone)]
 pub struct RingValues<T> {
+    /// What the weights depend on.
     pub shape: RingShape,
     /// At the vertex itself.
     pub centre: T,
@@ -85,8 +89,11 @@ pub struct RingValues<T> {
 /// The limit point of a ring and its tangent frame: `e_j = p + a cos(phi_j) + b sin(phi_j)`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Frame<T> {
+    /// The limit point.
     pub p: T,
+    /// From `p` to the edge point of edge 0.
     pub a: T,
+    /// The tangent at a right angle to `a` in the plane of parameters, counter-clockwise.
     pub b: T,
 }
 

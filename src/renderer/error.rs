@@ -3,6 +3,7 @@ use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 
 /// What can go wrong in the renderer.
+#[allow(missing_docs, reason = "the messages say it")]
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

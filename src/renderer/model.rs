@@ -1,7 +1,7 @@
 //! A model on the GPU.
 
 use super::pipelines::{MODEL_BINDINGS, Pipelines};
-use super::{Error, Geometry, ModelId, ModelOptions, ModelTables, Options};
+use super::{Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::topology::PatchKind;
 use ash::vk;
@@ -129,7 +129,7 @@ impl Model {
             table_buffer,
             positions,
             staged_positions,
-            dirty: vec![true; options.frames_in_flight as usize],
+            dirty: vec![false; options.frames_in_flight as usize],
             control,
             uploads,
             prepared: false,
@@ -152,7 +152,7 @@ impl Model {
     }
 
     pub(super) fn needs_copies(&self, frame: u32) -> bool {
-        self.dirty[frame as usize] || !self.uploads.is_empty()
+        self.dirty[frame as usize] || !self.prepared
     }
 
     /// Records the copies that are due, and gives away the staging buffers to be kept until the frame is done.
@@ -166,12 +166,9 @@ impl Model {
             unsafe { device.cmd_copy_buffer(cmd, from, to, &[region]) };
         };
         let bytes = self.position_bytes();
-        if std::mem::take(&mut self.dirty[frame as usize]) {
+        // Before the first copy every frame's region holds the first positions, or newer ones.
+        if std::mem::take(&mut self.dirty[frame as usize]) || !self.prepared {
             copy(self.staged_positions.raw(), u64::from(frame) * bytes, self.positions.raw(), bytes);
-            if !self.prepared {
-                // The other frames hold the same first positions.
-                self.dirty.fill(false);
-            }
         }
         let uploads = std::mem::take(&mut self.uploads);
         for (staged, target) in &uploads {
@@ -181,11 +178,12 @@ impl Model {
         uploads.into_iter().map(|(staged, _)| staged).collect()
     }
 
-    /// Bytes on the device, and bytes that the host writes for it.
-    pub(super) fn memory(&self) -> [u64; 2] {
-        let control = self.control.as_ref().map_or(0, |c| c.buffer.size());
-        let staged: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
-        [self.table_buffer.size() + self.positions.size() + control, self.staged_positions.size() + staged]
+    pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
+        usage.tables += self.table_buffer.size();
+        usage.positions += self.positions.size();
+        usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
+        let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
+        usage.staging += self.staged_positions.size() + uploads;
     }
 }
 

@@ -2,12 +2,15 @@
 
 use super::Error;
 use crate::gpu::{Blend, DepthBias, DepthState, DeviceProperties, Features, Spacing};
+use crate::patch::Scheme;
 use ash::vk;
 
 /// What the renderer draws into.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
+    /// The rendering that is open when draws are recorded.
     pub pass: Pass,
+    /// Samples a pixel.
     pub samples: vk::SampleCountFlags,
     /// Whether there is a depth attachment; without one nothing is hidden by what lies in front.
     pub depth: bool,
@@ -17,9 +20,25 @@ pub struct Target {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pass {
     /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
-    Dynamic { color: Vec<vk::Format>, depth: vk::Format, stencil: vk::Format, view_mask: u32 },
+    Dynamic {
+        /// Of each colour attachment. Fragments are written to the first.
+        color: Vec<vk::Format>,
+        /// Of the depth attachment.
+        depth: vk::Format,
+        /// Of the stencil attachment. The crate does not test or write stencils.
+        stencil: vk::Format,
+        /// As in `VkRenderingInfo`: 0 without multiview.
+        view_mask: u32,
+    },
     /// A subpass that has this many colour attachments. The render pass must live as long as the renderer.
-    RenderPass { render_pass: vk::RenderPass, subpass: u32, color_attachments: u32 },
+    RenderPass {
+        /// The render pass, or one compatible with it.
+        render_pass: vk::RenderPass,
+        /// Its subpass that is drawn in.
+        subpass: u32,
+        /// How many colour attachments the subpass has.
+        color_attachments: u32,
+    },
 }
 
 impl Target {
@@ -58,21 +77,28 @@ pub enum Fragment {
     Normals,
     /// The colour of the draw as it is.
     Flat,
+    /// Your own, of Vulkan 1.3 or older, with the entry point `main`.
     Spirv(Vec<u32>),
 }
 
 /// How a model is drawn: a pipeline state. A draw names one of [`Options::styles`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
+    /// What of the model is drawn.
     pub geometry: Geometry,
+    /// How it is shaded.
     pub fragment: Fragment,
     /// Draw triangles as lines ([`Features::fill_mode_non_solid`]).
     pub wireframe: bool,
+    /// The faces that are left out.
     pub cull: vk::CullModeFlags,
+    /// The winding of front faces in the framebuffer.
     pub front_face: vk::FrontFace,
     /// No depth test if none. Not looked at if the target has no depth.
     pub depth: Option<DepthState>,
+    /// Added to the depth, such as for lines on a surface.
     pub depth_bias: Option<DepthBias>,
+    /// How colours are mixed with what is there.
     pub blend: Blend,
     /// Pixels; other widths than 1 need [`Features::wide_lines`].
     pub line_width: f32,
@@ -132,6 +158,7 @@ pub struct Options {
     pub texcoords: bool,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
+    /// Used for all pipelines; null for none.
     pub pipeline_cache: vk::PipelineCache,
 }
 
@@ -161,6 +188,7 @@ pub enum Construction {
 }
 
 impl Construction {
+    /// Both.
     pub const ALL: [Self; 2] = [Self::TwoStage, Self::Stencil];
 
     /// As the program calls it.
@@ -177,7 +205,11 @@ impl Construction {
 pub struct ModelOptions {
     /// The debug name.
     pub name: String,
+    /// Which patches faces become.
+    pub scheme: Scheme,
+    /// How the control points are made.
     pub construction: Construction,
+    /// Where the tessellator puts its vertices along an edge.
     pub spacing: Spacing,
     /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
     pub refine: u32,
@@ -231,7 +263,10 @@ pub(super) fn check_properties(
     options: &Options,
 ) -> Result<(), Error> {
     let needed = requirements(target, options);
-    let mut missing: Vec<String> = features.missing(needed.features).into_iter().map(String::from).collect();
+    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
+    let lacking = properties.features.missing(needed.features);
+    let name = |name| if lacking.contains(&name) { String::from(name) } else { format!("{name} {off}") };
+    let mut missing: Vec<String> = features.missing(needed.features).into_iter().map(name).collect();
     if properties.api_version < needed.api_version {
         let version = properties.api_version;
         let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));

@@ -39,14 +39,14 @@ impl ModelTables {
     /// Prepares a mesh and builds its tables.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if a refined mesh cannot be addressed.
+    /// [`MeshError::TooLarge`] if a refined mesh or a table cannot be addressed.
     pub fn new(mesh: &ControlMesh, options: &ModelOptions) -> Result<Self, MeshError> {
         let prepared = prepare(mesh, options.refine)?;
         let topology = Topology::new(&prepared.mesh);
         let mut plan = PatchPlan::new(&topology);
         let construction = match options.construction {
             Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan)),
-            Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan)),
+            Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan)?),
         };
         Ok(Self {
             texcoords: plan.texcoords(&topology),
@@ -57,7 +57,7 @@ impl ModelTables {
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
             patch_vertices: prepared.mesh.vertex_count(),
-            notices: prepared.notices,
+            notices: prepared.notices(&topology),
             steps: prepared.steps,
         })
     }
@@ -106,6 +106,7 @@ impl ModelTables {
         }
     }
 
+    /// How many patches of a kind there are.
     pub fn patch_count(&self, kind: PatchKind) -> u32 {
         self.plan.count(kind)
     }

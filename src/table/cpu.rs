@@ -35,10 +35,12 @@ impl<'m> CpuSurface<'m> {
         Ok(Self { prepared, plan })
     }
 
+    /// The patches, in the order of the tables.
     pub fn plan(&self) -> &PatchPlan {
         &self.plan
     }
 
+    /// The mesh that the patches are of.
     pub fn prepared(&self) -> &Prepared<'m> {
         &self.prepared
     }

@@ -3,7 +3,6 @@
 
 use crate::limit::{Stencils, refine};
 use crate::mesh::{ControlMesh, MeshError, SHARPNESS_INFINITE};
-use crate::patch::Blend;
 use crate::topology::{SHARP_FROM, Topology};
 use std::borrow::Cow;
 use std::fmt;
@@ -23,11 +22,24 @@ pub struct FaceOrigin {
 #[non_exhaustive]
 pub enum Notice {
     /// Faces with five or more corners: the whole mesh was refined once so that all faces are quads.
-    RefinedPolygons { polygons: usize, first: u32 },
+    RefinedPolygons {
+        /// How many such faces there are.
+        polygons: usize,
+        /// The first of them.
+        first: u32,
+    },
     /// Vertices where fans of faces touch in a point were split.
-    SplitVertices { count: usize },
+    SplitVertices {
+        /// How many vertices that added.
+        count: usize,
+    },
     /// Creases or corners of finite sharpness that patches cannot follow.
-    SemiSharp { sharp: usize, smooth: usize },
+    SemiSharp {
+        /// Those drawn infinitely sharp: from [`SHARP_FROM`] up.
+        sharp: usize,
+        /// Those drawn smooth.
+        smooth: usize,
+    },
 }
 
 impl fmt::Display for Notice {
@@ -52,12 +64,15 @@ impl fmt::Display for Notice {
 /// A mesh of triangles and quads, and the way there from the caller's mesh.
 #[derive(Debug, Clone)]
 pub struct Prepared<'m> {
+    /// Triangles and quads only.
     pub mesh: Cow<'m, ControlMesh>,
     /// The refinement steps, in order. Each step's inputs are the outputs of the one before.
     pub steps: Vec<Stencils>,
     /// For each face of the prepared mesh; empty where nothing was refined.
     origins: Vec<FaceOrigin>,
-    pub notices: Vec<Notice>,
+    refined_polygons: Option<Notice>,
+    /// Vertices split off by refinement.
+    split_vertices: usize,
 }
 
 impl Prepared<'_> {
@@ -66,13 +81,11 @@ impl Prepared<'_> {
         self.origins.get(face as usize).copied().unwrap_or(FaceOrigin { face, sub: -1 })
     }
 
-    /// The values at the vertices of the prepared mesh for these at the vertices of the caller's.
-    pub fn values<'v, T: Blend + Send + Sync>(&self, values: &'v [T]) -> Cow<'v, [T]> {
-        let mut values = Cow::Borrowed(values);
-        for step in &self.steps {
-            values = Cow::Owned(step.apply(&values));
-        }
-        values
+    /// What a user will want to know; `topology` is that of the prepared mesh.
+    pub fn notices(&self, topology: &Topology) -> Vec<Notice> {
+        let splits = self.split_vertices + topology.split_count();
+        let split = (splits > 0).then_some(Notice::SplitVertices { count: splits });
+        self.refined_polygons.clone().into_iter().chain(split).chain(semi_sharp(&self.mesh)).collect()
     }
 }
 
@@ -81,24 +94,27 @@ impl Prepared<'_> {
 /// # Errors
 /// [`MeshError::TooLarge`] if the refined mesh cannot be addressed.
 pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared<'_>, MeshError> {
-    let mut prepared =
-        Prepared { mesh: Cow::Borrowed(mesh), steps: Vec::new(), origins: Vec::new(), notices: Vec::new() };
+    let mut prepared = Prepared {
+        mesh: Cow::Borrowed(mesh),
+        steps: Vec::new(),
+        origins: Vec::new(),
+        refined_polygons: None,
+        split_vertices: 0,
+    };
     let polygon = |&(_, &size): &(usize, &u32)| size > 4;
     let mut polygons = mesh.data().face_sizes.iter().enumerate().filter(polygon);
     let mut needed = levels;
     if let Some((first, _)) = polygons.next() {
         if levels == 0 {
             let polygons = 1 + polygons.count();
-            prepared.notices.push(Notice::RefinedPolygons { polygons, first: first as u32 });
+            prepared.refined_polygons = Some(Notice::RefinedPolygons { polygons, first: first as u32 });
         }
         needed = levels.max(1);
     }
-    let splits = Topology::new(mesh).split_count();
-    if splits > 0 {
-        prepared.notices.push(Notice::SplitVertices { count: splits });
-    }
     for _ in 0..needed {
-        let refined = refine(&Topology::new(&prepared.mesh))?;
+        let topology = Topology::new(&prepared.mesh);
+        prepared.split_vertices += topology.split_count();
+        let refined = refine(&topology)?;
         let offsets = prepared.mesh.face_offsets();
         let mut origins = Vec::with_capacity(refined.parents.len());
         for face in 0..prepared.mesh.face_count() as u32 {
@@ -112,7 +128,6 @@ pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared<'_>, MeshErro
         prepared.steps.push(refined.stencils);
         prepared.mesh = Cow::Owned(refined.mesh);
     }
-    prepared.notices.extend(semi_sharp(&prepared.mesh));
     Ok(prepared)
 }
 

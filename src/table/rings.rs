@@ -30,6 +30,7 @@ pub struct RingTable {
 }
 
 impl RingTable {
+    /// The rings of a mesh of triangles and quads, and the corners of the patches in `plan`.
     pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
         let mut types = RingTypes::default();
         let mut entries = 0;
@@ -61,6 +62,7 @@ impl RingTable {
         }
     }
 
+    /// Bytes of all arrays together.
     pub fn bytes(&self) -> u64 {
         bytes(&self.headers) + bytes(&self.entries) + bytes(&self.types) + bytes(&self.corners)
     }

@@ -1,6 +1,7 @@
 //! The weights of the stencil construction, one set for each type of connectivity around a patch.
 
 use super::{PatchPlan, bytes};
+use crate::mesh::MeshError;
 use crate::patch::bicubic::CORNER_SLOTS;
 use crate::patch::{Row, control_points};
 use crate::table::Patch;
@@ -46,7 +47,15 @@ struct PatchRing {
 
 impl StencilTable {
     /// Builds the table and sorts the patches of each kind by type: `plan` becomes the order of the table.
-    pub fn new(topology: &Topology, plan: &mut PatchPlan) -> Self {
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the one-rings of all patches together have more vertices than can be addressed. A
+    /// vertex of valence n alone takes n * n; the two-stage construction takes n.
+    pub fn new(topology: &Topology, plan: &mut PatchPlan) -> Result<Self, MeshError> {
+        let (count, max) = (largest_vertex_count(topology, plan), u32::MAX as usize);
+        if count > max {
+            return Err(MeshError::TooLarge { what: "vertices around its patches (stencil construction)", count, max });
+        }
         let chunk = plan.patches().len().div_ceil(4 * rayon::current_num_threads()).max(256);
         let chunks: Vec<_> = plan
             .patches()
@@ -91,9 +100,10 @@ impl StencilTable {
             table.largest_ring = table.largest_ring.max(ring.vertices.len());
         }
         plan.reorder(rings.into_iter().map(|(_, _, ring)| ring.patch).collect());
-        table
+        Ok(table)
     }
 
+    /// Bytes of all arrays together.
     pub fn bytes(&self) -> u64 {
         bytes(&self.patches) + bytes(&self.vertices) + bytes(&self.types)
     }
@@ -121,6 +131,15 @@ impl StencilTable {
         }
         start as u32
     }
+}
+
+/// An upper bound of the vertices in all one-rings: what two corners of a patch share is counted twice.
+fn largest_vertex_count(topology: &Topology, plan: &PatchPlan) -> usize {
+    let around = |h: &u32| {
+        let ring = &topology.rings()[topology.place(*h).ring as usize];
+        1 + ring.faces as usize + ring.edges() as usize
+    };
+    plan.corners(topology).iter().map(around).sum()
 }
 
 /// The control points that corner k owns.

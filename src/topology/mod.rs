@@ -23,6 +23,9 @@ pub const SHARP_FROM: f32 = 1.0;
 /// A *vertex* here is manifold: a vertex of the mesh where several fans of faces touch in a point is split into one
 /// for each fan ([`Topology::source`] leads back). A [`Ring`] is a sector of a vertex between sharp edges: around
 /// most vertices there is just one.
+///
+/// # Panics
+/// Methods that take the number of a half-edge, a face or a vertex panic if there is none with that number.
 pub struct Topology<'m> {
     mesh: &'m ControlMesh,
     /// The face of each half-edge.
@@ -42,7 +45,9 @@ pub struct Topology<'m> {
 /// corner of the face) ring edge `index`, its *minus* edge ring edge `index + 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
+    /// Index into [`Topology::rings`].
     pub ring: u32,
+    /// Index of the face in the ring.
     pub index: u32,
 }
 

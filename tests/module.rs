@@ -1,0 +1,351 @@
+//! The drop-in module as a caller uses it: frames in flight, moving and removed models, the caller's own shaders, and
+//! what it says when it is used wrongly.
+#![cfg(feature = "headless")]
+
+use ash::vk;
+use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};
+use ash_subdiv::headless::{Headless, HeadlessOptions, Offscreen, OffscreenDesc};
+use ash_subdiv::mesh::FaceVarying;
+use ash_subdiv::renderer::{Fragment, Geometry};
+use ash_subdiv::{
+    Construction, ContextOptions, ControlMesh, DeviceContext, DrawItem, Error, ModelOptions, Options, Renderer, Style,
+    Target, View, check, requirements, shape,
+};
+use std::sync::Arc;
+
+#[allow(dead_code, reason = "other tests use the other shaders")]
+mod shaders {
+    include!(concat!(env!("OUT_DIR"), "/test_shaders.rs"));
+}
+
+const SIZE: u32 = 64;
+const BLACK: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+const WHITE: [f32; 4] = [1.0; 4];
+
+/// A device, and a square picture without gamma.
+struct Stage {
+    target: Offscreen,
+    headless: Headless,
+}
+
+impl Stage {
+    fn new() -> Self {
+        let headless = Headless::new(&HeadlessOptions { validation: true, ..HeadlessOptions::default() });
+        let headless = headless.expect("a Vulkan device with the validation layer");
+        let desc = OffscreenDesc { color: vk::Format::R8G8B8A8_UNORM, ..OffscreenDesc::new(SIZE, SIZE) };
+        Self { target: Offscreen::new(&headless, &desc).expect("an image"), headless }
+    }
+
+    fn target(&self) -> Target {
+        let desc = self.target.desc();
+        Target::dynamic(desc.color, desc.depth, desc.samples)
+    }
+
+    fn renderer(&self, options: &Options) -> Renderer {
+        // SAFETY: every submission is waited for, and the renderer is dropped before the stage.
+        unsafe { Renderer::new(self.headless.context(), &self.target(), options) }.expect("a renderer")
+    }
+
+    fn prepare(&self, renderer: &mut Renderer, frame: u32) {
+        // SAFETY: the command buffer is being recorded, and all frames before are done.
+        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("a frame");
+    }
+
+    fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Picture, Error> {
+        let view = View { view_projection: orthographic(), eye: [0.0, 0.0, 10.0], light: [0.0, 0.0, 1.0] };
+        // SAFETY: as above, inside rendering.
+        let pixels =
+            self.target.draw(&self.headless, BLACK, |cmd| unsafe { renderer.cmd_draw(cmd, frame, &view, items) })?;
+        Ok(Picture(pixels))
+    }
+
+    fn finish(self) {
+        drop(self.target);
+        self.headless.finish_silent();
+    }
+}
+
+/// From x and y in -1..1, z in -4..4; y up.
+fn orthographic() -> [[f32; 4]; 4] {
+    [[1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -0.125, 0.0], [0.0, 0.0, 0.5, 1.0]]
+}
+
+struct Picture(Vec<u8>);
+
+impl Picture {
+    /// The pixel at x, y in -1..1, y up.
+    fn at(&self, x: f32, y: f32) -> [u8; 4] {
+        let pixel = |t: f32| (((t + 1.0) / 2.0 * SIZE as f32) as usize).min(SIZE as usize - 1);
+        let start = 4 * (pixel(-y) * SIZE as usize + pixel(x));
+        [0, 1, 2, 3].map(|i| self.0[start + i])
+    }
+
+    fn covered(&self) -> usize {
+        self.0.chunks(4).filter(|p| p[..3] != [0, 0, 0]).count()
+    }
+}
+
+/// The unit square around the origin, in the plane z = 0, facing +z. Its smooth surface is itself.
+fn square(half: f64) -> ControlMesh {
+    let mut data = shape("single-quad").expect("built in").into_data();
+    data.positions =
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| [x * half, y * half, 0.0]).into();
+    data.face_vertices = vec![0, 1, 2, 3];
+    data.texcoords =
+        Some(FaceVarying { values: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], indices: vec![0, 1, 2, 3] });
+    ControlMesh::new(data).expect("a square")
+}
+
+fn flat() -> Options {
+    let style = Style { fragment: Fragment::Flat, ..Style::default() };
+    Options { styles: vec![style], ..Options::default() }
+}
+
+#[test]
+fn positions_of_a_frame_move_the_model() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&flat());
+    let mesh = square(0.25);
+    let model = renderer.add_model(&mesh, &ModelOptions::default()).unwrap();
+    let item = DrawItem::new(model, 3.0).colour(WHITE);
+    let moved = |x: f32| mesh.positions_f32().iter().map(|p| [p[0] + x, p[1], p[2]]).collect::<Vec<_>>();
+
+    // Another frame's positions are its own until it is prepared, then they stay.
+    renderer.set_positions(model, 1, &moved(0.5)).unwrap();
+    stage.prepare(&mut renderer, 0);
+    let picture = stage.draw(&mut renderer, 0, &[item]).unwrap();
+    assert_eq!((picture.at(0.0, 0.0), picture.at(0.6, 0.0)), ([255; 4], [0, 0, 0, 255]));
+    assert_eq!(picture.covered(), 16 * 16);
+    for frame in [1, 0] {
+        stage.prepare(&mut renderer, frame);
+        let picture = stage.draw(&mut renderer, frame, &[item]).unwrap();
+        assert_eq!((picture.at(0.0, 0.0), picture.at(0.6, 0.0)), ([0, 0, 0, 255], [255; 4]), "frame {frame}");
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn refined_models_move_too() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&flat());
+    let mesh = square(0.25);
+    for construction in Construction::ALL {
+        let options = ModelOptions { refine: 2, construction, ..ModelOptions::default() };
+        let model = renderer.add_model(&mesh, &options).unwrap();
+        assert_eq!(renderer.tables(model).unwrap().origins().len(), 16);
+        let positions: Vec<_> = mesh.positions_f32().iter().map(|p| [p[0], p[1] + 0.5, p[2]]).collect();
+        renderer.set_positions(model, 0, &positions).unwrap();
+        stage.prepare(&mut renderer, 0);
+        let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0).colour(WHITE)]).unwrap();
+        assert_eq!((picture.at(0.0, 0.5), picture.at(0.0, 0.0)), ([255; 4], [0, 0, 0, 255]));
+        assert_eq!(picture.covered(), 16 * 16);
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn a_callers_shader_gets_texture_coordinates() {
+    let stage = Stage::new();
+    let style = Style { fragment: Fragment::Spirv(shaders::TEXCOORD_FRAG.to_vec()), ..Style::default() };
+    let mut renderer = stage.renderer(&Options { styles: vec![style], texcoords: true, ..Options::default() });
+    for construction in Construction::ALL {
+        for triangles in [false, true] {
+            let mut data = square(1.0).into_data();
+            if triangles {
+                data.face_sizes = vec![3, 3];
+                data.face_vertices = vec![0, 1, 2, 0, 2, 3];
+                data.texcoords.as_mut().unwrap().indices = vec![0, 1, 2, 0, 2, 3];
+                // So that every vertex is a corner, and the surface is the square itself.
+                data.creases = vec![];
+            }
+            let mesh = ControlMesh::new(data).unwrap();
+            let model = renderer.add_model(&mesh, &ModelOptions { construction, ..Default::default() }).unwrap();
+            stage.prepare(&mut renderer, 0);
+            let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 8.0)]).unwrap();
+            if triangles {
+                // Two triangles round off their shared corners; inside, the coordinate is that of the plane nearly.
+                assert_ne!(picture.at(0.3, -0.3), [0, 0, 0, 255]);
+                continue;
+            }
+            for (x, y) in [(-0.9, -0.9), (0.0, 0.0), (0.5, -0.25), (0.9, 0.9)] {
+                let [r, g, ..] = picture.at(x, y);
+                let expected = [x, y].map(|t: f32| (t + 1.0) / 2.0 * 255.0);
+                // A pixel of 64 is 4 of 255 wide.
+                assert!((f32::from(r) - expected[0]).abs() < 4.0 && (f32::from(g) - expected[1]).abs() < 4.0);
+            }
+        }
+    }
+    // A model without texture coordinates gets zeros.
+    let mut data = square(1.0).into_data();
+    data.texcoords = None;
+    let model = renderer.add_model(&ControlMesh::new(data).unwrap(), &ModelOptions::default()).unwrap();
+    stage.prepare(&mut renderer, 0);
+    let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0)]).unwrap();
+    assert_eq!(picture.at(0.5, 0.5), [0, 0, 0, 255]);
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn removed_models_stay_until_their_frames_are_done() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&Options { styles: vec![Style::default(), Style::cage()], ..Options::default() });
+    let empty = renderer.memory_usage();
+    let creature = shape("creature").unwrap();
+    for round in 0..4 {
+        let model = renderer.add_model(&creature, &ModelOptions::default()).unwrap();
+        let used = renderer.memory_usage();
+        assert!(used.tables > 90_000 && used.positions == 12 * creature.vertex_count() as u64);
+        assert_eq!(used.control_meshes, 4 * (2 * creature.edge_count() + 6 * creature.face_count()) as u64);
+        stage.prepare(&mut renderer, round % 2);
+        // Uploads are done; what is left is a copy of the positions for each frame.
+        assert_eq!(renderer.memory_usage().staging, 2 * used.positions);
+        let items = [DrawItem::new(model, 2.0), DrawItem { style: 1, ..DrawItem::new(model, 1.0) }];
+        stage.draw(&mut renderer, round % 2, &items).unwrap();
+        renderer.remove_model(model).unwrap();
+        assert_eq!(renderer.memory_usage(), empty);
+        let error = stage.draw(&mut renderer, round % 2, &items).err().unwrap().to_string();
+        assert_eq!(error, format!("model {round}: there is no such model: it was removed, or is another renderer's"));
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn faces_of_all_kinds_face_outwards() {
+    let stage = Stage::new();
+    let culled = |cull| Style { fragment: Fragment::Flat, cull, ..Style::default() };
+    let styles = vec![
+        culled(vk::CullModeFlags::NONE),
+        culled(vk::CullModeFlags::BACK),
+        Style { geometry: Geometry::ControlFaces, ..culled(vk::CullModeFlags::BACK) },
+    ];
+    let mut renderer = stage.renderer(&Options { styles, ..Options::default() });
+    for name in ["cube", "tetrahedron", "torus", "creature-mixed"] {
+        let mesh = shape(name).unwrap();
+        for construction in Construction::ALL {
+            let model = renderer.add_model(&mesh, &ModelOptions { construction, ..Default::default() }).unwrap();
+            stage.prepare(&mut renderer, 0);
+            let shrink = (1.6 / mesh.diagonal()) as f32;
+            // Mirrored models are inside out: their culling is the caller's business.
+            let transform = glam::Mat4::from_scale(glam::Vec3::splat(shrink)).to_cols_array_2d();
+            let item = DrawItem { transform, ..DrawItem::new(model, 5.0).colour(WHITE) };
+            let all = stage.draw(&mut renderer, 0, &[item]).unwrap();
+            let front = stage.draw(&mut renderer, 0, &[DrawItem { style: 1, ..item }]).unwrap();
+            assert!(all.covered() > 50, "{name}");
+            assert!(all.0 == front.0, "{name} {construction:?}: culling back faces leaves holes");
+            let cage = stage.draw(&mut renderer, 0, &[DrawItem { style: 2, ..item }]).unwrap();
+            assert!(cage.covered() > all.covered() / 2, "{name}");
+        }
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn holes_are_not_drawn() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&flat());
+    let mut data = square(0.9).into_data();
+    data.holes = vec![0];
+    let model = renderer.add_model(&ControlMesh::new(data).unwrap(), &ModelOptions::default()).unwrap();
+    stage.prepare(&mut renderer, 0);
+    let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 4.0).colour(WHITE)]).unwrap();
+    assert_eq!(picture.covered(), 0);
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn wrong_use_is_told() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&Options { views_per_frame: 2, ..Options::default() });
+    let mesh = shape("cube").unwrap();
+    let model = renderer.add_model(&mesh, &ModelOptions::default()).unwrap();
+    let item = DrawItem::new(model, 1.0);
+    let draw = |renderer: &mut Renderer, frame, item| {
+        stage.draw(renderer, frame, &[item]).err().expect("an error").to_string()
+    };
+    assert_eq!(
+        draw(&mut renderer, 0, item),
+        "model 0: it was not yet prepared: record cmd_prepare after add_model and before cmd_draw"
+    );
+    stage.prepare(&mut renderer, 0);
+    assert_eq!(draw(&mut renderer, 2, item), "frame index 2: Options::frames_in_flight is 2, so frames are 0 to 1");
+    for factor in [0.5, f32::NAN] {
+        assert_eq!(
+            draw(&mut renderer, 0, DrawItem { factor, ..item }),
+            format!("model 0: the tessellation factor {factor} is no number from 1 up")
+        );
+        stage.prepare(&mut renderer, 0);
+    }
+    assert_eq!(draw(&mut renderer, 0, DrawItem { style: 1, ..item }), "style 1: Options::styles has 1");
+    stage.draw(&mut renderer, 0, &[item]).unwrap();
+    assert_eq!(draw(&mut renderer, 0, item), "2 views were already drawn in frame 0: raise Options::views_per_frame");
+    let error = renderer.set_positions(model, 0, &[[0.0; 3]; 7]).unwrap_err().to_string();
+    assert_eq!(error, "model 0: 7 positions are given, but its control mesh has 8 vertices");
+    let error = renderer.set_positions(model, 5, &[[0.0; 3]; 8]).unwrap_err().to_string();
+    assert_eq!(error, "frame index 5: Options::frames_in_flight is 2, so frames are 0 to 1");
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn what_a_device_lacks_is_named_at_once() {
+    let stage = Stage::new();
+    let (instance, device) = (stage.headless.instance(), stage.headless.physical_device());
+    let mut target = stage.target();
+    target.samples = vk::SampleCountFlags::TYPE_64;
+    let styles = vec![Style { line_width: 1e9, ..Style::default() }];
+    let options = Options { styles, ..Options::default() };
+    // SAFETY: the device is of the instance.
+    let error = unsafe { check(instance, device, &target, &options) }.unwrap_err().to_string();
+    let name = &stage.headless.properties().name;
+    assert!(error.starts_with(&format!("{name}: missing 64 samples a pixel (it has 1, 4), lines 1000000000 pixels")));
+    assert!(error.ends_with(": choose another device, or options that need less"), "{error}");
+    // SAFETY: as above.
+    unsafe { check(instance, device, &stage.target(), &Options::default()) }.unwrap();
+
+    let needs = requirements(&stage.target(), &Options { styles: vec![Style::wireframe()], ..Options::default() });
+    let expected =
+        Features { tessellation: true, dynamic_rendering: true, fill_mode_non_solid: true, ..Features::NONE };
+    assert_eq!(needs.features, expected);
+    for (options, what) in [
+        (Options { frames_in_flight: 0, ..Options::default() }, "frames_in_flight"),
+        (Options { views_per_frame: 0, ..Options::default() }, "views_per_frame"),
+    ] {
+        // SAFETY: as above.
+        let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
+        assert_eq!(error, format!("{what} of Options is 0: it must be at least 1"));
+    }
+    stage.finish();
+}
+
+/// Has nothing to give.
+struct NoMemory;
+
+// SAFETY: no allocation is ever made.
+unsafe impl Allocator for NoMemory {
+    fn allocate(&self, _: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError> {
+        Err("no memory".into())
+    }
+
+    unsafe fn free(&self, _: Allocation) {}
+}
+
+#[test]
+fn features_that_the_context_was_not_told_of_are_named() {
+    let stage = Stage::new();
+    let (instance, device) = (stage.headless.instance(), stage.headless.device());
+    let made = ContextOptions::default();
+    // SAFETY: the device is of the instance and outlives the context; nothing is made from the context.
+    let error = unsafe {
+        let context = DeviceContext::new(instance, stage.headless.physical_device(), device, Arc::new(NoMemory), made);
+        Renderer::new(&context, &stage.target(), &Options::default()).err().expect("an error").to_string()
+    };
+    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
+    assert!(error.contains(&format!("missing tessellationShader {off}, dynamicRendering {off}:")), "{error}");
+    stage.finish();
+}
