@@ -1,4 +1,5 @@
 //! What patches share on the GPU, to the bit; and vertices of high valence.
+#![cfg(feature = "headless")]
 
 mod common;
 

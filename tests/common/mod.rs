@@ -2,8 +2,12 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 pub mod edges;
+#[cfg(all(feature = "headless", feature = "png"))]
+pub mod golden;
 pub mod limit;
 pub mod random;
+#[cfg(feature = "headless")]
+pub mod render_pass;
 
 use ash_subdiv::ControlMesh;
 use std::path::PathBuf;
