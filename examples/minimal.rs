@@ -8,7 +8,7 @@
 use ash::vk::{
     self, AccessFlags as Access, ImageLayout as Layout, ImageUsageFlags as Usage, PipelineStageFlags as Stage,
 };
-use ash_subdiv::{ContextOptions, DeviceContext, DrawItem, ModelOptions, Options, Renderer, Target, View, shape};
+use ash_subdiv::{DeviceContext, DrawItem, ModelOptions, Options, Renderer, Target, View, shape};
 use gpu_allocator::{MemoryLocation, vulkan as ga, vulkan::AllocationScheme};
 use std::error::Error;
 use std::sync::{Arc, Mutex};
@@ -80,13 +80,12 @@ pub(crate) unsafe fn draw(path: &str) -> Result<(), Box<dyn Error>> {
     device.bind_buffer_memory(buffer, pixels.memory(), pixels.offset())?;
 
     // subdiv: the renderer, on our device and with our allocator, and a model in it.
-    let context_options = ContextOptions { features: needs.features, ..Default::default() };
-    let context = DeviceContext::new(&instance, physical_device, &device, allocator.clone(), context_options);
+    let context = DeviceContext::new(&instance, physical_device, &device, allocator.clone(), needs.context_options());
     let mut renderer = Renderer::new(&context, &target, &options)?;
     let mesh = shape("creature")?;
     let model = renderer.add_model(&mesh, &ModelOptions::default())?;
     let view = View::framing(mesh.bounds(), [-0.5, 0.3, 1.0], EXTENT.width as f32 / EXTENT.height as f32);
-    let item = DrawItem::new(model, 16.0).colour([0.8, 0.45, 0.25, 1.0]);
+    let item = DrawItem::new(model, 16.0).color([0.8, 0.45, 0.25, 1.0]);
     let pool = device.create_command_pool(&vk::CommandPoolCreateInfo::default().queue_family_index(family), None)?;
     let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
     let cmd = device.allocate_command_buffers(&info)?[0];

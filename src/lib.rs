@@ -111,9 +111,11 @@ pub mod renderer;
 pub mod table;
 pub mod topology;
 
+pub use glam;
 pub use gpu::{Allocator, ContextOptions, DeviceContext, Spacing};
 #[cfg(feature = "gltf")]
 pub use mesh::GltfOptions;
+pub use mesh::read;
 pub use mesh::{
     ControlMesh, MeshData, MeshError, ObjOptions, ReadOptions, ShapeInfo, grid_torus, replicate, shape, shapes,
 };

@@ -60,7 +60,7 @@ fn draw(headless: &Headless, mesh: &ControlMesh, construction: Construction, fac
     let model_options = ModelOptions { construction, ..ModelOptions::default() };
     let model = renderer.add_model(mesh, &model_options).expect("a model");
     let counts = PatchKind::ALL.map(|kind| renderer.tables(model).unwrap().patch_count(kind).into());
-    let item = DrawItem::new(model, factor).colour([1.0 / 255.0, 0.0, 0.0, 0.0]);
+    let item = DrawItem::new(model, factor).color([1.0 / 255.0, 0.0, 0.0, 0.0]);
     // SAFETY: the command buffer is being recorded; rendering is begun and ended in it.
     let statistics = headless.counted(|cmd| unsafe {
         renderer.cmd_prepare(cmd, 0)?;

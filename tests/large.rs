@@ -43,7 +43,7 @@ fn the_tables_of_a_million_faces() {
         assert_eq!([at(0), at(1), at(2)], [corner(1), corner(2), corner(3)]);
     }
 
-    let stencils = StencilTable::new(&topology, &mut plan);
+    let stencils = StencilTable::new(&topology, &mut plan).expect("addressable");
     assert_eq!((stencils.patches.len(), stencils.largest_ring), (FACES as usize, 16));
     assert_eq!(stencils.vertices.len(), 16 * FACES as usize);
     for (patch, &[vertices, kind]) in plan.patches().iter().zip(&stencils.patches) {

@@ -3,7 +3,7 @@
 mod common;
 
 use ash_subdiv::mesh::{BoundaryRule, Corner, Crease};
-use ash_subdiv::table::{PatchPlan, prepare};
+use ash_subdiv::table::{Notice, PatchPlan, prepare};
 use ash_subdiv::topology::{PatchKind, Ring, RingKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData, shape, shapes};
 use common::random::{random_creased_mesh, random_mesh};
@@ -180,7 +180,7 @@ fn vertices_where_fans_touch_are_split() {
     assert_eq!([topology.vertex(0), topology.vertex(4)], [0, 9]);
     assert_eq!([topology.source(0), topology.source(9)], [0, 0]);
     assert_eq!(shapes_of(&rings_at(&mesh, 0)), [(RingKind::Corner, 1, true); 2]);
-    assert_eq!(prepare(&mesh, 0).unwrap().notices.len(), 1);
+    assert_eq!(prepare(&mesh, 0).unwrap().notices(&topology), [Notice::SplitVertices { count: 1 }]);
 }
 
 #[test]
@@ -196,4 +196,16 @@ fn holes_and_faces_at_a_free_boundary_are_not_drawn() {
     // A hole is no boundary: its neighbours are as regular as without it.
     let mesh = ControlMesh::new(MeshData { holes: vec![4], ..grid(3, 3) }).unwrap();
     assert_eq!(PatchPlan::new(&Topology::new(&mesh)).count(PatchKind::Regular), 8);
+}
+
+#[test]
+fn positions_that_single_precision_cannot_hold_are_an_error() {
+    let mut data = shape("cube").unwrap().into_data();
+    data.positions[3][1] = -1e39;
+    let error = ControlMesh::new(data).unwrap_err().to_string();
+    let [x, _, z] = shape("cube").unwrap().data().positions[3];
+    assert_eq!(
+        error,
+        format!("vertex 3 is at ({x}, {}, {z}): positions must be finite numbers of at most 3.4e38", -1e39)
+    );
 }

@@ -98,7 +98,7 @@ impl Shading {
     pub(super) fn draws(self, model: ModelId, factor: f32) -> Vec<DrawItem> {
         let draw = |(style, layer): (usize, Layer)| DrawItem {
             style,
-            colours: layer.colours.map(Colour::linear),
+            colors: layer.colours.map(Colour::linear),
             ..DrawItem::new(model, factor)
         };
         self.layers().into_iter().enumerate().map(draw).collect()

@@ -263,7 +263,8 @@ fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     if corners != data.face_vertices.len() {
         return Err(MeshError::CornerCount { what: "vertices", given: data.face_vertices.len(), corners });
     }
-    if let Some(vertex) = data.positions.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+    // As the GPU sees them.
+    if let Some(vertex) = data.positions.iter().position(|p| p.iter().any(|&x| !(x as f32).is_finite())) {
         return Err(MeshError::NotFinite { vertex: vertex as u32, position: data.positions[vertex] });
     }
     // Which face used a vertex last: finds repeated vertices in linear time whatever the size of a face.

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub enum MeshError {
     #[error("the mesh has no {what}: a control mesh needs at least one face")]
     Empty { what: &'static str },
-    #[error("vertex {vertex} is at ({}, {}, {}): positions must be finite numbers", position[0], position[1], position[2])]
+    #[error("vertex {vertex} is at ({}, {}, {}): positions must be finite numbers of at most 3.4e38", position[0], position[1], position[2])]
     NotFinite { vertex: u32, position: [f64; 3] },
     #[error("face {face} has {size} vertices: a face needs at least three")]
     FaceTooSmall { face: u32, size: usize },

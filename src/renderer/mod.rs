@@ -32,7 +32,8 @@ mod view;
 
 pub use error::Error;
 pub use options::{
-    Construction, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style, Target, check, requirements,
+    ColorEncoding, Construction, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style, Target, check,
+    requirements,
 };
 pub use tables::{ModelTables, TableBytes};
 pub use view::View;
@@ -68,19 +69,19 @@ pub struct DrawItem {
     /// Index into [`Options::styles`].
     pub style: usize,
     /// Linear RGBA of regular patches, irregular quads and triangles.
-    pub colours: [[f32; 4]; 3],
+    pub colors: [[f32; 4]; 3],
 }
 
 impl DrawItem {
     /// The model where it is, in the first style, in light grey.
     pub fn new(model: ModelId, factor: f32) -> Self {
         let transform = glam::Mat4::IDENTITY.to_cols_array_2d();
-        Self { model, transform, factor, style: 0, colours: [[0.7, 0.7, 0.7, 1.0]; 3] }
+        Self { model, transform, factor, style: 0, colors: [[0.7, 0.7, 0.7, 1.0]; 3] }
     }
 
     /// All patches in one colour.
-    pub fn colour(self, colour: [f32; 4]) -> Self {
-        Self { colours: [colour; 3], ..self }
+    pub fn color(self, color: [f32; 4]) -> Self {
+        Self { colors: [color; 3], ..self }
     }
 }
 
@@ -383,7 +384,7 @@ impl Renderer {
                 device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set], &[]);
             }
             if style.geometry != Geometry::Surface {
-                constants.colour = item.colours[0];
+                constants.colour = item.colors[0];
                 self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Control }, bound);
                 self.push(cmd, &constants);
                 if let Some(control) = &model.control {
@@ -404,7 +405,7 @@ impl Renderer {
                 let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
                 let vertices = tessellated_vertices(domain, spacing, factor, properties.max_tessellation_level);
                 let points = input_points(kind, construction);
-                constants.colour = item.colours[kind as usize];
+                constants.colour = item.colors[kind as usize];
                 constants.first_corner = plan.first_corner(kind);
                 constants.first_patch = plan.range(kind).start as u32;
                 for draw in properties.patch_batch.draws(plan.count(kind), points, vertices) {

@@ -1,7 +1,7 @@
 //! What the caller says once: where to draw, and how.
 
 use super::Error;
-use crate::gpu::{Blend, DepthBias, DepthState, DeviceProperties, Features, Spacing};
+use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, Spacing};
 use crate::patch::Scheme;
 use ash::vk;
 
@@ -12,8 +12,21 @@ pub struct Target {
     pub pass: Pass,
     /// Samples a pixel.
     pub samples: vk::SampleCountFlags,
+    /// What the values in the colour attachment mean.
+    pub encoding: ColorEncoding,
     /// Whether there is a depth attachment; without one nothing is hidden by what lies in front.
     pub depth: bool,
+}
+
+/// What the values that our fragment shaders write mean. Your own shaders write what they like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ColorEncoding {
+    /// Linear light: for sRGB formats, which encode by themselves, and for high dynamic range.
+    #[default]
+    Linear,
+    /// sRGB, encoded by the shader: for formats such as `R8G8B8A8_UNORM` that are shown as sRGB. Blending is then not
+    /// linear.
+    Srgb,
 }
 
 /// The rendering that [`Renderer::cmd_draw`](super::Renderer::cmd_draw) is recorded in.
@@ -45,7 +58,13 @@ impl Target {
     /// Dynamic rendering into one colour attachment and one for depth.
     pub fn dynamic(color: vk::Format, depth: vk::Format, samples: vk::SampleCountFlags) -> Self {
         let pass = Pass::Dynamic { color: vec![color], depth, stencil: vk::Format::UNDEFINED, view_mask: 0 };
-        Self { pass, samples, depth: depth != vk::Format::UNDEFINED }
+        Self { pass, samples, encoding: ColorEncoding::Linear, depth: depth != vk::Format::UNDEFINED }
+    }
+
+    /// A subpass with one colour attachment and one for depth.
+    pub fn render_pass(render_pass: vk::RenderPass, subpass: u32, samples: vk::SampleCountFlags) -> Self {
+        let pass = Pass::RenderPass { render_pass, subpass, color_attachments: 1 };
+        Self { pass, samples, encoding: ColorEncoding::Linear, depth: true }
     }
 }
 
@@ -224,6 +243,13 @@ pub struct Requirements {
     pub features: Features,
     /// Device extensions to enable: none so far.
     pub device_extensions: Vec<&'static std::ffi::CStr>,
+}
+
+impl Requirements {
+    /// What [`DeviceContext::new`](crate::DeviceContext::new) is told of a device made with these requirements.
+    pub fn context_options(&self) -> ContextOptions {
+        ContextOptions { features: self.features, ..ContextOptions::default() }
+    }
 }
 
 /// What a device must be made with; ask before creating it.

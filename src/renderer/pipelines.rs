@@ -1,6 +1,6 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
-use super::{Construction, Fragment, Geometry, Options, Pass, Style, Target};
+use super::{ColorEncoding, Construction, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
     descriptor_set_layout, pipeline_layout, shaders,
@@ -126,10 +126,11 @@ impl Pipelines {
             return Ok(());
         }
         let style = &self.styles[key.style];
+        let encode = [Specialization::bool(1, self.target.encoding == ColorEncoding::Srgb)];
         let pipeline = match key.geometry {
             GeometryKey::Control => {
                 let name = format!("subdiv style {} of the control mesh", key.style);
-                let stages = [Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT), fragment(style)];
+                let stages = [Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT), fragment(style, &encode)];
                 self.create(&name, style, &stages, 0)?
             }
             GeometryKey::Patches { kind, construction, spacing } => {
@@ -143,7 +144,7 @@ impl Pipelines {
                     vertex,
                     Shader::tess_control(control_shader(kind, construction, self.capture, self.texcoords)),
                     Shader::tess_evaluation(evaluation_shader(kind, spacing, self.capture, self.texcoords)),
-                    fragment(style),
+                    fragment(style, &encode),
                 ];
                 self.create(&name, style, &stages, input_points(kind, construction))?
             }
@@ -198,14 +199,16 @@ pub(super) fn input_points(kind: PatchKind, construction: Construction) -> u32 {
     }
 }
 
-fn fragment(style: &Style) -> Shader<'_> {
-    Shader::fragment(match (&style.fragment, style.geometry) {
-        (Fragment::Spirv(code), _) => code,
+/// The fragment shader; `ours` are the constants of those that are ours.
+fn fragment<'a>(style: &'a Style, ours: &'a [Specialization]) -> Shader<'a> {
+    let code = match (&style.fragment, style.geometry) {
+        (Fragment::Spirv(code), _) => return Shader::fragment(code),
         (Fragment::Lit, Geometry::Surface) => shaders::SHADE_LIT_FRAG,
         (Fragment::Lit, Geometry::ControlFaces) => shaders::SHADE_FACETS_FRAG,
         (Fragment::Normals, Geometry::Surface) => shaders::SHADE_NORMALS_FRAG,
         _ => shaders::SHADE_FLAT_FRAG,
-    })
+    };
+    Shader::fragment(code).specialized(ours)
 }
 
 fn control_shader(kind: PatchKind, construction: Construction, capture: Capture, texcoords: bool) -> &'static [u32] {
