@@ -20,24 +20,24 @@ const PAPER: [f32; 4] = [0.8, 0.8, 0.8, 1.0];
 const CLAY: [f32; 4] = [0.7, 0.6, 0.5, 1.0];
 const INK: [f32; 4] = [0.02, 0.03, 0.1, 0.6];
 
-/// One thing drawn over the other: styles and the colours of the kinds of patches.
+/// One thing drawn over the other: styles and the colors of the kinds of patches.
 #[derive(Clone)]
 struct Layer {
     style: Style,
-    colours: [[f32; 4]; 3],
+    colors: [[f32; 4]; 3],
 }
 
 fn surface(fragment: Fragment) -> Layer {
-    Layer { style: Style { fragment, ..Style::default() }, colours: [CLAY; 3] }
+    Layer { style: Style { fragment, ..Style::default() }, colors: [CLAY; 3] }
 }
 
 fn lines(style: Style) -> Layer {
-    Layer { style: Style { blend: Blend::Alpha, ..style }, colours: [INK; 3] }
+    Layer { style: Style { blend: Blend::Alpha, ..style }, colors: [INK; 3] }
 }
 
 /// Opaque lines: the constructions draw patches in different orders, and an edge of two triangles is drawn twice.
 fn wire() -> Vec<Layer> {
-    let wire = Layer { style: Style::wireframe(), colours: [[0.02, 0.03, 0.1, 1.0]; 3] };
+    let wire = Layer { style: Style::wireframe(), colors: [[0.02, 0.03, 0.1, 1.0]; 3] };
     vec![surface(Fragment::Lit), wire]
 }
 
@@ -83,14 +83,14 @@ fn pictures() -> Vec<Picture> {
             format: vk::Format::R8G8B8A8_UNORM,
             ..Picture::of_style("normals", vec![surface(Fragment::Normals)])
         },
-        Picture::of_style("patches", vec![Layer { colours: kinds, ..surface(Fragment::Lit) }]),
-        Picture::of_style("flat", vec![Layer { colours: kinds, ..surface(Fragment::Flat) }]),
+        Picture::of_style("patches", vec![Layer { colors: kinds, ..surface(Fragment::Lit) }]),
+        Picture::of_style("flat", vec![Layer { colors: kinds, ..surface(Fragment::Flat) }]),
         // Opaque lines: the constructions draw patches in different orders, and an edge of two triangles is drawn twice.
         // Of quads and of triangles.
         Picture { layers: wire(), name: "wireframe-cube".into(), ..Picture::lit("cube") },
         Picture { layers: wire(), name: "wireframe-fan".into(), ..Picture::lit("fan") },
         Picture::of_style("cage", vec![surface(Fragment::Lit), lines(Style::cage())]),
-        Picture::of_style("control-mesh", vec![Layer { style: faces, colours: [CLAY; 3] }, lines(edges)]),
+        Picture::of_style("control-mesh", vec![Layer { style: faces, colors: [CLAY; 3] }, lines(edges)]),
         Picture { name: "samples-4".into(), samples: vk::SampleCountFlags::TYPE_4, ..Picture::lit("machine-part") },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
     ]);
@@ -112,8 +112,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     let mut renderer = unsafe { Renderer::new(headless.context(), &target, &options) }.expect("a renderer");
     let model_options = ModelOptions { construction, ..ModelOptions::default() };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
-    let item =
-        |(style, layer): (usize, &Layer)| DrawItem { style, colours: layer.colours, ..DrawItem::new(model, 6.0) };
+    let item = |(style, layer): (usize, &Layer)| DrawItem { style, colors: layer.colors, ..DrawItem::new(model, 6.0) };
     let items: Vec<_> = picture.layers.iter().enumerate().map(item).collect();
     let mut record = |cmd: vk::CommandBuffer, moment| match moment {
         // SAFETY: outside rendering, and inside what the renderer was made for.

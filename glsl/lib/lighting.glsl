@@ -6,7 +6,11 @@
 vec3 lit(vec3 colour, vec3 position, vec3 normal, vec3 eye, vec3 light) {
     vec3 to_eye = normalize(eye - position);
     vec3 n = normalize(normal);
-    n = dot(n, to_eye) < 0.0 ? -n : n;
+    // To the side that is seen. The plane of the triangle says which one that is: at a silhouette the normal of a surface
+    // that faces the eye may itself face away, and turned round it would make dark specks.
+    vec3 plane = cross(dFdx(position), dFdy(position));
+    plane = dot(plane, to_eye) < 0.0 ? -plane : plane;
+    n = dot(n, plane) < 0.0 ? -n : n;
     float sky = 0.5 + 0.5 * n.y;
     // The sun reaches a little beyond the terminator, as on clay: no hard edge between light and shade.
     float sun = max((dot(n, light) + 0.1) / 1.1, 0.0);

@@ -3,7 +3,7 @@
 use ash::vk;
 use ash_subdiv::gpu::{Buffer, BufferDesc, Image, ImageDesc, MemoryLocation};
 use ash_subdiv::headless::Headless;
-use ash_subdiv::renderer::{Pass, Target};
+use ash_subdiv::renderer::Target;
 
 pub struct RenderPassTarget<'h> {
     headless: &'h Headless,
@@ -71,8 +71,7 @@ impl<'h> RenderPassTarget<'h> {
 
     /// What a renderer has to be made for.
     pub fn target(&self) -> Target {
-        let pass = Pass::RenderPass { render_pass: self.render_pass, subpass: 0, color_attachments: 1 };
-        Target { pass, samples: vk::SampleCountFlags::TYPE_1, depth: true }
+        Target::render_pass(self.render_pass, 0, vk::SampleCountFlags::TYPE_1)
     }
 
     /// Draws with `prepare` before the pass and `record` in it, and gives the pixels.
