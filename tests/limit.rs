@@ -212,7 +212,7 @@ fn corners_are_limit_points_with_limit_normals() {
                 }
                 if exception.is_none() {
                     // Measured 5e-6 on bigguy and frog, 1e-12 on most small meshes: the reference differentiates a patch
-                    // at level 10. That ours is the limit's to 1e-12 is shown in properties.rs by refinement.
+                    // at level 10. That ours is the limit's to 1e-12 is shown in exactness.rs by refinement.
                     assert!(normal < 1e-5, "{}", what());
                     *irregular.entry(kind).or_insert(0) += usize::from(!topology_is_regular(&topology, h as u32));
                 }
