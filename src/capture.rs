@@ -7,7 +7,6 @@ use crate::gpu::{
 };
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::mesh::ControlMesh;
-use crate::patch::bicubic;
 use crate::renderer::{Capture, DrawItem, Error, ModelOptions, ModelTables, Options, Renderer, Style, Target, View};
 use crate::topology::PatchKind;
 use ash::vk;
@@ -42,7 +41,7 @@ struct Head {
 const HEAD_BYTES: u64 = size_of::<Head>() as u64;
 const RECORD_BYTES: u64 = size_of::<CapturedVertex>() as u64;
 /// Words that the control points of a patch take, whatever its kind.
-const CONTROL_POINT_WORDS: usize = 60;
+const CONTROL_POINT_WORDS: usize = 96;
 /// Larger captures are done in several draws, each of which keeps some of the patches.
 const MAX_BYTES: u64 = 128 << 20;
 
@@ -89,12 +88,13 @@ impl<'h> Captured<'h> {
         )?;
         let patches = self.tables.plan().patches().iter();
         let words: Vec<f32> = words.into_iter().flat_map(|(_, words)| words).collect();
+        let scheme = self.options.scheme;
         let points = patches.zip(words.chunks_exact(CONTROL_POINT_WORDS)).map(|(patch, words)| {
-            let count = match patch.kind {
-                PatchKind::Regular => bicubic::POINTS,
-                kind => 5 * kind.corners(),
-            };
-            words.chunks_exact(3).take(count).map(|p| [p[0], p[1], p[2]]).collect()
+            let mut points = vec![[0.0; 3]; scheme.points(patch.kind)];
+            // The shaders count them corner by corner.
+            let slots = (0..patch.kind.corners()).flat_map(|k| scheme.corner_slots(patch.kind, k));
+            slots.zip(words.chunks_exact(3)).for_each(|(slot, p)| points[slot] = [p[0], p[1], p[2]]);
+            points
         });
         Ok(points.collect())
     }

@@ -41,14 +41,14 @@
 //! The control points of one patch, and a point of it, on the CPU:
 //!
 //! ```
-//! use ash_subdiv::{patch, shape, topology::Topology};
+//! use ash_subdiv::{Scheme, shape, topology::Topology};
 //!
 //! let mesh = shape("cube")?;
 //! let topology = Topology::new(&mesh);
 //! let kind = topology.patch_kind(0).expect("a triangle or a quad");
-//! let points = patch::control_points(&topology, 0, kind, |vertex| mesh.position(vertex));
+//! let points = Scheme::Gregory.control_points(&topology, 0, kind, |vertex| mesh.position(vertex));
 //! assert_eq!(points.len(), 20);
-//! let middle = patch::evaluate(kind, &points, 0.5, 0.5);
+//! let middle = Scheme::Gregory.evaluate(kind, &points, 0.5, 0.5);
 //! assert!(middle.position.length() < 1.0 && (middle.normal.length() - 1.0).abs() < 1e-12);
 //! # Ok::<(), ash_subdiv::MeshError>(())
 //! ```

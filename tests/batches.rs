@@ -11,10 +11,10 @@
 mod common;
 
 use ash::vk;
+use ash_subdiv::Scheme;
 use ash_subdiv::capture::{Captured, CapturedVertex};
 use ash_subdiv::gpu::{Blend, Domain, tessellated_vertices};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Statistics};
-use ash_subdiv::patch::evaluate;
 use ash_subdiv::renderer::Fragment;
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{
@@ -164,7 +164,7 @@ fn every_patch_is_evaluated_with_all_its_vertices() {
         ("100 000 quads", torus(400, 250), &[1, 8]),
         ("101 118 quads and triangles", herd(57), &[1]),
     ] {
-        let surface = CpuSurface::new(&mesh, 0).expect("small");
+        let surface = CpuSurface::new(&mesh, Scheme::Gregory, 0).expect("small");
         let points = surface.control_points(|p| p.as_vec3().as_dvec3());
         let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
         // The two-stage construction keeps the order of the twin.
@@ -178,7 +178,7 @@ fn every_patch_is_evaluated_with_all_its_vertices() {
             for vertex in vertices.iter().step_by(97) {
                 let patch = vertex.patch as usize;
                 let [u, v, _] = vertex.coordinate.map(f64::from);
-                let twin = evaluate(patches[patch].kind, &points[patch], u, v);
+                let twin = Scheme::Gregory.evaluate(patches[patch].kind, &points[patch], u, v);
                 let error = (Vec3::from(vertex.position).as_dvec3() - twin.position).length();
                 assert!(error < tolerance, "{what} at factor {factor}: {vertex:?}, not {}", twin.position);
             }

@@ -5,7 +5,7 @@ mod common;
 
 use ash_subdiv::limit::refine;
 use ash_subdiv::mesh::BoundaryRule;
-use ash_subdiv::patch::{control_points, evaluate};
+use ash_subdiv::patch::Scheme;
 use ash_subdiv::table::{CpuSurface, FaceOrigin};
 use ash_subdiv::topology::{PatchKind, RingKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData, shape};
@@ -87,8 +87,8 @@ fn sheets_are_bicubic_b_splines_with_mirrored_ghosts() {
             let (i, j) = (face % (columns - 1), face / (columns - 1));
             assert_eq!(topology.patch_kind(face as u32), Some(PatchKind::Regular));
             let vertex = |v| mesh.position(v);
-            let bicubic = control_points(&topology, face as u32, PatchKind::Regular, vertex);
-            let gregory = control_points(&topology, face as u32, PatchKind::IrregularQuad, vertex);
+            let bicubic = Scheme::Gregory.control_points(&topology, face as u32, PatchKind::Regular, vertex);
+            let gregory = Scheme::Gregory.control_points(&topology, face as u32, PatchKind::IrregularQuad, vertex);
             for (u, v) in [(0.0, 0.0), (0.5, 0.0), (0.25, 0.75), (1.0, 0.3), (0.9, 1.0), (1.0, 1.0)] {
                 let (wu, wv) = (cubic_b_spline(u), cubic_b_spline(v));
                 let position = sheet.sum(i, j, wu, wv);
@@ -97,7 +97,7 @@ fn sheets_are_bicubic_b_splines_with_mirrored_ghosts() {
                 let normal = du.cross(dv).normalize();
                 let kinds = [(PatchKind::Regular, &bicubic), (PatchKind::IrregularQuad, &gregory)];
                 for (kind, points) in kinds {
-                    let ours = evaluate(kind, points, u, v);
+                    let ours = Scheme::Gregory.evaluate(kind, points, u, v);
                     let errors = [(ours.position - position).length(), (ours.normal - normal).length()];
                     // Coordinates reach 6: some units of f64 there.
                     let close = errors[0] < 1e-14 && errors[1] < 1e-13;
@@ -145,7 +145,7 @@ fn check_boundaries(mesh: &ControlMesh) -> usize {
 
         let face = topology.face(h);
         let kind = topology.patch_kind(face).unwrap();
-        let points = control_points(&topology, face, kind, |v| mesh.position(v));
+        let points = Scheme::Gregory.control_points(&topology, face, kind, |v| mesh.position(v));
         let ours = edge_points(kind, &points, h as usize - mesh.face_corners(face).start);
         for (ours, expected) in ours.into_iter().zip(expected) {
             assert!((ours - expected).length() < 1e-14, "half-edge {h}: {ours}, not {expected}");
@@ -187,13 +187,14 @@ fn refinement_keeps_the_surface_of_regular_faces() {
                 continue;
             }
             assert_eq!(fine.patch_kind(child as u32), Some(PatchKind::Regular));
-            let points = control_points(&topology, face, PatchKind::Regular, |v| mesh.position(v));
-            let children = control_points(&fine, child as u32, PatchKind::Regular, |v| refined.mesh.position(v));
+            let points = Scheme::Gregory.control_points(&topology, face, PatchKind::Regular, |v| mesh.position(v));
+            let children =
+                Scheme::Gregory.control_points(&fine, child as u32, PatchKind::Regular, |v| refined.mesh.position(v));
             let k = parent as usize - mesh.face_corners(face).start;
             for (s, t) in [(0.0, 0.0), (1.0, 0.0), (0.3, 0.6), (1.0, 1.0), (0.0, 0.7)] {
                 let [u, v] = parent_parameters(k, s, t);
-                let a = evaluate(PatchKind::Regular, &points, u, v);
-                let b = evaluate(PatchKind::Regular, &children, s, t);
+                let a = Scheme::Gregory.evaluate(PatchKind::Regular, &points, u, v);
+                let b = Scheme::Gregory.evaluate(PatchKind::Regular, &children, s, t);
                 let errors = [(a.position - b.position).length(), (a.normal - b.normal).length()];
                 assert!(errors[0] < 1e-14 && errors[1] < 1e-11, "face {face}, child {k} at {s} {t}: {errors:?}");
             }
@@ -226,9 +227,9 @@ fn refinement_keeps_limit_points_and_normals() {
             let at = |topology: &Topology, h: u32| {
                 let (mesh, face) = (topology.mesh(), topology.face(h));
                 let kind = topology.patch_kind(face).unwrap();
-                let points = control_points(topology, face, kind, |v| mesh.position(v));
+                let points = Scheme::Gregory.control_points(topology, face, kind, |v| mesh.position(v));
                 let [u, v] = corner_parameters(kind)[h as usize - mesh.face_corners(face).start];
-                evaluate(kind, &points, u, v)
+                Scheme::Gregory.evaluate(kind, &points, u, v)
             };
             // Each corner has a child face, which begins there.
             let (a, b) = (at(&topology, h), at(&fine, 4 * child as u32));
@@ -245,8 +246,8 @@ fn refinement_keeps_limit_points_and_normals() {
 #[test]
 fn polygons_are_refined_once_and_know_where_they_come_from() {
     let mesh = shape("polygons").unwrap();
-    let [once, twice] = [1, 2].map(|levels| CpuSurface::new(&mesh, levels).unwrap());
-    let needed = CpuSurface::new(&mesh, 0).unwrap();
+    let [once, twice] = [1, 2].map(|levels| CpuSurface::new(&mesh, Scheme::Gregory, levels).unwrap());
+    let needed = CpuSurface::new(&mesh, Scheme::Gregory, 0).unwrap();
     assert_eq!(needed.prepared().mesh, once.prepared().mesh);
     // One part a corner, of a quad too; then four of each.
     let parts = |factor: i64| -> Vec<FaceOrigin> {
@@ -267,7 +268,7 @@ fn polygons_are_refined_once_and_know_where_they_come_from() {
     let points = needed.control_points(|p| p);
     for ((patch, origin), points) in needed.plan().patches().iter().zip(needed.origins()).zip(&points) {
         let vertex = mesh.face(origin.face)[origin.sub as usize];
-        let start = evaluate(patch.kind, points, 0.0, 0.0).position;
+        let start = Scheme::Gregory.evaluate(patch.kind, points, 0.0, 0.0).position;
         assert!((start - fine.position(vertex)).length() < 1e-2, "{origin:?}: {start}");
     }
 }

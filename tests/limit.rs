@@ -6,7 +6,7 @@
 mod common;
 
 use ash_subdiv::mesh::SHARPNESS_INFINITE;
-use ash_subdiv::patch::{Blend, control_points, evaluate};
+use ash_subdiv::patch::{Blend, Scheme};
 use ash_subdiv::topology::{PatchKind, RingKind, Topology};
 use common::limit::{Limit, LimitSample, Record, mesh_and_limit};
 use glam::{DVec3, Vec3};
@@ -109,10 +109,11 @@ impl Errors {
         let mesh = topology.mesh();
         let scale = common::largest_coordinate(mesh);
         let kind = PatchKind::Regular;
-        let points = control_points(topology, face, kind, |v| mesh.position(v));
-        let points_f32: Vec<Vec3> = control_points(topology, face, kind, |v| mesh.position(v).as_vec3());
+        let points = Scheme::Gregory.control_points(topology, face, kind, |v| mesh.position(v));
+        let points_f32: Vec<Vec3> =
+            Scheme::Gregory.control_points(topology, face, kind, |v| mesh.position(v).as_vec3());
         for (sample, (u, v)) in samples.iter().zip(parameters(limit)) {
-            let ours = evaluate(kind, &points, u, v);
+            let ours = Scheme::Gregory.evaluate(kind, &points, u, v);
             self.position = self.position.max((ours.position - sample.position).length() / (f64::EPSILON * scale));
             // A smooth boundary through a vertex with one face has no normal there.
             let area = sample.du.cross(sample.dv).length();
@@ -120,7 +121,7 @@ impl Errors {
                 continue;
             }
             self.normal = self.normal.max((ours.normal - sample.normal()).length());
-            let ours = evaluate(kind, &points_f32, u as f32, v as f32);
+            let ours = Scheme::Gregory.evaluate(kind, &points_f32, u as f32, v as f32);
             let unit = f64::from(f32::EPSILON) * scale;
             self.position_f32 = self.position_f32.max((ours.position.as_dvec3() - sample.position).length() / unit);
             // The derivatives are differences of rounded points; the flatter the parallelogram they span, the more they turn.
@@ -187,7 +188,7 @@ fn corners_are_limit_points_with_limit_normals() {
             if mesh.face_corners(face).any(beside_polygon) {
                 continue;
             }
-            let points = control_points(&topology, face, kind, |v| mesh.position(v));
+            let points = Scheme::Gregory.control_points(&topology, face, kind, |v| mesh.position(v));
             for (k, h) in mesh.face_corners(face).enumerate() {
                 // Holes have no record.
                 let Some(sample) = limit.at_corner(face, k) else { continue };
@@ -197,7 +198,7 @@ fn corners_are_limit_points_with_limit_normals() {
                     PatchKind::Triangle => [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]][k],
                     _ => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][k],
                 };
-                let ours = evaluate(kind, &points, at[0], at[1]);
+                let ours = Scheme::Gregory.evaluate(kind, &points, at[0], at[1]);
                 let position = (ours.position - sample.position).length() / mesh.diagonal();
                 let mut normal = (ours.normal - sample.normal()).length();
                 if sample.normal() == DVec3::ZERO {
@@ -241,13 +242,13 @@ fn rms<T: Blend>(name: &str, value: impl Fn(DVec3) -> T, point: impl Fn(&T) -> D
     let (mut area, mut position, mut angle) = (0.0, 0.0, 0.0);
     for record in whole_quads(&limit) {
         let kind = topology.patch_kind(record.face).expect("a quad");
-        let points = control_points(&topology, record.face, kind, |v| value(mesh.position(v)));
+        let points = Scheme::Gregory.control_points(&topology, record.face, kind, |v| value(mesh.position(v)));
         let points: Vec<DVec3> = points.iter().map(&point).collect();
         for (sample, (u, v)) in record.samples.iter().zip(parameters(&limit)) {
             // The trapezoidal rule: half a weight on an edge, a quarter in a corner.
             let half = |t: f64| if t == 0.0 || t == 1.0 { 0.5 } else { 1.0 };
             let weight = half(u) * half(v) * sample.du.cross(sample.dv).length();
-            let ours = evaluate(kind, &points, u, v);
+            let ours = Scheme::Gregory.evaluate(kind, &points, u, v);
             area += weight;
             position += weight * (ours.position - sample.position).length_squared();
             angle += weight * ours.normal.angle_between(sample.normal()).powi(2);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use ash_subdiv::patch::{Blend, Point, RingShape, RingValues, Row, control_points, evaluate};
+use ash_subdiv::patch::{Blend, Point, RingShape, RingValues, Row, Scheme};
 use ash_subdiv::table::prepare;
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData, shape, shapes};
@@ -30,7 +30,7 @@ fn kind(topology: &Topology, face: u32) -> PatchKind {
 
 fn patches<T: Blend>(topology: &Topology, value: impl Fn(DVec3) -> T) -> Vec<Vec<T>> {
     let mesh = topology.mesh();
-    let patch = |f| control_points(topology, f, kind(topology, f), |v| value(mesh.position(v)));
+    let patch = |f| Scheme::Gregory.control_points(topology, f, kind(topology, f), |v| value(mesh.position(v)));
     (0..mesh.face_count() as u32).map(patch).collect()
 }
 
@@ -55,7 +55,7 @@ fn normal_gap<P: Point + Blend>(
             let [a, b] = [(edge.sides[0], t), (edge.sides[1], 1.0 - t)].map(|((face, k), t)| {
                 let kind = kind(topology, face);
                 let [u, v] = edge_parameters(kind, k, t);
-                vector(evaluate(kind, &patches[face as usize], scalar(u), scalar(v)).normal)
+                vector(Scheme::Gregory.evaluate(kind, &patches[face as usize], scalar(u), scalar(v)).normal)
             });
             largest = f64::max(largest, angle(a, b));
         }
@@ -102,7 +102,9 @@ fn weights_are_affine() {
         let topology = Topology::new(&mesh);
         // Rows of weights sum to one.
         for face in 0..mesh.face_count() as u32 {
-            for (i, row) in control_points(&topology, face, kind(&topology, face), Row::unit).iter().enumerate() {
+            for (i, row) in
+                Scheme::Gregory.control_points(&topology, face, kind(&topology, face), Row::unit).iter().enumerate()
+            {
                 let sum: f64 = row.weights().iter().map(|w| w.1).sum();
                 assert!((sum - 1.0).abs() < 1e-13, "{name}: the weights of point {i} of face {face} sum to {sum}");
             }
@@ -179,8 +181,8 @@ fn the_order_of_faces_and_corners_does_not_matter() {
                 };
                 let n = corners.len();
                 let at = |i: usize| (0..n).map(|k| weights[k] * corners[(k + first) % n][i]).sum::<f64>();
-                let a = evaluate(kind, &points[old as usize], at(0), at(1));
-                let b = evaluate(kind, &other_points[new], u, v);
+                let a = Scheme::Gregory.evaluate(kind, &points[old as usize], at(0), at(1));
+                let b = Scheme::Gregory.evaluate(kind, &other_points[new], u, v);
                 let position = (a.position - b.position).length();
                 let normal = angle(a.normal, b.normal);
                 assert!(

@@ -3,8 +3,8 @@
 
 mod common;
 
+use ash_subdiv::Scheme;
 use ash_subdiv::capture::{Captured, CapturedVertex};
-use ash_subdiv::patch::evaluate;
 use ash_subdiv::table::{CpuSurface, grid_parameters, prepare};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, Spacing, shape};
@@ -163,7 +163,7 @@ fn valence_has_no_limit() {
     for quads in [false, true] {
         let mesh = poles(500, quads);
         assert_eq!(mesh.boundary_edge_count(), 0);
-        let surface = CpuSurface::new(&mesh, 0).expect("small");
+        let surface = CpuSurface::new(&mesh, Scheme::Gregory, 0).expect("small");
         let points = surface.control_points(|p| p.as_vec3().as_dvec3());
         let expected: HashMap<u32, _> = surface.plan().patches().iter().map(|p| p.face).zip(points).collect();
         for construction in Construction::ALL {
@@ -187,7 +187,7 @@ fn valence_has_no_limit() {
                 let parameters = grid_parameters(patch.kind, 3);
                 assert_eq!(samples.len(), parameters.len());
                 for (sample, [u, v]) in samples.iter().zip(parameters) {
-                    let twin = evaluate(patch.kind, &expected[&patch.face], u, v);
+                    let twin = Scheme::Gregory.evaluate(patch.kind, &expected[&patch.face], u, v);
                     let units =
                         (Vec3::from(sample.position).as_dvec3() - twin.position).length() / f64::from(f32::EPSILON);
                     assert!(units < 24.0, "{construction:?}: {units} units at {u} {v}");

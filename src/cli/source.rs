@@ -27,7 +27,7 @@ pub(super) struct MeshArgs {
     mesh_name: Option<String>,
     /// Which patches faces become.
     #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::scheme())]
-    scheme: Scheme,
+    pub scheme: Scheme,
     /// Steps of Catmull-Clark refinement before patches are made; each makes four times as many faces.
     #[arg(long, value_name = "STEPS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub refine: u32,
@@ -46,7 +46,7 @@ impl MeshArgs {
         mesh: &'m ControlMesh,
         progress: &Progress,
     ) -> Result<CpuSurface<'m>, CliError> {
-        let surface = CpuSurface::new(mesh, self.refine)?;
+        let surface = CpuSurface::new(mesh, self.scheme, self.refine)?;
         let prepared = surface.prepared();
         tell_notices(&prepared.notices(&Topology::new(&prepared.mesh)), progress);
         Ok(surface)

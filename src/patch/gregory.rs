@@ -29,7 +29,7 @@ impl<T: Blend> PatchCorner<'_, T> {
         self.ring.edge_point(self.frame, self.minus_index())
     }
 
-    fn minus_index(&self) -> usize {
+    pub(crate) fn minus_index(&self) -> usize {
         (self.index + 1) % self.ring.shape.edges()
     }
 }

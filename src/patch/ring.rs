@@ -247,7 +247,7 @@ impl<T: Blend> RingValues<T> {
 }
 
 /// The subdominant eigenvalue of Catmull-Clark subdivision around a vertex with `n` faces.
-fn tangent_scale(n: usize) -> f64 {
+pub(super) fn tangent_scale(n: usize) -> f64 {
     let (cos, cos_half) = (cos_sin(1, n)[0], cos_sin(1, 2 * n)[0]);
     (5.0 + cos + cos_half * (18.0 + 2.0 * cos).sqrt()) / 16.0
 }

@@ -27,6 +27,7 @@ mod gpu_data;
 mod model;
 mod options;
 mod pipelines;
+mod stages;
 mod tables;
 mod view;
 
@@ -49,7 +50,7 @@ use crate::topology::PatchKind;
 use ash::vk;
 use gpu_data::{DrawConstants, ViewData};
 use model::Model;
-use pipelines::{GeometryKey, PipelineKey, Pipelines, STAGES, input_points};
+use pipelines::{GeometryKey, PipelineKey, Pipelines, STAGES};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -219,7 +220,7 @@ impl Renderer {
         }
         let options = ModelOptions { construction: tables.construction(), ..options.clone() };
         let model = Model::new(&self.context, &self.pipelines, &self.options, id, &options, tables, positions)?;
-        self.pipelines.make(&model.kinds, options.construction, options.spacing)?;
+        self.pipelines.make(&model.stages)?;
         self.next_id += 1;
         self.models.insert(id, model);
         Ok(id)
@@ -398,13 +399,12 @@ impl Renderer {
                 return Ok(());
             }
             let plan = model.tables.plan();
-            let (construction, spacing) = (model.options.construction, model.options.spacing);
-            for &kind in &model.kinds {
-                let geometry = GeometryKey::Patches { kind, construction, spacing };
-                self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
+            for &stages in &model.stages {
+                let (kind, spacing) = (stages.kind, stages.spacing);
+                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
                 let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
                 let vertices = tessellated_vertices(domain, spacing, factor, properties.max_tessellation_level);
-                let points = input_points(kind, construction);
+                let points = stages.input_points();
                 constants.colour = item.colors[kind as usize];
                 constants.first_corner = plan.first_corner(kind);
                 constants.first_patch = plan.range(kind).start as u32;
