@@ -109,7 +109,8 @@ fn check(name: &str, mesh: &ControlMesh, position: [f32; 3], normal: [f32; 3], t
     assert!(error < tolerance(mesh), "{name}: {position:?}, not {}: off by {error}", twin.position);
     let normal = Vec3::from(normal).as_dvec3();
     let error = (normal - twin.normal).length();
-    assert!(error < 2e-4, "{name}: normal {normal}, not {}: off by {error}", twin.normal);
+    // The quartic pieces of Pm-patches are found by more differences than the others' points.
+    assert!(error < 4e-4, "{name}: normal {normal}, not {}: off by {error}", twin.normal);
 }
 
 #[test]

@@ -232,3 +232,63 @@ fn check_acc_samples(name: &str, mesh: &ControlMesh, ours: &[DVec3], expected: &
         }
     }
 }
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn pm_points_agree() {
+    let mut faces = 0;
+    for (name, vector) in vectors() {
+        let Some(expected) = vector.get("pm") else { continue };
+        let mesh = mesh(&vector, CreaseMethod::Uniform);
+        let topology = Topology::new(&mesh);
+        for (face, expected) in expected.as_object().unwrap() {
+            let face = face.parse().unwrap();
+            let m = mesh.face(face).len();
+            if m > 4 {
+                continue;
+            }
+            faces += 1;
+            let kind = if m == 3 { PatchKind::Triangle } else { PatchKind::IrregularQuad };
+            let ours = Scheme::Pm.control_points(&topology, face, kind, |v| mesh.position(v));
+            let coefficients = |key: &str| points(&expected["coef"][key]);
+            let (tp, tm) = (coefficients("tp"), coefficients("tm"));
+            let edges = tp.into_iter().zip(tm).flat_map(|(plus, minus)| [plus, minus]);
+            let inner = ["b211", "b121", "b112"].map(coefficients).concat();
+            let theirs: Vec<_> = coefficients("v").into_iter().chain(edges).chain(inner).collect();
+            assert_eq!(ours.len(), theirs.len());
+            // patch_maths D has the t- of corner i - 1 in b112 of a triangle, which a mirrored mesh mirrors; the file has
+            // that of corner i + 1, which it does not. Their mean, the centre, is the same.
+            let exact = if m == 3 { 5 * m } else { 6 * m };
+            for (i, (ours, theirs)) in ours.iter().zip(&theirs).enumerate().take(exact) {
+                let error = (*ours - *theirs).length();
+                assert!(error < 1e-12 * mesh.diagonal(), "{name} face {face} point {i}: {ours}, not {theirs}");
+            }
+            let centre = |points: &[DVec3]| points[5 * m..].iter().sum::<DVec3>() / m as f64;
+            assert!((centre(&ours) - centre(&theirs)).length() < 1e-12 * mesh.diagonal(), "{name} face {face}");
+            check_pm_samples(&name, &mesh, &ours, expected);
+        }
+    }
+    assert!(faces >= 20, "the vectors hold {faces} faces");
+}
+
+/// The vector files go through the sectors, each at the same barycentric parameters.
+fn check_pm_samples(name: &str, mesh: &ControlMesh, ours: &[DVec3], expected: &Value) {
+    let parameters = points(&expected["sector_params"]);
+    let samples: Vec<_> = expected["pos_normal"].as_array().unwrap().iter().map(points).collect();
+    if ours.len() != 24 {
+        return;
+    }
+    for (sector, samples) in samples.chunks(parameters.len()).enumerate() {
+        for (at, sample) in parameters.iter().zip(samples) {
+            let [along, inwards] = [at.y + at.z / 2.0, at.z / 2.0];
+            let (u, v) =
+                [(along, inwards), (1.0 - inwards, along), (1.0 - along, 1.0 - inwards), (inwards, 1.0 - along)]
+                    [sector];
+            let evaluated = Scheme::Pm.evaluate(PatchKind::IrregularQuad, ours, u, v);
+            let error = (evaluated.position - sample[0]).length();
+            assert!(error < 1e-12 * mesh.diagonal(), "{name} sector {sector} at {at}: off by {error}");
+            let angle = evaluated.normal.angle_between(sample[1]);
+            assert!(angle < 1e-7, "{name} sector {sector} at {at}: normal off by {angle}");
+        }
+    }
+}

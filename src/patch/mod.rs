@@ -13,6 +13,7 @@ pub mod acc;
 pub mod bicubic;
 mod blend;
 pub mod gregory;
+pub mod pm;
 mod point;
 mod ring;
 mod scheme;

@@ -5,9 +5,9 @@
 //! this file and of `renderer/stages.rs`. Regular faces are bicubic patches in every scheme.
 
 use super::gregory::PatchCorner;
-use super::{Blend, Frame, Point, RingValues, Sample, acc, bicubic, gregory};
+use super::{Blend, Frame, Point, RingValues, Sample, acc, bicubic, gregory, pm};
 use crate::table::PatchPlan;
-use crate::topology::{PatchKind, Topology};
+use crate::topology::{PatchKind, RingKind, Topology};
 
 /// A way to approximate the Catmull-Clark surface by patches, one a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -18,11 +18,15 @@ pub enum Scheme {
     /// A geometry patch and two tangent patches for irregular faces ([`acc`]): quads only; the shading is smooth, the
     /// surface has a faint kink at the edges of irregular faces.
     Acc,
+    /// Quartic pieces around the centre of each irregular face ([`pm`]): quads and triangles, no boundaries or creases; G1.
+    Pm,
+    /// The Pm-patches of quads, as first published ([`pm`]): no triangles.
+    CPatch,
 }
 
 /// A face that a scheme has no patch for.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("face {face}: {} patches are not defined for {what}: refine the mesh once, or choose the scheme gregory", scheme.name())]
+#[error("face {face}: the scheme {} has no patches for {what}: choose the scheme gregory, which has", scheme.name())]
 pub struct Undefined {
     /// The scheme that was asked for.
     pub scheme: Scheme,
@@ -34,13 +38,15 @@ pub struct Undefined {
 
 impl Scheme {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Gregory, Self::Acc];
+    pub const ALL: [Self; 4] = [Self::Gregory, Self::Acc, Self::Pm, Self::CPatch];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gregory => "gregory",
             Self::Acc => "acc",
+            Self::Pm => "pm",
+            Self::CPatch => "c-patch",
         }
     }
 
@@ -48,13 +54,22 @@ impl Scheme {
     ///
     /// # Errors
     /// [`Undefined`] names the first face that has none.
-    pub fn check(self, plan: &PatchPlan) -> Result<(), Undefined> {
-        let (kind, what) = match self {
-            Self::Gregory => return Ok(()),
-            Self::Acc => (PatchKind::Triangle, "triangles"),
-        };
-        let face = plan.patches()[plan.range(kind)].iter().map(|patch| patch.face).min();
-        face.map_or(Ok(()), |face| Err(Undefined { scheme: self, face, what }))
+    pub fn check(self, topology: &Topology, plan: &PatchPlan) -> Result<(), Undefined> {
+        let mut first: Option<(u32, &'static str)> = None;
+        for patch in plan.patches().iter().filter(|patch| patch.kind != PatchKind::Regular) {
+            let what = match self {
+                Self::Gregory => return Ok(()),
+                Self::Acc | Self::CPatch if patch.kind == PatchKind::Triangle => Some("triangles"),
+                Self::Acc => None,
+                Self::Pm | Self::CPatch => pm_lacks(topology, patch.face),
+            };
+            if let Some(what) = what
+                && first.is_none_or(|(face, _)| patch.face < face)
+            {
+                first = Some((patch.face, what));
+            }
+        }
+        first.map_or(Ok(()), |(face, what)| Err(Undefined { scheme: self, face, what }))
     }
 
     /// How many control points each corner of a patch owns.
@@ -63,6 +78,7 @@ impl Scheme {
             (PatchKind::Regular, _) => 4,
             (_, Self::Gregory) => 5,
             (_, Self::Acc) => 8,
+            (_, Self::Pm | Self::CPatch) => 6,
         }
     }
 
@@ -79,6 +95,7 @@ impl Scheme {
             (PatchKind::Regular, _) => bicubic::CORNER_SLOTS[k].to_vec(),
             (_, Self::Gregory) => vec![k, n + 2 * k, n + 2 * k + 1, 3 * n + 2 * k, 3 * n + 2 * k + 1],
             (_, Self::Acc) => acc::corner_slots(k).to_vec(),
+            (_, Self::Pm | Self::CPatch) => pm::corner_slots(n, k).to_vec(),
         }
     }
 
@@ -88,6 +105,7 @@ impl Scheme {
         match self {
             Self::Gregory => ring.frame(),
             Self::Acc => acc::acc_frame(ring),
+            Self::Pm | Self::CPatch => pm::pm_frame(ring),
         }
     }
 
@@ -121,6 +139,7 @@ impl Scheme {
             (PatchKind::Regular, _) => bicubic::bicubic_points(four()).into(),
             (_, Self::Gregory) => gregory::gregory_points(&corners),
             (_, Self::Acc) => acc::acc_points(four()),
+            (_, Self::Pm | Self::CPatch) => pm::pm_points(&corners),
         }
     }
 
@@ -139,6 +158,24 @@ impl Scheme {
                 gregory::evaluate_gregory_triangle(points.try_into().expect(COUNT), u, v)
             }
             (_, Self::Acc) => acc::evaluate_acc(points.try_into().expect(COUNT), u, v),
+            (PatchKind::IrregularQuad, Self::Pm | Self::CPatch) => {
+                pm::evaluate_pm_quad(points.try_into().expect(COUNT), u, v)
+            }
+            (PatchKind::Triangle, Self::Pm | Self::CPatch) => {
+                pm::evaluate_pm_triangle(points.try_into().expect(COUNT), u, v)
+            }
         }
     }
+}
+
+/// Why Pm-patches are not defined on a face, if they are not.
+fn pm_lacks(topology: &Topology, face: u32) -> Option<&'static str> {
+    topology.mesh().face_corners(face).find_map(|h| {
+        let ring = topology.rings()[topology.place(h as u32).ring as usize];
+        match ring.kind {
+            RingKind::Smooth if ring.faces < 3 => Some("faces at a vertex with two faces"),
+            RingKind::Smooth => None,
+            _ => Some("irregular faces at a boundary, crease or corner"),
+        }
+    })
 }

@@ -21,6 +21,8 @@ fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
         (PatchKind::IrregularQuad, Scheme::Gregory) => ["GREGORY", "GREGORY_QUAD"],
         (PatchKind::Triangle, Scheme::Gregory) => ["GREGORY", "GREGORY_TRIANGLE"],
         (_, Scheme::Acc) => ["ACC", "ACC"],
+        (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_QUAD"],
+        (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_TRIANGLE"],
     }
 }
 
@@ -84,7 +86,7 @@ mod tests {
     fn every_patch_has_its_shaders() {
         for scheme in Scheme::ALL {
             for kind in PatchKind::ALL {
-                if scheme != Scheme::Gregory && kind == PatchKind::Triangle {
+                if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle {
                     continue;
                 }
                 for construction in Construction::ALL {

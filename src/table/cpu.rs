@@ -32,8 +32,10 @@ impl<'m> CpuSurface<'m> {
     /// A refined mesh that cannot be addressed; faces that the scheme has no patch for.
     pub fn new(mesh: &'m ControlMesh, scheme: Scheme, refine: u32) -> Result<Self, TableError> {
         let prepared = prepare(mesh, refine)?;
-        let plan = PatchPlan::new(&Topology::new(&prepared.mesh));
-        scheme.check(&plan)?;
+        let topology = Topology::new(&prepared.mesh);
+        let plan = PatchPlan::new(&topology);
+        scheme.check(&topology, &plan)?;
+        drop(topology);
         Ok(Self { prepared, plan, scheme })
     }
 

@@ -1,0 +1,71 @@
+// Second stage of the two-stage construction: a Pm-patch (of a quad: a c-patch) from its corners' rings. Each corner k owns
+// v, t+, t-, b211 of sector k, b121 of sector k - 1 and b112 of sector k. Rust twin: `pm_points` in src/patch/pm.rs.
+// variants: TRIANGLE, CAPTURE, TRIANGLE+CAPTURE, CAPTURE_POINTS, TRIANGLE+CAPTURE_POINTS, TEXCOORD, TRIANGLE+TEXCOORD
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define OWNED 6
+#include "control.glsl"
+#include "frames.glsl"
+
+// What each corner gives to the centre of the patch.
+layout(location = 10) patch out vec3 centre_share[CORNERS];
+
+// f_i of ring face i; `first` and `second` are the ends of its edges.
+vec3 pm_face(Ring ring, uint i, vec3 centre, vec3 first, vec3 second) {
+    uint entry = ring_entries[ring.entries + 2u * i + 1u];
+    vec3 diagonal = (entry & TRIANGLE_BIT) != 0u ? 0.5 * (first + second) : vertex_position(entry);
+    return (4.0 * centre + 2.0 * (first + second) + diagonal) / 9.0;
+}
+
+// b211 at the near end of an edge, or b121 at its far end, seen from there; `across` is f - e.
+vec3 pm_beside(vec3 v, vec3 t0, vec3 t1, vec3 across, float cos_near, float cos_far) {
+    const float mu = CORNERS == 3u ? 1.5 : 1.0;
+    float sines = sqrt(max(1.0 - cos_near * cos_near, 0.0)) + sqrt(max(1.0 - cos_far * cos_far, 0.0));
+    return 0.25 * (v + 3.0 * t0) + (1.0 + cos_near) / (4.0 * mu) * (t1 - t0) +
+        (2.0 * mu - 1.0 - cos_far) / (8.0 * mu) * (t0 - v) + 3.0 / (4.0 * mu * sines) * across;
+}
+
+void main() {
+    uint k = uint(gl_InvocationID);
+    uint next = k + 1u == CORNERS ? 0u : k + 1u;
+    uint before = k == 0u ? CORNERS - 1u : k - 1u;
+    Corner corner = corner_at(k);
+    Ring ring = corner.ring;
+    vec3 centre = in_centre[k];
+    vec3 v = in_limit[k].xyz;
+
+    // The faces before, at and after the patch around the corner. The ring is closed: there is no rule for others.
+    uint before_plus = (corner.plus == 0u ? ring.edges : corner.plus) - 1u;
+    vec3 a0 = edge_neighbour(ring, before_plus);
+    vec3 a1 = edge_neighbour(ring, corner.plus);
+    vec3 a2 = edge_neighbour(ring, corner.minus);
+    vec3 a3 = edge_neighbour(ring, corner.minus + 1u);
+    vec3 f = pm_face(ring, corner.plus, centre, a1, a2);
+    vec3 e_plus = 0.5 * (f + pm_face(ring, before_plus, centre, a0, a1));
+    vec3 e_minus = 0.5 * (f + pm_face(ring, corner.minus, centre, a2, a3));
+    owned[gl_InvocationID][0] = v;
+    owned[gl_InvocationID][1] = corner_edge_point(corner, k, corner.plus);
+    owned[gl_InvocationID][2] = corner_edge_point(corner, k, corner.minus);
+    centre_share[gl_InvocationID] =
+        CORNERS == 3u ? (2.0 * v + 3.0 * (e_plus + e_minus) + 9.0 * f) / 51.0 : (v + 3.0 * (e_plus + e_minus) + 9.0 * f) / 64.0;
+    barrier();
+    float cosine = in_limit[k].w;
+    owned[gl_InvocationID][3] =
+        pm_beside(v, owned[k][1], owned[next][2], f - e_plus, cosine, in_limit[next].w);
+    owned[gl_InvocationID][4] =
+        pm_beside(v, owned[k][2], owned[before][1], f - e_minus, cosine, in_limit[before].w);
+    barrier();
+    // b211 of sector i is owned[i][3], b121 of sector i is owned[i + 1][4].
+#ifdef TRIANGLE
+    vec3 q = centre_share[0] + centre_share[1] + centre_share[2];
+    owned[gl_InvocationID][5] = 1.5 * q - owned[before][0] / 12.0 - (owned[before][1] + owned[before][2]) / 24.0 -
+        (owned[before][3] + owned[before][4]) / 6.0;
+#else
+    uint opposite = k ^ 2u;
+    vec3 q = (centre_share[0] + centre_share[1]) + (centre_share[2] + centre_share[3]);
+    owned[gl_InvocationID][5] = q +
+        (3.0 / 16.0) * (owned[k][3] + owned[next][4] - owned[opposite][4] - owned[before][3]) +
+        (1.0 / 16.0) * (owned[next][3] + owned[k][4] - owned[before][4] - owned[opposite][3]);
+#endif
+    finish_corner(in_patch_number[0]);
+}
