@@ -1,5 +1,10 @@
-//! Catmull-Clark subdivision itself: refinement by its rules, which the patch schemes approximate.
+//! Catmull-Clark subdivision itself, which the patch schemes approximate: refinement by its rules, and the exact limit
+//! surface.
 
+mod local;
+mod masks;
 mod refine;
+mod surface;
 
 pub use refine::{Refined, Stencils, refine};
+pub use surface::{LimitSample, LimitSurface};

@@ -1,6 +1,8 @@
 //! What several integration tests need.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+pub mod limit;
+
 use std::path::PathBuf;
 
 /// The folder beside the checkout with reference data.
