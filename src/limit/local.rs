@@ -1,6 +1,6 @@
 //! A face with the faces around it: all that the surface over the face depends on.
 
-use crate::mesh::{ControlMesh, Corner, Crease, CreaseMethod, MeshData, NO_TWIN};
+use crate::mesh::{ControlMesh, Corner, Crease, CreaseMethod, MeshData, NO_TWIN, SHARPNESS_INFINITE};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 
@@ -20,6 +20,11 @@ impl Tags {
         tags.edges.retain(|_, sharpness| *sharpness > 0.0);
         tags.vertices.retain(|_, sharpness| *sharpness > 0.0);
         tags
+    }
+
+    /// Makes vertices infinitely sharp.
+    pub(super) fn sharpen(&mut self, vertices: impl IntoIterator<Item = u32>) {
+        self.vertices.extend(vertices.into_iter().map(|v| (v, SHARPNESS_INFINITE)));
     }
 
     fn edge(&self, a: u32, b: u32) -> Option<f32> {

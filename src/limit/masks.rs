@@ -17,8 +17,8 @@ pub(super) fn corner_limit(topology: &Topology, half_edge: u32) -> LimitSample {
     let mut frame = values.frame();
     if let Some(sharp) = dart_edge(topology, ring) {
         frame = dart_frame(&values, sharp);
-    } else if ring.kind == RingKind::Crease && ring.faces == 3 {
-        frame.b = cross_tangent_of_three(&values);
+    } else if ring.kind == RingKind::Crease && ring.faces >= 3 {
+        frame.b = cross_tangent(&values);
     }
     let tangent = |j| 3.0 * (values.edge_point(&frame, j) - frame.p);
     let (du, dv) = (tangent(j), tangent(j + 1));
@@ -40,26 +40,26 @@ pub(super) fn dart_edge(topology: &Topology, ring: &Ring) -> Option<usize> {
     topology.ring_half_edges(ring).position(|h| topology.is_sharp(h))
 }
 
-/// The exact tangent across a crease with three faces on this side, where Biermann et al.'s is that of another rule.
-fn cross_tangent_of_three(values: &RingValues<DVec3>) -> DVec3 {
-    const FACES: usize = 3;
-    let turn = PI / FACES as f64;
+/// The exact tangent across a crease with three or more faces on this side, where Biermann et al.'s is that of another rule.
+fn cross_tangent(values: &RingValues<DVec3>) -> DVec3 {
+    let faces = values.diagonals.len();
+    let turn = PI / faces as f64;
     let (cos, cos_half) = (turn.cos(), (turn / 2.0).cos());
     let lambda = (5.0 + cos + cos_half * (18.0 + 2.0 * cos).sqrt()) / 16.0;
     let scale = 1.0 + cos + cos_half * (18.0 + 2.0 * cos).sqrt();
     let sin = |j: usize| (j as f64 * turn).sin();
     let at_edge = |j| scale * sin(j);
     let at_diagonal = |i| sin(i) + sin(i + 1);
-    let sum = (1..FACES).map(at_edge).sum::<f64>() + (0..FACES).map(at_diagonal).sum::<f64>();
+    let sum = (1..faces).map(at_edge).sum::<f64>() + (0..faces).map(at_diagonal).sum::<f64>();
     let at_end = (at_diagonal(0) / 4.0 + at_edge(1) / 16.0 - sum / 8.0) / (lambda - 0.25);
-    let mut tangent = -(2.0 * at_end + sum) * values.centre + at_end * (values.edges[0] + values.edges[FACES]);
-    for j in 1..FACES {
+    let mut tangent = -(2.0 * at_end + sum) * values.centre + at_end * (values.edges[0] + values.edges[faces]);
+    for j in 1..faces {
         tangent += at_edge(j) * values.edges[j];
     }
-    for i in 0..FACES {
+    for i in 0..faces {
         tangent += at_diagonal(i) * values.diagonals[i];
     }
-    tangent / (9.0 * FACES as f64)
+    tangent / (9.0 * faces as f64)
 }
 
 /// Limit and tangents at the end of a single sharp edge: `a` along the sharp edge, `b` to its left.

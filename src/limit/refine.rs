@@ -9,7 +9,10 @@ use crate::patch::{Blend, Row};
 use crate::topology::Topology;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+
+/// Rows for one thread at least: handing out fewer takes longer than making them.
+const MIN_LEN: usize = 256;
 
 /// Weighted sums: output `i` is the sum of `weights[k] * input[indices[k]]` for k in `offsets[i]..offsets[i + 1]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +48,7 @@ impl Stencils {
     pub fn apply<T: Blend + Send + Sync>(&self, inputs: &[T]) -> Vec<T> {
         self.offsets
             .par_windows(2)
+            .with_min_len(MIN_LEN)
             .map(|range| {
                 let range = range[0] as usize..range[1] as usize;
                 let terms = self.weights[range.clone()].iter().zip(&self.indices[range]);
@@ -238,11 +242,12 @@ impl<'t, 'm> Step<'t, 'm> {
         let topology = self.topology;
         let data = topology.mesh().data();
         let tagged: HashMap<u32, f32> = data.corners.iter().map(|c| (c.vertex, c.sharpness)).collect();
+        let touching = touching_vertices(topology);
         let corners_are_sharp = data.boundary == BoundaryRule::EdgeAndCorner;
         for h in 0..topology.mesh().corner_count() as u32 {
             let vertex = topology.vertex(h);
             let lone = topology.twin(h).is_none() && topology.twin(topology.prev(h)).is_none();
-            if lone && corners_are_sharp {
+            if (lone && corners_are_sharp) || touching.contains(&topology.source(vertex)) {
                 self.vertex_sharpness.insert(vertex, SHARPNESS_INFINITE);
             } else if let Some(&sharpness) = tagged.get(&topology.source(vertex))
                 && sharpness > 0.0
@@ -259,9 +264,11 @@ impl<'t, 'm> Step<'t, 'm> {
             let first = &mut start[topology.vertex(h) as usize];
             *first = (*first).min(h);
         }
-        let vertices = start.into_par_iter().map(|h| self.vertex_row(h));
-        let edges = (0..self.edge_half_edges.len() as u32).into_par_iter().map(|e| self.edge_row(e));
-        let faces = (0..topology.mesh().face_count() as u32).into_par_iter().map(|f| self.face_row(f));
+        let vertices = start.into_par_iter().with_min_len(MIN_LEN).map(|h| self.vertex_row(h));
+        let edges =
+            (0..self.edge_half_edges.len() as u32).into_par_iter().with_min_len(MIN_LEN).map(|e| self.edge_row(e));
+        let faces =
+            (0..topology.mesh().face_count() as u32).into_par_iter().with_min_len(MIN_LEN).map(|f| self.face_row(f));
         vertices.chain(edges).chain(faces).collect()
     }
 
@@ -400,8 +407,10 @@ impl<'t, 'm> Step<'t, 'm> {
     }
 
     fn child_corners(&self) -> Vec<Corner> {
-        let tagged: HashMap<u32, f32> =
+        let mut tagged: HashMap<u32, f32> =
             self.topology.mesh().data().corners.iter().map(|c| (c.vertex, c.sharpness)).collect();
+        // In the refined mesh the fans are apart: from now on a tag keeps them together.
+        tagged.extend(touching_vertices(self.topology).into_iter().map(|v| (v, SHARPNESS_INFINITE)));
         let mut corners: Vec<Corner> = (0..self.topology.vertex_count() as u32)
             .filter(|_| !tagged.is_empty())
             .filter_map(|vertex| {
@@ -412,6 +421,12 @@ impl<'t, 'm> Step<'t, 'm> {
         corners.sort_unstable_by_key(|c| c.vertex);
         corners
     }
+}
+
+/// The mesh vertices in which several fans of faces touch: infinitely sharp.
+pub(super) fn touching_vertices(topology: &Topology) -> HashSet<u32> {
+    let split = topology.mesh().vertex_count() as u32..topology.vertex_count() as u32;
+    split.map(|v| topology.source(v)).collect()
 }
 
 /// Chaikin's rule at one vertex: each semi-sharp edge's child takes a quarter from the mean of the others.

@@ -2,7 +2,7 @@
 
 use super::local::{Local, Tags};
 use super::masks::{corner_limit, dart_edge};
-use super::refine;
+use super::refine::{refine, touching_vertices};
 use crate::mesh::{ControlMesh, MeshError, SHARPNESS_INFINITE};
 use crate::patch::bicubic::Basis;
 use crate::patch::{Sample, control_points};
@@ -94,7 +94,10 @@ impl<'m> LimitSurface<'m> {
             }
         }
         let faces = (0..mesh.face_count()).map(|_| OnceLock::new()).collect();
-        Ok(Self { mesh, tags: Tags::new(mesh.data()), drawn: draws_face(&Topology::new(mesh)), corners, faces })
+        let topology = Topology::new(mesh);
+        let mut tags = Tags::new(mesh.data());
+        tags.sharpen(touching_vertices(&topology));
+        Ok(Self { mesh, tags, drawn: draws_face(&topology), corners, faces })
     }
 
     /// Whether the face is part of the surface: no hole and, under [`crate::mesh::BoundaryRule::None`], on no boundary.
