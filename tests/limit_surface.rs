@@ -217,6 +217,10 @@ fn everything(method: CreaseMethod) -> ControlMesh {
     crease(at(1, 4), at(2, 4), 2.6);
     crease(at(2, 4), at(2, 5), 0.4);
     crease(at(4, 0), at(4, 1), 3.0);
+    // To Chaikin's rule the middle one is sharp, for what is at both of its ends.
+    crease(at(2, 1), at(3, 1), 5.0);
+    crease(at(3, 1), at(3, 2), 0.8);
+    crease(at(3, 2), at(3, 3), 5.0);
     data.corners = vec![
         Corner { vertex: at(5, 2), sharpness: 1.7 },
         Corner { vertex: at(4, 3), sharpness: 10.0 },
@@ -354,6 +358,9 @@ fn close_to_a_vertex_the_surface_is_close_to_its_limit() {
         for sub in surface.subs(face) {
             let at = |distance: f64| surface.evaluate(face, sub, 0.7 * distance, 0.4 * distance);
             let vertex = at(0.0);
+            // As far away as the eigenvalue of the vertex says, 0.41 around three faces to 0.63 around twelve.
+            let [far, near] = [29, 30].map(|e| (at(f64::from(-e).exp2()).position - vertex.position).length());
+            assert!((0.4..0.7).contains(&(near / far)), "face {face}: {near:e} of {far:e}");
             for exponent in [20, 40, 60, 80, 1000] {
                 let close = at(f64::from(-exponent).exp2());
                 // The normal converges with the ratio of eigenvalues: 0.82 around eight faces.
@@ -363,6 +370,28 @@ fn close_to_a_vertex_the_surface_is_close_to_its_limit() {
                 assert!(error < tolerance, "face {face} at 2^-{exponent}: {error:e}");
             }
         }
+    }
+}
+
+#[test]
+fn where_fans_touch_the_surface_meets_the_vertex() {
+    // Two pairs of quads with vertex 0 in common.
+    let mesh = ControlMesh::new(MeshData {
+        positions: (0..11).map(|i| [f64::from(i), f64::from(i * i), 0.0]).collect(),
+        face_sizes: vec![4; 4],
+        face_vertices: vec![0, 1, 2, 3, 0, 3, 4, 5, 0, 6, 7, 8, 0, 8, 9, 10],
+        boundary: BoundaryRule::EdgeOnly,
+        ..MeshData::default()
+    })
+    .unwrap();
+    let at_vertex = |mesh: &ControlMesh, corner: (u32, f64, f64)| {
+        LimitSurface::new(mesh).unwrap().evaluate(corner.0, -1, corner.1, corner.2).position
+    };
+    // After refinement the fans are apart, and stay where they are.
+    let refined = refine(&Topology::new(&mesh)).unwrap().mesh;
+    for corner in [(0, 0.0, 0.0), (1, 0.0, 0.0), (2, 0.0, 0.0), (3, 0.0, 0.0)] {
+        assert_eq!(at_vertex(&mesh, corner), DVec3::ZERO);
+        assert_eq!(at_vertex(&refined, (4 * corner.0, 0.0, 0.0)), DVec3::ZERO);
     }
 }
 
