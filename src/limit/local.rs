@@ -27,7 +27,15 @@ impl Tags {
         self.vertices.extend(vertices.into_iter().map(|v| (v, SHARPNESS_INFINITE)));
     }
 
-    fn edge(&self, a: u32, b: u32) -> Option<f32> {
+    pub(super) fn has_edges(&self) -> bool {
+        !self.edges.is_empty()
+    }
+
+    pub(super) fn vertex(&self, vertex: u32) -> Option<f32> {
+        self.vertices.get(&vertex).copied()
+    }
+
+    pub(super) fn edge(&self, a: u32, b: u32) -> Option<f32> {
         self.edges.get(&[a.min(b), a.max(b)]).copied()
     }
 }
@@ -59,14 +67,14 @@ impl Local {
                 let number = numbers.len() as u32;
                 if *numbers.entry(vertex).or_insert(number) == number {
                     data.positions.push((mesh.position(vertex) - centre).into());
-                    let sharpness = tags.vertices.get(&vertex);
-                    data.corners.extend(sharpness.map(|&sharpness| Corner { vertex: number, sharpness }));
+                    let sharpness = tags.vertex(vertex);
+                    data.corners.extend(sharpness.map(|sharpness| Corner { vertex: number, sharpness }));
                 }
                 data.face_vertices.push(numbers[&vertex]);
             }
             data.face_sizes.push(mesh.face(face).len() as u32);
         }
-        if !tags.edges.is_empty() {
+        if tags.has_edges() {
             for h in faces.iter().flat_map(|&face| mesh.face_corners(face)) {
                 // Each edge inside the part once. A boundary edge is sharp without a tag.
                 let twin = mesh.twins()[h];

@@ -1,62 +1,16 @@
 //! One step of Catmull-Clark refinement of a whole mesh: any face sizes, boundaries, semi-sharp creases and corners,
 //! holes, both crease methods and both triangle rules (patch_maths A).
 
+use super::face_varying::{refine_linearly, refine_texcoords};
+use super::stencils::{MIN_LEN, Stencils};
 use crate::mesh::{
-    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, MeshData, MeshError, SHARPNESS_INFINITE,
-    TriangleRule,
+    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, MeshData, MeshError, SHARPNESS_INFINITE, TriangleRule,
 };
 use crate::patch::{Blend, Row};
 use crate::topology::Topology;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
-
-/// Rows for one thread at least: handing out fewer takes longer than making them.
-const MIN_LEN: usize = 256;
-
-/// Weighted sums: output `i` is the sum of `weights[k] * input[indices[k]]` for k in `offsets[i]..offsets[i + 1]`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Stencils {
-    pub offsets: Vec<u32>,
-    pub indices: Vec<u32>,
-    pub weights: Vec<f64>,
-}
-
-impl Stencils {
-    fn new(rows: Vec<Row>) -> Self {
-        let mut stencils = Self { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
-        for row in rows {
-            for &(index, weight) in row.weights() {
-                stencils.indices.push(index);
-                stencils.weights.push(weight);
-            }
-            stencils.offsets.push(stencils.indices.len() as u32);
-        }
-        stencils
-    }
-
-    /// Number of outputs.
-    pub fn len(&self) -> usize {
-        self.offsets.len() - 1
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The outputs for these inputs.
-    pub fn apply<T: Blend + Send + Sync>(&self, inputs: &[T]) -> Vec<T> {
-        self.offsets
-            .par_windows(2)
-            .with_min_len(MIN_LEN)
-            .map(|range| {
-                let range = range[0] as usize..range[1] as usize;
-                let terms = self.weights[range.clone()].iter().zip(&self.indices[range]);
-                T::sum(terms.map(|(&weight, &index)| (weight, &inputs[index as usize])))
-            })
-            .collect()
-    }
-}
 
 /// A refined mesh and where it came from.
 #[derive(Debug, Clone)]
@@ -70,7 +24,10 @@ pub struct Refined {
     pub parents: Vec<u32>,
 }
 
-/// Refines once. Texture coordinates and normals are refined linearly within each face.
+/// Refines once.
+///
+/// Texture coordinates follow the mesh's [`crate::mesh::FaceVaryingRule`]; normals are refined linearly within each
+/// face.
 ///
 /// # Errors
 /// [`MeshError::TooLarge`] if the refined mesh has more corners or vertices than can be addressed.
@@ -89,8 +46,8 @@ pub fn refine(topology: &Topology) -> Result<Refined, MeshError> {
         positions: stencils.apply(&coarse).into_iter().map(Into::into).collect(),
         face_sizes: vec![4; corners],
         face_vertices: (0..corners).flat_map(corner).collect(),
-        texcoords: data.texcoords.as_ref().map(|t| refine_face_varying(topology, t)),
-        normals: data.normals.as_ref().map(|n| refine_face_varying(topology, n)),
+        texcoords: data.texcoords.as_ref().map(|t| refine_texcoords(topology, t)).transpose()?,
+        normals: data.normals.as_ref().map(|n| refine_linearly(topology, n)),
         creases: step.child_creases(),
         corners: step.child_corners(),
         holes: data.holes.iter().flat_map(|&f| mesh.face_corners(f)).map(|h| h as u32).collect(),
@@ -101,23 +58,6 @@ pub fn refine(topology: &Topology) -> Result<Refined, MeshError> {
         face_varying_rule: data.face_varying_rule,
     })?;
     Ok(Refined { mesh: refined, stencils, parents: (0..corners as u32).collect() })
-}
-
-fn refine_face_varying<const N: usize>(topology: &Topology, coarse: &FaceVarying<[f32; N]>) -> FaceVarying<[f32; N]> {
-    let value = |h: u32| coarse.values[coarse.indices[h as usize] as usize];
-    let mean =
-        |values: &[[f32; N]]| std::array::from_fn(|i| values.iter().map(|v| v[i]).sum::<f32>() / values.len() as f32);
-    let mut values = Vec::with_capacity(4 * coarse.indices.len());
-    for face in 0..topology.mesh().face_count() as u32 {
-        let corners = topology.mesh().face_corners(face);
-        let around: Vec<_> = corners.clone().map(|h| value(h as u32)).collect();
-        for h in corners {
-            let h = h as u32;
-            let (here, next, prev) = (value(h), value(topology.next(h)), value(topology.prev(h)));
-            values.extend([here, mean(&[here, next]), mean(&around), mean(&[here, prev])]);
-        }
-    }
-    FaceVarying { indices: (0..values.len() as u32).collect(), values }
 }
 
 /// The rule at a vertex, by what is sharp there.

@@ -253,7 +253,8 @@ impl Irregular {
     /// The limit at a corner, if (u, v) is one or `closest` asks for the closest one, and masks can tell it.
     fn evaluate_corner(&self, u: f64, v: f64, closest: bool) -> Option<LimitSample> {
         let is_end = |t: f64| t == 0.0 || t == 1.0;
-        if !closest && !(is_end(u) && is_end(v)) {
+        let is_corner = is_end(u) && is_end(v);
+        if !(is_corner || closest) {
             return None;
         }
         let k = quadrant(u, v);

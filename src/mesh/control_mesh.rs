@@ -36,13 +36,18 @@ pub enum TriangleRule {
     Smooth,
 }
 
-/// Where face-varying data is interpolated linearly (OpenSubdiv's six rules).
+/// Where face-varying data is interpolated linearly (OpenSubdiv's six rules): which values stay where they are, apart
+/// from those at vertices that stay themselves. Seams (edges where two faces disagree) and boundaries are otherwise
+/// smooth curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaceVaryingRule {
     /// Smooth everywhere.
     None,
+    /// Values that only one of the faces around a vertex has.
     CornersOnly,
+    /// As `CornersOnly`; and all at a vertex with three or more values.
     CornersPlus1,
+    /// As `CornersPlus1`; and where a seam ends inside the surface; and of two values at a vertex both if one stays.
     CornersPlus2,
     /// Linear along every seam and boundary.
     Boundaries,
