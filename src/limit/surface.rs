@@ -29,7 +29,7 @@ const MAX_COORDINATE: f64 = 1e300;
 ///
 /// **Exactness.** The surface is refined around the point until the point lies on a bicubic B-spline patch, which is
 /// then evaluated: no approximation but rounding. Positions are good to some 1e-15 of the mesh's largest coordinate,
-/// derivatives and normals to some 1e-14 of their length however close to an extraordinary vertex. At a vertex the
+/// derivatives and normals to some 1e-11 of their length however close to an extraordinary vertex. At a vertex the
 /// limit masks are used.
 ///
 /// **Exclusions.**
