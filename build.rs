@@ -90,6 +90,9 @@ fn embed(root: &Path, out: &Path, rust_file: &str) -> Result<(), String> {
         };
         let _ = writeln!(rust, "/// SPIR-V of `{}`{with}.\npub static {constant}: &[u32] = {value};", source.display());
     }
+    // The jobs are sorted by their constants, so these can be searched.
+    let names: String = jobs.iter().map(|job| format!("({:?}, {}), ", job.constant, job.constant)).collect();
+    let _ = writeln!(rust, "/// All of them by name, in order.\npub static ALL: &[(&str, &[u32])] = &[{names}];");
     let path = out.join(rust_file);
     fs::write(&path, rust).map_err(|error| format!("{}: {error}", path.display()))
 }

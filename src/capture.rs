@@ -7,7 +7,6 @@ use crate::gpu::{
 };
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::mesh::ControlMesh;
-use crate::patch::bicubic;
 use crate::renderer::{Capture, DrawItem, Error, ModelOptions, ModelTables, Options, Renderer, Style, Target, View};
 use crate::topology::PatchKind;
 use ash::vk;
@@ -22,7 +21,9 @@ pub struct CapturedVertex {
     pub coordinate: [f32; 3],
     /// The number of the patch in the order of [`ModelTables::plan`].
     pub patch: u32,
+    /// Object space.
     pub position: [f32; 3],
+    /// Of length one, towards the side from which the patch is counter-clockwise.
     pub normal: [f32; 3],
 }
 
@@ -40,7 +41,7 @@ struct Head {
 const HEAD_BYTES: u64 = size_of::<Head>() as u64;
 const RECORD_BYTES: u64 = size_of::<CapturedVertex>() as u64;
 /// Words that the control points of a patch take, whatever its kind.
-const CONTROL_POINT_WORDS: usize = 60;
+const CONTROL_POINT_WORDS: usize = 96;
 /// Larger captures are done in several draws, each of which keeps some of the patches.
 const MAX_BYTES: u64 = 128 << 20;
 
@@ -69,11 +70,15 @@ impl<'h> Captured<'h> {
         Ok(Self { headless, options: options.clone(), tables, positions: mesh.positions_f32() })
     }
 
+    /// The arrays that the shaders read, with the order of the patches.
     pub fn tables(&self) -> &ModelTables {
         &self.tables
     }
 
     /// The control points of every patch, as the control shader made them, in the orders of [`crate::patch`].
+    ///
+    /// # Errors
+    /// Failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn control_points(&self) -> Result<Vec<Vec<[f32; 3]>>, Error> {
         let words = self.capture(
             Capture::Points,
@@ -83,12 +88,13 @@ impl<'h> Captured<'h> {
         )?;
         let patches = self.tables.plan().patches().iter();
         let words: Vec<f32> = words.into_iter().flat_map(|(_, words)| words).collect();
+        let scheme = self.options.scheme;
         let points = patches.zip(words.chunks_exact(CONTROL_POINT_WORDS)).map(|(patch, words)| {
-            let count = match patch.kind {
-                PatchKind::Regular => bicubic::POINTS,
-                kind => 5 * kind.corners(),
-            };
-            words.chunks_exact(3).take(count).map(|p| [p[0], p[1], p[2]]).collect()
+            let mut points = vec![[0.0; 3]; scheme.points(patch.kind)];
+            // The shaders count them corner by corner.
+            let slots = (0..patch.kind.corners()).flat_map(|k| scheme.corner_slots(patch.kind, k));
+            slots.zip(words.chunks_exact(3)).for_each(|(slot, p)| points[slot] = [p[0], p[1], p[2]]);
+            points
         });
         Ok(points.collect())
     }
@@ -123,6 +129,9 @@ impl<'h> Captured<'h> {
     /// Every vertex that the tessellator made with this factor and the model's spacing, in no order.
     ///
     /// A device may evaluate a vertex more than once; then it is there more than once.
+    ///
+    /// # Errors
+    /// [`Error::BadFactor`]; failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn vertices(&self, factor: f32) -> Result<Vec<CapturedVertex>, Error> {
         let max = self.headless.properties().max_tessellation_level;
         let bytes = |kind| {

@@ -1,4 +1,103 @@
 //! Catmull-Clark control meshes, drawn smooth by Vulkan's tessellation stages.
+//!
+//! # The way of a mesh to the picture
+//!
+//! ```text
+//!  file ──► ControlMesh ──► Topology ──► patches ──► tables ──► Vulkan buffers ──► VS ─► TCS ─► TES ─► FS ──► picture
+//!           mesh            topology     patch       table      renderer          glsl/construct  glsl/evaluate
+//!                              │                       ▲
+//!                              └── limit (refinement) ─┘
+//! ```
+//!
+//! 1. [`mesh`]: a [`ControlMesh`], from a file ([`mesh::read`]) or from arrays ([`MeshData`]), is checked once:
+//!    manifold, oriented, finite. From here on nothing about it can fail but its size.
+//! 2. [`table::prepare`]: a mesh with faces of five or more corners is refined once ([`limit::refine`]), so that
+//!    every face is a triangle or a quad. The caller may ask for more steps.
+//! 3. [`topology`]: every vertex gets its ordered one-ring, every face its [`PatchKind`](topology::PatchKind).
+//! 4. [`patch`]: the control points of a patch are sums of the control vertices in the one-rings of its corners.
+//!    The code that makes them is written once, over values that can be summed: points give control points, rows of
+//!    weights give stencils.
+//! 5. [`table`]: connectivity and weights, as plain arrays for the GPU. They do not depend on positions.
+//! 6. [`renderer`]: the arrays become buffers of a model. Every frame the shaders make the control points anew
+//!    from this frame's vertices (vertex and control stage) and evaluate them (evaluation stage), so vertices may
+//!    move freely.
+//!
+//! Each module knows only those below it:
+//!
+//! | floor | module | holds | knows nothing of |
+//! |---|---|---|---|
+//! | 7 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
+//! | 6 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
+//! | 5 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
+//! | 4 | [`table`] | what the GPU reads | Vulkan |
+//! | 4 | [`limit`] | Catmull-Clark refinement | patch schemes |
+//! | 3 | [`patch`] | construction and evaluation of patches, generic over the value | Vulkan |
+//! | 2 | [`topology`] | half-edges, one-rings, sharp edges, patch kinds | positions |
+//! | 1 | [`mesh`] | control meshes, the readers (OBJ, glTF), built-in shapes | all above |
+//! | 1 | [`gpu`] | device facts, memory, shaders, pipelines | meshes |
+//!
+//! # Example
+//!
+//! The control points of one patch, and a point of it, on the CPU:
+//!
+//! ```
+//! use ash_subdiv::{Scheme, shape, topology::Topology};
+//!
+//! let mesh = shape("cube")?;
+//! let topology = Topology::new(&mesh);
+//! let kind = topology.patch_kind(0).expect("a triangle or a quad");
+//! let points = Scheme::Gregory.control_points(&topology, 0, kind, |vertex| mesh.position(vertex));
+//! assert_eq!(points.len(), 20);
+//! let middle = Scheme::Gregory.evaluate(kind, &points, 0.5, 0.5);
+//! assert!(middle.position.length() < 1.0 && (middle.normal.length() - 1.0).abs() < 1e-12);
+//! # Ok::<(), ash_subdiv::MeshError>(())
+//! ```
+//!
+//! On the GPU: see [`renderer`], the README, and `examples/minimal.rs`, a whole program in 150 lines.
+//!
+//! # Conventions
+//!
+//! * **Numbers** of vertices, faces and face corners count from zero. A face corner and the half-edge that starts
+//!   there have the same number.
+//! * **Winding**: faces are counter-clockwise seen from outside; normals point outwards.
+//! * **Parameters**: a quad has its corners at (u, v) = (0, 0), (1, 0), (1, 1), (0, 1); a triangle has barycentric
+//!   (u, v, w), one at its corners 0, 1, 2. `gl_TessCoord` is the same.
+//! * **Order of control points**: in [`patch::bicubic`] and [`patch::gregory`].
+//! * **Matrices** are given by columns, as `glam::Mat4::to_cols_array_2d` gives them, and act on column vectors. World
+//!   space is right-handed.
+//! * **Clip space** is Vulkan's: y down, depth from 0 (near) to 1. [`View`]'s constructors make it so.
+//! * **Colours** are linear RGBA. Shaders write linear values: an sRGB format encodes them.
+//! * **Units**: lengths are the mesh's own; angles are radians; sizes are bytes.
+//!
+//! # Tolerances
+//!
+//! * Regular patches are the limit surface, and every patch has its positions and tangent planes at the corners,
+//!   but for rounding: that of `f64` in [`patch`], that of `f32` on the GPU. Creases and corners of finite sharpness
+//!   are excepted: see [`topology::SHARP_FROM`].
+//! * Irregular patches lie off the limit surface between their corners. On the two character meshes of Loop et al.
+//!   2009, an independent implementation of the same patches in `f64` measures, as root mean squares over all faces,
+//!   2e-5 to 4e-5 of the diagonal (nearest distance) and half a degree (normal).
+//! * Neighbouring patches share their edge curve and tangent planes along it (G1). The GPU evaluates the curve once
+//!   for each patch, and may round differently: edges are not yet bitwise watertight.
+//! * The two constructions on the GPU ([`Construction`]) make the same control points but for rounding.
+//!
+//! # Where the formulas come from
+//!
+//! * Loop, Schaefer, Ni, Castaño, *Approximating Subdivision Surfaces with Gregory Patches for Hardware
+//!   Tessellation*, 2009: the patches, their constructions, and the division of work among the shader stages.
+//! * Catmull, Clark, *Recursively generated B-spline surfaces on arbitrary topological meshes*, 1978: the surface.
+//! * Halstead, Kass, DeRose, *Efficient, fair interpolation using Catmull-Clark surfaces*, 1993: limit positions
+//!   and tangents at vertices.
+//! * Hoppe et al., *Piecewise smooth surface reconstruction*, 1994, and DeRose, Kass, Truong, *Subdivision surfaces in
+//!   character animation*, 1998: creases, corners, and their sharpness.
+//! * Biermann, Levin, Zorin, *Piecewise smooth subdivision surfaces with normal control*, 2000: tangents across
+//!   boundaries and creases.
+//! * Tags and their defaults (boundary and crease rules, sharpness 10 as infinite) are those of OpenSubdiv.
+//!
+//! Comments say "patch_maths" for the collection of these formulas, corrected and checked, that the code was written
+//! from.
+
+#![warn(missing_docs)]
 
 #[cfg(feature = "headless")]
 pub mod capture;
@@ -12,9 +111,11 @@ pub mod renderer;
 pub mod table;
 pub mod topology;
 
+pub use glam;
 pub use gpu::{Allocator, ContextOptions, DeviceContext, Spacing};
 #[cfg(feature = "gltf")]
 pub use mesh::GltfOptions;
+pub use mesh::read;
 pub use mesh::{
     ControlMesh, MeshData, MeshError, ObjOptions, ReadOptions, ShapeInfo, grid_torus, replicate, shape, shapes,
 };
@@ -22,3 +123,8 @@ pub use patch::Scheme;
 pub use renderer::{
     Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
 };
+
+/// The README's examples, compiled as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadMe;

@@ -3,14 +3,15 @@
 #![cfg(feature = "headless")]
 
 use ash::vk;
-use ash_subdiv::gpu::Features;
+use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};
 use ash_subdiv::headless::{Headless, HeadlessOptions, Offscreen, OffscreenDesc};
 use ash_subdiv::mesh::FaceVarying;
-use ash_subdiv::renderer::{Fragment, Geometry};
+use ash_subdiv::renderer::{ColorEncoding, Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Error, ModelOptions, Options, Renderer, Style, Target, View, check,
-    requirements, shape,
+    Construction, ContextOptions, ControlMesh, DeviceContext, DrawItem, Error, ModelOptions, Options, Renderer, Style,
+    Target, View, check, requirements, shape,
 };
+use std::sync::Arc;
 
 #[allow(dead_code, reason = "other tests use the other shaders")]
 mod shaders {
@@ -106,7 +107,7 @@ fn positions_of_a_frame_move_the_model() {
     let mut renderer = stage.renderer(&flat());
     let mesh = square(0.25);
     let model = renderer.add_model(&mesh, &ModelOptions::default()).unwrap();
-    let item = DrawItem::new(model, 3.0).colour(WHITE);
+    let item = DrawItem::new(model, 3.0).color(WHITE);
     let moved = |x: f32| mesh.positions_f32().iter().map(|p| [p[0] + x, p[1], p[2]]).collect::<Vec<_>>();
 
     // Another frame's positions are its own until it is prepared, then they stay.
@@ -136,7 +137,7 @@ fn refined_models_move_too() {
         let positions: Vec<_> = mesh.positions_f32().iter().map(|p| [p[0], p[1] + 0.5, p[2]]).collect();
         renderer.set_positions(model, 0, &positions).unwrap();
         stage.prepare(&mut renderer, 0);
-        let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0).colour(WHITE)]).unwrap();
+        let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0).color(WHITE)]).unwrap();
         assert_eq!((picture.at(0.0, 0.5), picture.at(0.0, 0.0)), ([255; 4], [0, 0, 0, 255]));
         assert_eq!(picture.covered(), 16 * 16);
     }
@@ -196,8 +197,11 @@ fn removed_models_stay_until_their_frames_are_done() {
     for round in 0..4 {
         let model = renderer.add_model(&creature, &ModelOptions::default()).unwrap();
         let used = renderer.memory_usage();
-        assert!(used.device > empty.device + 100_000 && used.host > empty.host);
+        assert!(used.tables > 90_000 && used.positions == 12 * creature.vertex_count() as u64);
+        assert_eq!(used.control_meshes, 4 * (2 * creature.edge_count() + 6 * creature.face_count()) as u64);
         stage.prepare(&mut renderer, round % 2);
+        // Uploads are done; what is left is a copy of the positions for each frame.
+        assert_eq!(renderer.memory_usage().staging, 2 * used.positions);
         let items = [DrawItem::new(model, 2.0), DrawItem { style: 1, ..DrawItem::new(model, 1.0) }];
         stage.draw(&mut renderer, round % 2, &items).unwrap();
         renderer.remove_model(model).unwrap();
@@ -227,7 +231,7 @@ fn faces_of_all_kinds_face_outwards() {
             let shrink = (1.6 / mesh.diagonal()) as f32;
             // Mirrored models are inside out: their culling is the caller's business.
             let transform = glam::Mat4::from_scale(glam::Vec3::splat(shrink)).to_cols_array_2d();
-            let item = DrawItem { transform, ..DrawItem::new(model, 5.0).colour(WHITE) };
+            let item = DrawItem { transform, ..DrawItem::new(model, 5.0).color(WHITE) };
             let all = stage.draw(&mut renderer, 0, &[item]).unwrap();
             let front = stage.draw(&mut renderer, 0, &[DrawItem { style: 1, ..item }]).unwrap();
             assert!(all.covered() > 50, "{name}");
@@ -248,7 +252,7 @@ fn holes_are_not_drawn() {
     data.holes = vec![0];
     let model = renderer.add_model(&ControlMesh::new(data).unwrap(), &ModelOptions::default()).unwrap();
     stage.prepare(&mut renderer, 0);
-    let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 4.0).colour(WHITE)]).unwrap();
+    let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 4.0).color(WHITE)]).unwrap();
     assert_eq!(picture.covered(), 0);
     drop(renderer);
     stage.finish();
@@ -315,6 +319,48 @@ fn what_a_device_lacks_is_named_at_once() {
         // SAFETY: as above.
         let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
         assert_eq!(error, format!("{what} of Options is 0: it must be at least 1"));
+    }
+    stage.finish();
+}
+
+/// Has nothing to give.
+struct NoMemory;
+
+// SAFETY: no allocation is ever made.
+unsafe impl Allocator for NoMemory {
+    fn allocate(&self, _: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError> {
+        Err("no memory".into())
+    }
+
+    unsafe fn free(&self, _: Allocation) {}
+}
+
+#[test]
+fn features_that_the_context_was_not_told_of_are_named() {
+    let stage = Stage::new();
+    let (instance, device) = (stage.headless.instance(), stage.headless.device());
+    let made = ContextOptions::default();
+    // SAFETY: the device is of the instance and outlives the context; nothing is made from the context.
+    let error = unsafe {
+        let context = DeviceContext::new(instance, stage.headless.physical_device(), device, Arc::new(NoMemory), made);
+        Renderer::new(&context, &stage.target(), &Options::default()).err().expect("an error").to_string()
+    };
+    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
+    assert!(error.contains(&format!("missing tessellationShader {off}, dynamicRendering {off}:")), "{error}");
+    stage.finish();
+}
+
+#[test]
+fn colors_are_encoded_where_the_format_does_not() {
+    let stage = Stage::new();
+    for (encoding, expected) in [(ColorEncoding::Linear, [128, 0, 255]), (ColorEncoding::Srgb, [188, 0, 255])] {
+        let target = Target { encoding, ..stage.target() };
+        // SAFETY: as in `Stage::renderer`.
+        let mut renderer = unsafe { Renderer::new(stage.headless.context(), &target, &flat()) }.unwrap();
+        let model = renderer.add_model(&square(0.5), &ModelOptions::default()).unwrap();
+        stage.prepare(&mut renderer, 0);
+        let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0).color([0.5, 0.0, 1.0, 1.0])]).unwrap();
+        assert_eq!(picture.at(0.0, 0.0)[..3], expected, "{encoding:?}");
     }
     stage.finish();
 }

@@ -1,5 +1,7 @@
 //! The shaders against their CPU twins: control points and evaluated vertices, captured.
+#![cfg(feature = "headless")]
 
+use ash_subdiv::Scheme;
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::table::CpuSurface;
@@ -33,9 +35,19 @@ fn tolerance(mesh: &ControlMesh) -> f64 {
     8.0 * f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element()
 }
 
+/// The shapes with the schemes that have patches for them.
+fn cases() -> impl Iterator<Item = (&'static str, ControlMesh, Scheme)> {
+    SHAPES.into_iter().flat_map(|name| {
+        let mesh = shape(name).expect("built in");
+        let has_patches = |scheme: &Scheme| CpuSurface::new(&mesh, *scheme, 0).is_ok();
+        let schemes: Vec<_> = Scheme::ALL.into_iter().filter(has_patches).collect();
+        schemes.into_iter().map(move |scheme| (name, mesh.clone(), scheme))
+    })
+}
+
 /// The control points of the twin by face and part, since each construction sorts patches in its own way.
-fn reference(mesh: &ControlMesh) -> HashMap<(u32, i64), (PatchKind, Vec<DVec3>)> {
-    let surface = CpuSurface::new(mesh, 0).expect("small");
+fn reference(mesh: &ControlMesh, scheme: Scheme) -> HashMap<(u32, i64), (PatchKind, Vec<DVec3>)> {
+    let surface = CpuSurface::new(mesh, scheme, 0).expect("small");
     // The GPU starts from f32 positions.
     let points = surface.control_points(|position| position.as_vec3().as_dvec3());
     let patches = surface.plan().patches().iter().zip(surface.origins()).zip(points);
@@ -45,11 +57,10 @@ fn reference(mesh: &ControlMesh) -> HashMap<(u32, i64), (PatchKind, Vec<DVec3>)>
 #[test]
 fn control_points() {
     let headless = headless();
-    for name in SHAPES {
-        let mesh = shape(name).expect("built in");
-        let expected = reference(&mesh);
+    for (name, mesh, scheme) in cases() {
+        let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
-            let options = ModelOptions { construction, ..ModelOptions::default() };
+            let options = ModelOptions { scheme, construction, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let points = captured.control_points().expect("a capture");
             let tables = captured.tables();
@@ -61,7 +72,7 @@ fn control_points() {
                     let error = (Vec3::from(*ours).as_dvec3() - *expected).length();
                     assert!(
                         error < tolerance(&mesh),
-                        "{name} {construction:?} {origin:?} {kind:?} point {i}: {ours:?}, not {expected}"
+                        "{name} {scheme:?} {construction:?} {origin:?} {kind:?} point {i}: {ours:?}, not {expected}"
                     );
                 }
             }
@@ -73,11 +84,10 @@ fn control_points() {
 #[test]
 fn grids() {
     let headless = headless();
-    for name in SHAPES {
-        let mesh = shape(name).expect("built in");
-        let expected = reference(&mesh);
+    for (name, mesh, scheme) in cases() {
+        let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
-            let options = ModelOptions { construction, ..ModelOptions::default() };
+            let options = ModelOptions { scheme, construction, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let tables = captured.tables();
             for (origin, samples) in tables.origins().iter().zip(captured.grid(6).expect("a capture")) {
@@ -85,7 +95,7 @@ fn grids() {
                 let parameters = ash_subdiv::table::grid_parameters(*kind, 6);
                 assert_eq!(samples.len(), parameters.len());
                 for (sample, [u, v]) in samples.iter().zip(parameters) {
-                    let twin = ash_subdiv::patch::evaluate(*kind, points, u, v);
+                    let twin = scheme.evaluate(*kind, points, u, v);
                     check(name, &mesh, sample.position, sample.normal, twin);
                 }
             }
@@ -105,9 +115,8 @@ fn check(name: &str, mesh: &ControlMesh, position: [f32; 3], normal: [f32; 3], t
 #[test]
 fn evaluated_vertices() {
     let headless = headless();
-    for name in ["creature-mixed", "cloth", "torus"] {
-        let mesh = shape(name).expect("built in");
-        let expected = reference(&mesh);
+    for (name, mesh, scheme) in cases().filter(|(name, ..)| ["creature", "creature-mixed", "cloth"].contains(name)) {
+        let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
             for (spacing, factor) in [
                 (Spacing::Equal, 1.0),
@@ -115,7 +124,7 @@ fn evaluated_vertices() {
                 (Spacing::FractionalOdd, 4.3),
                 (Spacing::FractionalEven, 4.3),
             ] {
-                let options = ModelOptions { construction, spacing, ..ModelOptions::default() };
+                let options = ModelOptions { scheme, construction, spacing, ..ModelOptions::default() };
                 let captured = Captured::new(&headless, &mesh, &options).expect("a model");
                 let tables = captured.tables();
                 let vertices = captured.vertices(factor).expect("a capture");
@@ -125,7 +134,7 @@ fn evaluated_vertices() {
                     let origin = tables.origins()[vertex.patch as usize];
                     let (kind, points) = &expected[&(origin.face, origin.sub)];
                     let [u, v, _] = vertex.coordinate.map(f64::from);
-                    let twin = ash_subdiv::patch::evaluate(*kind, points, u, v);
+                    let twin = scheme.evaluate(*kind, points, u, v);
                     check(name, &mesh, vertex.position, vertex.normal, twin);
                 }
                 for (patch, seen) in tables.plan().patches().iter().zip(seen) {

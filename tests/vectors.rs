@@ -5,7 +5,7 @@ mod common;
 
 use ash_subdiv::limit::refine;
 use ash_subdiv::mesh::{Corner, Crease, CreaseMethod};
-use ash_subdiv::patch::{Blend, control_points, evaluate};
+use ash_subdiv::patch::{Blend, Scheme};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData};
 use common::vectors;
@@ -41,7 +41,7 @@ fn mesh(vector: &Value, crease_method: CreaseMethod) -> ControlMesh {
 fn gregory<T: Blend>(topology: &Topology, face: u32, vertex: impl Fn(u32) -> T) -> Vec<T> {
     let size = topology.mesh().face(face).len();
     let kind = if size == 3 { PatchKind::Triangle } else { PatchKind::IrregularQuad };
-    control_points(topology, face, kind, vertex)
+    Scheme::Gregory.control_points(topology, face, kind, vertex)
 }
 
 fn for_each_gregory(mut visit: impl FnMut(&str, &Topology, u32, &Value)) {
@@ -94,7 +94,7 @@ fn evaluation_agrees() {
         let normals = points(&expected["normal_approx"]);
         for (i, at) in expected["params"].as_array().unwrap().iter().enumerate() {
             let at = numbers(at);
-            let sample = evaluate(kind, &points_f64, at[0], at[1]);
+            let sample = Scheme::Gregory.evaluate(kind, &points_f64, at[0], at[1]);
             let position_error = (sample.position - positions[i]).length();
             assert!(position_error < 1e-12 * topology.mesh().diagonal(), "{name} face {face} at {at:?}");
             let angle = sample.normal.angle_between(normals[i]);
@@ -112,10 +112,10 @@ fn regular_faces_are_the_gregory_patch() {
         }
         let vertex = |v| topology.mesh().position(v);
         let gregory = gregory(topology, face, vertex);
-        let bicubic = control_points(topology, face, PatchKind::Regular, vertex);
+        let bicubic = Scheme::Gregory.control_points(topology, face, PatchKind::Regular, vertex);
         for (u, v) in [(0.0, 0.0), (0.3, 0.0), (0.2, 0.7), (1.0, 0.4), (0.9, 1.0)] {
-            let a = evaluate(PatchKind::IrregularQuad, &gregory, u, v);
-            let b = evaluate(PatchKind::Regular, &bicubic, u, v);
+            let a = Scheme::Gregory.evaluate(PatchKind::IrregularQuad, &gregory, u, v);
+            let b = Scheme::Gregory.evaluate(PatchKind::Regular, &bicubic, u, v);
             assert!((a.position - b.position).length() < 1e-12, "{name} face {face} at {u} {v}");
             assert!((a.normal - b.normal).length() < 1e-12, "{name} face {face} at {u} {v}");
         }
@@ -162,5 +162,73 @@ fn check_refined(name: &str, mesh: &ControlMesh, positions: &[DVec3], edges: &[V
         close(refined.position(child[0]), ends[0] as usize, "vertex");
         close(refined.position(child[1]), vertices + edge.expect("an edge"), "edge");
         close(refined.position(child[2]), vertices + edges.len() + topology.face(h) as usize, "face");
+    }
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn acc_points_agree() {
+    let mut faces = 0;
+    for (name, vector) in vectors() {
+        let Some(expected) = vector.get("acc") else { continue };
+        let mesh = mesh(&vector, CreaseMethod::Uniform);
+        let topology = Topology::new(&mesh);
+        for (face, expected) in expected.as_object().unwrap() {
+            faces += 1;
+            let net = |key: &str| -> Vec<Vec<DVec3>> { expected[key].as_array().unwrap().iter().map(points).collect() };
+            let (b, du, dv) = (net("b"), net("U"), net("V"));
+            let face = face.parse().unwrap();
+            let vertex = |v| mesh.position(v);
+            let ours = Scheme::Acc.control_points(&topology, face, PatchKind::IrregularQuad, vertex);
+            let close = |ours: DVec3, expected: DVec3, what: String| {
+                let error = (ours - expected).length();
+                assert!(error < 1e-12 * mesh.diagonal(), "{name} face {face} {what}: {ours}, not {expected}");
+            };
+            for i in 0..16 {
+                close(ours[i], b[i / 4][i % 4], format!("b {i}"));
+            }
+            let [t, x] = [16, 18].map(|at| move |k: usize, side: usize| at + 4 * k + side);
+            // Where the corners' vectors stand in the nets: (i, j) of U, or of V, and the sign.
+            for (slot, [i, j], sign) in [
+                (t(0, 0), [0, 0], 1.0),
+                (t(1, 1), [2, 0], -1.0),
+                (t(2, 0), [2, 3], -1.0),
+                (t(3, 1), [0, 3], 1.0),
+                (x(0, 1), [0, 1], 1.0),
+                (x(3, 0), [0, 2], 1.0),
+                (x(1, 0), [2, 1], -1.0),
+                (x(2, 1), [2, 2], -1.0),
+            ] {
+                close(sign * ours[slot], du[i][j], format!("U {i} {j}"));
+            }
+            for (slot, [i, j], sign) in [
+                (t(0, 1), [0, 0], 1.0),
+                (t(1, 0), [3, 0], 1.0),
+                (t(2, 1), [3, 2], -1.0),
+                (t(3, 0), [0, 2], -1.0),
+                (x(0, 0), [1, 0], 1.0),
+                (x(1, 1), [2, 0], 1.0),
+                (x(2, 0), [2, 2], -1.0),
+                (x(3, 1), [1, 2], -1.0),
+            ] {
+                close(sign * ours[slot], dv[i][j], format!("V {i} {j}"));
+            }
+            check_acc_samples(&name, &mesh, &ours, expected);
+        }
+    }
+    assert!(faces >= 20, "the vectors hold {faces} faces");
+}
+
+fn check_acc_samples(name: &str, mesh: &ControlMesh, ours: &[DVec3], expected: &Value) {
+    let Some(parameters) = expected.get("params") else { return };
+    let normals = expected.get("normal").map(points);
+    for (i, at) in parameters.as_array().unwrap().iter().enumerate() {
+        let at = numbers(at);
+        let sample = Scheme::Acc.evaluate(PatchKind::IrregularQuad, ours, at[0], at[1]);
+        let error = (sample.position - points(&expected["pos"])[i]).length();
+        assert!(error < 1e-12 * mesh.diagonal(), "{name} at {at:?}: position off by {error}");
+        if let Some(normals) = &normals {
+            assert!(sample.normal.angle_between(normals[i]) < 1e-7, "{name} at {at:?}: normal");
+        }
     }
 }

@@ -12,7 +12,7 @@ layout(set = 2, binding = 0, std430) buffer Capture {
     float captured[];
 };
 
-const uint CONTROL_POINT_WORDS = 60u;
+const uint CONTROL_POINT_WORDS = 96u;
 const uint RECORD_WORDS = 10u;
 
 void put(uint at, vec3 x) {
@@ -21,7 +21,7 @@ void put(uint at, vec3 x) {
     captured[at + 2u] = x.z;
 }
 
-// A control point of a patch, by its number in the order of the kind of patch.
+// A control point of a patch, by its number when the corners' own are counted corner by corner.
 void capture_point(uint patch_index, uint number, vec3 x) {
     uint slot = patch_index - capture_first_patch;
     if (slot < capture_patches) {

@@ -21,7 +21,9 @@ layout(push_constant, std430) uniform Draw {
 
 vec3 to_world(vec3 position) {
     vec4 p = vec4(position, 1.0);
-    return vec3(dot(draw.transform[0], p), dot(draw.transform[1], p), dot(draw.transform[2], p));
+    // The same bits in every pipeline: patches of two kinds meet at their edges on the screen, too.
+    precise vec3 world = vec3(dot(draw.transform[0], p), dot(draw.transform[1], p), dot(draw.transform[2], p));
+    return world;
 }
 
 vec3 normal_to_world(vec3 normal) {

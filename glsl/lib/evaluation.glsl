@@ -21,24 +21,19 @@ layout(triangles, SPACING, cw) in;
 layout(quads, SPACING, cw) in;
 #endif
 
-layout(location = 0) in vec3 corner[];
-layout(location = 1) in vec3 edge_plus[];
-layout(location = 2) in vec3 edge_minus[];
-layout(location = 3) in vec3 face_plus[];
-#ifndef REGULAR
-layout(location = 4) in vec3 face_minus[];
-#endif
+// The control points that each corner owns.
+layout(location = 0) in vec3 owned[][OWNED];
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 #ifdef TEXCOORD
-layout(location = 5) in vec2 texcoord[];
+layout(location = 8) in vec2 texcoord[];
 layout(location = 2) out vec2 out_texcoord;
 #endif
 
 #if defined(CAPTURE) || defined(CAPTURE_GRID)
 #include "capture.glsl"
-layout(location = 6) patch in uint captured_patch;
+layout(location = 9) patch in uint captured_patch;
 uint capture_place;
 uint capture_places;
 #endif
@@ -83,7 +78,8 @@ void emit(Sample surface, vec3 at) {
 #endif
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);
-    gl_Position = view.view_projection * vec4(world_position, 1.0);
+    precise vec4 clip = view.view_projection * vec4(world_position, 1.0);
+    gl_Position = clip;
 }
 
 #endif

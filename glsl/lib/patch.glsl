@@ -35,7 +35,8 @@ vec3 symmetric_sum(vec4 weights, vec3 x0, vec3 x1, vec3 x2, vec3 x3) {
 vec3 unit_normal(vec3 du, vec3 dv, vec3 fallback) {
     vec3 normal = cross(du, dv);
     float squared = dot(normal, normal);
-    if (squared <= 0.0) {
+    // Within 1e-5 rad of each other: what is left of the cross product is rounding.
+    if (squared <= 1e-10 * (dot(du, du) * dot(dv, dv))) {
         normal = fallback;
         squared = dot(normal, normal);
     }

@@ -49,14 +49,22 @@ vec3 edge_neighbour(Ring ring, uint j) {
 
 // Limit point and tangent frame.
 void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3 b_out) {
-    uint weight = ring.type + 1u + 2u * ring.edges;
-    precise vec3 p = ring_types[weight] * centre;
-    precise vec3 a = ring_types[weight + 1u] * centre;
-    precise vec3 b = ring_types[weight + 2u] * centre;
+    uint first = ring.type + 1u + 2u * ring.edges;
     uint count = ring.faces + ring.edges;
-    for (uint i = 0u; i < count; ++i) {
+    // The first entry and the last before all else: at a crease these are its ends, which the ring on the other side has
+    // the other way round, and so both get the same bits.
+    vec3 x0 = vertex_position(ring_entries[ring.entries]);
+    vec3 x1 = vertex_position(ring_entries[ring.entries + count - 1u] & ~TRIANGLE_BIT);
+    uint last = first + 3u * count;
+    precise vec3 p = ring_types[first + 3u] * x0 + ring_types[last] * x1;
+    precise vec3 a = ring_types[first + 4u] * x0 + ring_types[last + 1u] * x1;
+    precise vec3 b = ring_types[first + 5u] * x0 + ring_types[last + 2u] * x1;
+    p += ring_types[first] * centre;
+    a += ring_types[first + 1u] * centre;
+    b += ring_types[first + 2u] * centre;
+    for (uint i = 1u; i + 1u < count; ++i) {
         vec3 x = vertex_position(ring_entries[ring.entries + i] & ~TRIANGLE_BIT);
-        weight += 3u;
+        uint weight = first + 3u + 3u * i;
         p += ring_types[weight] * x;
         a += ring_types[weight + 1u] * x;
         b += ring_types[weight + 2u] * x;

@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
 #include "lighting.glsl"
+#include "output.glsl"
 
 layout(location = 0) in vec3 world_position;
-layout(location = 0) out vec4 colour;
 
 void main() {
     vec3 normal = cross(dFdx(world_position), dFdy(world_position));
-    colour = vec4(lit(draw.colour.rgb, world_position, normal, view.eye.xyz, view.light.xyz), draw.colour.a);
+    write_colour(lit(draw.colour.rgb, world_position, normal, view.eye.xyz, view.light.xyz), draw.colour.a);
 }

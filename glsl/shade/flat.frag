@@ -2,9 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
-
-layout(location = 0) out vec4 colour;
+#include "output.glsl"
 
 void main() {
-    colour = draw.colour;
+    write_colour(draw.colour.rgb, draw.colour.a);
 }

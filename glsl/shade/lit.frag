@@ -3,11 +3,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
 #include "lighting.glsl"
+#include "output.glsl"
 
 layout(location = 0) in vec3 world_position;
-layout(location = 1) in vec3 world_normal;
-layout(location = 0) out vec4 colour;
+// Taken inside the triangle: at a silhouette, a normal from beyond its edge may face away.
+layout(location = 1) centroid in vec3 world_normal;
 
 void main() {
-    colour = vec4(lit(draw.colour.rgb, world_position, world_normal, view.eye.xyz, view.light.xyz), draw.colour.a);
+    write_colour(lit(draw.colour.rgb, world_position, world_normal, view.eye.xyz, view.light.xyz), draw.colour.a);
 }

@@ -2,11 +2,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
+#include "output.glsl"
 
 layout(location = 0) in vec3 world_position;
-layout(location = 1) in vec3 world_normal;
-layout(location = 0) out vec4 colour;
+// Taken inside the triangle: at a silhouette, a normal from beyond its edge may face away.
+layout(location = 1) centroid in vec3 world_normal;
 
 void main() {
-    colour = vec4(0.5 + 0.5 * normalize(world_normal), draw.colour.a);
+    write_colour(0.5 + 0.5 * normalize(world_normal), draw.colour.a);
 }

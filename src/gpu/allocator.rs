@@ -20,7 +20,9 @@ pub enum MemoryLocation {
 /// The one resource that a dedicated allocation is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dedicated {
+    /// For `VkMemoryDedicatedAllocateInfo::buffer`.
     Buffer(vk::Buffer),
+    /// For `VkMemoryDedicatedAllocateInfo::image`.
     Image(vk::Image),
 }
 
@@ -31,6 +33,7 @@ pub struct AllocationRequest<'a> {
     pub name: &'a str,
     /// Size, alignment and memory types, as Vulkan gave them for the buffer or image.
     pub requirements: vk::MemoryRequirements,
+    /// Who reads and writes it.
     pub location: MemoryLocation,
     /// A buffer or an image with linear tiling; not an image with optimal tiling (`bufferImageGranularity`).
     pub linear: bool,
@@ -41,8 +44,11 @@ pub struct AllocationRequest<'a> {
 /// Memory from an [`Allocator`]: `size` bytes of `memory`, from `offset` on.
 #[derive(Debug)]
 pub struct Allocation {
+    /// What the resource is bound to.
     pub memory: vk::DeviceMemory,
+    /// Bytes from the start of `memory`.
     pub offset: u64,
+    /// Bytes, at least as many as were asked for.
     pub size: u64,
     /// The host address of the first byte of this allocation (not of `memory`), if it is mapped.
     pub mapped: Option<NonNull<u8>>,
@@ -112,6 +118,9 @@ unsafe impl Sync for Allocation {}
 /// [`MemoryLocation::Readback`] is host-coherent, and mapped for as long as the allocation lives.
 pub unsafe trait Allocator: Send + Sync {
     /// Memory for one buffer or image.
+    ///
+    /// # Errors
+    /// There is no such memory left; the crate passes the reason on in [`GpuError::Allocation`](super::GpuError::Allocation).
     fn allocate(&self, request: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError>;
 
     /// Takes back an allocation.

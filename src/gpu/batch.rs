@@ -5,7 +5,9 @@ use ash::vk;
 /// The domain of a tessellation evaluation shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Domain {
+    /// Four-cornered patches, with four outer factors and two inner ones.
     Quads,
+    /// Three-cornered patches, with three outer factors and an inner one.
     Triangles,
 }
 
@@ -109,8 +111,11 @@ impl PatchBatch {
 /// One `vkCmdDraw(vertex_count, instance_count, 0, first_instance)`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PatchDraw {
+    /// Vertices of an instance: control points of all its patches.
     pub vertex_count: u32,
+    /// Instances drawn.
     pub instance_count: u32,
+    /// The number of the first.
     pub first_instance: u32,
     /// What the vertex shader multiplies `gl_InstanceIndex` by; the same in all draws of one call.
     pub patches_per_instance: u32,

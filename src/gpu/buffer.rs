@@ -13,7 +13,9 @@ pub struct BufferDesc<'a> {
     pub name: &'a str,
     /// Bytes; rounded up to a multiple of 4, and at least 4.
     pub size: u64,
+    /// What Vulkan is to use it for.
     pub usage: vk::BufferUsageFlags,
+    /// Who reads and writes it.
     pub location: MemoryLocation,
 }
 
@@ -30,6 +32,10 @@ pub struct Buffer {
 }
 
 impl Buffer {
+    /// A new buffer, with memory.
+    ///
+    /// # Errors
+    /// No memory, or a size the device does not have.
     pub fn new(context: &Arc<DeviceContext>, desc: &BufferDesc<'_>) -> Result<Self, GpuError> {
         let BufferDesc { name, usage, location, .. } = *desc;
         let max = context.properties().max_buffer_size;
@@ -77,6 +83,9 @@ impl Buffer {
     }
 
     /// A buffer for the host to fill, filled with `data`.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`]; [`GpuError::NotMapped`] where the host cannot write.
     pub fn with_data<T: NoUninit>(
         context: &Arc<DeviceContext>,
         name: &str,
@@ -99,6 +108,7 @@ impl Buffer {
         self.size
     }
 
+    /// The debug name.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -109,6 +119,9 @@ impl Buffer {
     }
 
     /// Copies `data` to `offset`, in bytes from the start of the buffer.
+    ///
+    /// # Errors
+    /// [`GpuError::NotMapped`] and [`GpuError::OutOfBounds`].
     pub fn write<T: NoUninit>(&mut self, offset: u64, data: &[T]) -> Result<(), GpuError> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let target = self.mapped(offset, bytes.len() as u64, "written")?;
@@ -118,6 +131,9 @@ impl Buffer {
     }
 
     /// Copies `count` values out of the buffer, from `offset` bytes on.
+    ///
+    /// # Errors
+    /// [`GpuError::NotMapped`] and [`GpuError::OutOfBounds`].
     pub fn read<T: AnyBitPattern + NoUninit>(&self, offset: u64, count: usize) -> Result<Vec<T>, GpuError> {
         let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
         let source = self.mapped(offset, bytes, "read")?;

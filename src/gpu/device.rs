@@ -10,11 +10,17 @@ use super::{Allocator, Features, PatchBatch};
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct DeviceProperties {
+    /// As the driver calls it.
     pub name: String,
+    /// Discrete, integrated, CPU, and so on.
     pub device_type: vk::PhysicalDeviceType,
+    /// The newest Vulkan that the device has, as `VK_MAKE_API_VERSION` packs it.
     pub api_version: u32,
+    /// Which driver it is; zero where the device does not say.
     pub driver: vk::DriverId,
+    /// The driver's name.
     pub driver_name: String,
+    /// The driver's version, in its own words.
     pub driver_info: String,
     /// How many patches a draw instance may hold.
     pub patch_batch: PatchBatch,

@@ -11,10 +11,15 @@ use super::{Allocation, AllocationRequest, Dedicated, DeviceContext, GpuError, M
 pub struct ImageDesc<'a> {
     /// The debug name.
     pub name: &'a str,
+    /// Pixels.
     pub extent: vk::Extent2D,
+    /// Of a colour, depth or stencil image.
     pub format: vk::Format,
+    /// What Vulkan is to use it for.
     pub usage: vk::ImageUsageFlags,
+    /// Samples a pixel.
     pub samples: vk::SampleCountFlags,
+    /// Levels, the whole image included.
     pub mip_levels: u32,
 }
 
@@ -41,6 +46,10 @@ pub struct Image {
 }
 
 impl Image {
+    /// A new image, with memory, in the layout `UNDEFINED`.
+    ///
+    /// # Errors
+    /// No memory, or a size or sample count the device does not have.
     pub fn new(context: &Arc<DeviceContext>, desc: &ImageDesc<'_>) -> Result<Self, GpuError> {
         let ImageDesc { name, extent, format, usage, samples, mip_levels } = *desc;
         let properties = context.properties();
@@ -126,18 +135,22 @@ impl Image {
         self.view.as_ref().map_or(vk::ImageView::null(), Owned::raw)
     }
 
+    /// The debug name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
+    /// Pixels.
     pub fn extent(&self) -> vk::Extent2D {
         self.extent
     }
 
+    /// The format.
     pub fn format(&self) -> vk::Format {
         self.format
     }
 
+    /// Samples a pixel.
     pub fn samples(&self) -> vk::SampleCountFlags {
         self.samples
     }

@@ -8,8 +8,10 @@ use super::{DeviceContext, GpuError, Owned, Shader, VkResultExt};
 /// What a graphics pipeline draws into.
 #[derive(Debug, Clone, Copy)]
 pub enum RenderTarget<'a> {
+    #[allow(missing_docs, reason = "named as in Vulkan")]
     /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
     Dynamic { color: &'a [vk::Format], depth: vk::Format, stencil: vk::Format, view_mask: u32 },
+    #[allow(missing_docs, reason = "named as in Vulkan")]
     /// A subpass of a render pass that has this many colour attachments.
     RenderPass { render_pass: vk::RenderPass, subpass: u32, color_attachments: u32 },
 }
@@ -26,7 +28,9 @@ impl RenderTarget<'_> {
 /// The depth test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DepthState {
+    /// What a fragment's depth has to be to what is there.
     pub compare: vk::CompareOp,
+    /// Whether the depth of fragments that pass is kept.
     pub write: bool,
 }
 
@@ -40,7 +44,9 @@ impl DepthState {
 /// What is added to the depth of a fragment (Vulkan 1.3, "Depth Bias").
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DepthBias {
+    /// Smallest steps of the depth format.
     pub constant: f32,
+    /// Times the greatest slope of depth in the triangle.
     pub slope: f32,
 }
 
@@ -79,6 +85,7 @@ impl Blend {
 /// A graphics pipeline in the making: start from [`GraphicsPipelineDesc::new`] and set what differs.
 ///
 /// Viewport and scissor are dynamic.
+#[allow(missing_docs, reason = "named as in Vulkan")]
 #[derive(Debug, Clone)]
 pub struct GraphicsPipelineDesc<'a> {
     /// The debug name.
@@ -250,6 +257,7 @@ impl<'a> GraphicsPipelineDesc<'a> {
 }
 
 /// A compute pipeline in the making.
+#[allow(missing_docs, reason = "named as in Vulkan")]
 #[derive(Debug, Clone, Copy)]
 pub struct ComputePipelineDesc<'a> {
     /// The debug name.

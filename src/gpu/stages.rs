@@ -7,23 +7,29 @@ use super::{DeviceContext, GpuError, Owned, VkResultExt};
 /// A specialization constant: its `constant_id`, and its value as 32 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Specialization {
+    /// The `constant_id`.
     pub id: u32,
+    /// The value, as Vulkan copies it.
     pub bits: u32,
 }
 
 impl Specialization {
+    /// A `uint`.
     pub fn uint(id: u32, value: u32) -> Self {
         Self { id, bits: value }
     }
 
+    /// An `int`.
     pub fn int(id: u32, value: i32) -> Self {
         Self { id, bits: value.cast_unsigned() }
     }
 
+    /// A `float`.
     pub fn float(id: u32, value: f32) -> Self {
         Self { id, bits: value.to_bits() }
     }
 
+    /// A `bool`.
     pub fn bool(id: u32, value: bool) -> Self {
         Self { id, bits: value.into() }
     }
@@ -32,37 +38,46 @@ impl Specialization {
 /// One shader stage of a pipeline; its entry point is `main`.
 #[derive(Debug, Clone, Copy)]
 pub struct Shader<'a> {
+    /// Just one.
     pub stage: vk::ShaderStageFlags,
     /// SPIR-V, such as a constant of [`shaders`](super::shaders).
     pub code: &'a [u32],
+    /// Values for constants of the code; those not named keep their default.
     pub specialization: &'a [Specialization],
 }
 
 impl<'a> Shader<'a> {
+    /// A stage without specialization constants.
     pub fn new(stage: vk::ShaderStageFlags, code: &'a [u32]) -> Self {
         Self { stage, code, specialization: &[] }
     }
 
+    /// The vertex stage.
     pub fn vertex(code: &'a [u32]) -> Self {
         Self::new(vk::ShaderStageFlags::VERTEX, code)
     }
 
+    /// The tessellation control stage.
     pub fn tess_control(code: &'a [u32]) -> Self {
         Self::new(vk::ShaderStageFlags::TESSELLATION_CONTROL, code)
     }
 
+    /// The tessellation evaluation stage.
     pub fn tess_evaluation(code: &'a [u32]) -> Self {
         Self::new(vk::ShaderStageFlags::TESSELLATION_EVALUATION, code)
     }
 
+    /// The geometry stage.
     pub fn geometry(code: &'a [u32]) -> Self {
         Self::new(vk::ShaderStageFlags::GEOMETRY, code)
     }
 
+    /// The fragment stage.
     pub fn fragment(code: &'a [u32]) -> Self {
         Self::new(vk::ShaderStageFlags::FRAGMENT, code)
     }
 
+    /// The compute stage.
     pub fn compute(code: &'a [u32]) -> Self {
         Self::new(vk::ShaderStageFlags::COMPUTE, code)
     }

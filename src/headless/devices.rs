@@ -12,6 +12,7 @@ use crate::gpu::{DeviceProperties, Features};
 pub struct DeviceInfo {
     /// The number that selects it in `SUBDIV_DEVICE` and `--device`.
     pub index: usize,
+    /// What it is and can do.
     pub properties: DeviceProperties,
     /// What the headless device needs and this one lacks; it can be used if this is empty.
     pub missing: Vec<String>,

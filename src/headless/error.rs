@@ -1,6 +1,7 @@
 use crate::gpu::GpuError;
 
 /// Why there is no device of our own, or why it failed.
+#[allow(missing_docs, reason = "the messages say it")]
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum HeadlessError {

@@ -67,6 +67,10 @@ impl Drop for OwnedDevice {
 }
 
 impl Headless {
+    /// Opens the device.
+    ///
+    /// # Errors
+    /// No Vulkan, no validation layer where it is asked for, no device that fits, failed Vulkan calls.
     pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
         let set = |name| env::var(name).ok().filter(|value| !value.is_empty());
         let validation = options.validation || set("SUBDIV_VALIDATION").is_some_and(|value| value != "0");
@@ -125,14 +129,17 @@ impl Headless {
         &self.instance
     }
 
+    /// The physical device.
     pub fn physical_device(&self) -> vk::PhysicalDevice {
         self.physical_device
     }
 
+    /// The family of the queue, which draws, copies and computes.
     pub fn queue_family(&self) -> u32 {
         self.queue_family
     }
 
+    /// What the device is and can do.
     pub fn properties(&self) -> &DeviceProperties {
         self.context.properties()
     }

@@ -10,11 +10,13 @@ use crate::gpu::{Buffer, BufferDesc, GpuError, Image, ImageDesc, MemoryLocation,
 /// What an [`Offscreen`] is to be.
 #[derive(Debug, Clone, Copy)]
 pub struct OffscreenDesc {
+    /// Pixels.
     pub extent: vk::Extent2D,
     /// Samples a pixel; resolved to one when drawing ends.
     pub samples: vk::SampleCountFlags,
     /// Of four bytes a pixel: `R8G8B8A8_SRGB` or `R8G8B8A8_UNORM`.
     pub color: vk::Format,
+    /// The format of the depth image.
     pub depth: vk::Format,
 }
 
@@ -42,6 +44,10 @@ pub struct Offscreen {
 }
 
 impl Offscreen {
+    /// Makes the images and the buffer.
+    ///
+    /// # Errors
+    /// Colour formats of other than four bytes, sizes and sample counts the device does not have, no memory.
     pub fn new(headless: &Headless, desc: &OffscreenDesc) -> Result<Self, GpuError> {
         use vk::ImageUsageFlags as Usage;
         let context = headless.context();
@@ -71,10 +77,12 @@ impl Offscreen {
         Ok(Self { desc: *desc, color, multisampled, depth, pixels, device: context.device().clone() })
     }
 
+    /// What it was made as.
     pub fn desc(&self) -> &OffscreenDesc {
         &self.desc
     }
 
+    /// Pixels.
     pub fn extent(&self) -> vk::Extent2D {
         self.desc.extent
     }

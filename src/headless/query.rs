@@ -11,6 +11,7 @@ use crate::gpu::{DeviceContext, GpuError, Owned, VkResultExt};
 /// What the shader stages were called for. Counts of stages that the device cannot count are 0.
 ///
 /// lavapipe counts tessellation evaluations exactly, and fragments too often.
+#[allow(missing_docs, reason = "named as in Vulkan")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     pub input_vertices: u64,
@@ -61,6 +62,10 @@ pub struct StatisticsQuery {
 }
 
 impl StatisticsQuery {
+    /// Makes the query.
+    ///
+    /// # Errors
+    /// The device has no `pipelineStatisticsQuery`; failed Vulkan calls.
     pub fn new(headless: &Headless) -> Result<Self, GpuError> {
         let context = headless.context();
         if !context.features().statistics {
@@ -121,6 +126,10 @@ pub struct Timestamps {
 }
 
 impl Timestamps {
+    /// Room for `count` points in time.
+    ///
+    /// # Errors
+    /// Failed Vulkan calls.
     pub fn new(headless: &Headless, count: u32) -> Result<Self, GpuError> {
         let info = vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(count);
         let context = headless.context();

@@ -9,8 +9,11 @@ pub(super) const MIN_LEN: usize = 256;
 /// Weighted sums: output `i` is the sum of `weights[k] * input[indices[k]]` for k in `offsets[i]..offsets[i + 1]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stencils {
+    /// Where the terms of each output start, and after the last output their number.
     pub offsets: Vec<u32>,
+    /// The input of each term.
     pub indices: Vec<u32>,
+    /// The weight of each term. Those of one output add up to 1.
     pub weights: Vec<f64>,
 }
 
@@ -32,6 +35,7 @@ impl Stencils {
         self.offsets.len() - 1
     }
 
+    /// Whether there are no outputs.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

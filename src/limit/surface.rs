@@ -5,7 +5,7 @@ use super::masks::{corner_limit, dart_edge};
 use super::refine::{refine, touching_vertices};
 use crate::mesh::{ControlMesh, MeshError, SHARPNESS_INFINITE};
 use crate::patch::bicubic::Basis;
-use crate::patch::{Sample, control_points};
+use crate::patch::{Sample, Scheme};
 use crate::topology::{PatchKind, Topology, draws_face};
 use glam::DVec3;
 use std::sync::OnceLock;
@@ -16,8 +16,8 @@ use std::sync::OnceLock;
 /// around four), so what is cut off is at most 2e-12 of the edges there.
 const MAX_DEPTH: u32 = 64;
 
-/// Coordinates from which on differences are not sure to be finite.
-const MAX_COORDINATE: f64 = 1e300;
+/// Differences of larger coordinates need not be finite as f32, as those of every mesh must be.
+const MAX_COORDINATE: f64 = 1e38;
 
 /// The Catmull-Clark limit surface of a control mesh in f64, with OpenSubdiv's rules for boundaries, creases,
 /// corners and triangles.
@@ -67,9 +67,11 @@ pub struct LimitSurface<'m> {
 /// A point of a limit surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimitSample {
+    /// In object space.
     pub position: DVec3,
-    /// Derivatives by the parameters of the face.
+    /// Derivative by u.
     pub du: DVec3,
+    /// Derivative by v.
     pub dv: DVec3,
     /// Of length one along `du x dv`, or zero where there is none.
     pub normal: DVec3,
@@ -79,7 +81,7 @@ impl<'m> LimitSurface<'m> {
     /// Nothing is refined yet.
     ///
     /// # Errors
-    /// [`MeshError::TooFar`] if a coordinate is so large that differences of coordinates need not be finite.
+    /// [`MeshError::TooFar`] if a coordinate is beyond 1e38.
     pub fn new(mesh: &'m ControlMesh) -> Result<Self, MeshError> {
         let positions = &mesh.data().positions;
         if let Some(vertex) = positions.iter().position(|p| p.iter().any(|x| x.abs() > MAX_COORDINATE)) {
@@ -193,7 +195,7 @@ impl Node {
             dart_edge(&topology, ring).is_none() && !is_semi_sharp_at(&mesh, topology.mesh_vertex(h as u32))
         };
         let shape = if topology.patch_kind(0) == Some(PatchKind::Regular) && corners.all(is_plain) {
-            let points = control_points(&topology, 0, PatchKind::Regular, |v| mesh.position(v));
+            let points = Scheme::Gregory.control_points(&topology, 0, PatchKind::Regular, |v| mesh.position(v));
             Shape::Regular(Box::new(points.try_into().expect("16 points of a regular patch")))
         } else {
             drop(topology);

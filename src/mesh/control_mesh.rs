@@ -43,11 +43,11 @@ pub enum TriangleRule {
 pub enum FaceVaryingRule {
     /// Smooth everywhere.
     None,
-    /// Values that only one of the faces around a vertex has.
+    /// Smooth inside and along seams; linear at the corners of regions.
     CornersOnly,
-    /// As `CornersOnly`; and all at a vertex with three or more values.
+    /// As `CornersOnly`, and linear where three or more regions meet.
     CornersPlus1,
-    /// As `CornersPlus1`; and where a seam ends inside the surface; and of two values at a vertex both if one stays.
+    /// As `CornersPlus1`, and linear at darts and concave corners.
     CornersPlus2,
     /// Linear along every seam and boundary.
     Boundaries,
@@ -59,20 +59,25 @@ pub enum FaceVaryingRule {
 /// A crease: the edge between two vertices and its sharpness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crease {
+    /// The ends of the edge, in either order.
     pub vertices: [u32; 2],
+    /// From 0 (smooth) up; [`SHARPNESS_INFINITE`] and more is infinitely sharp.
     pub sharpness: f32,
 }
 
 /// A sharp vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
+    /// The vertex.
     pub vertex: u32,
+    /// From 0 (smooth) up; [`SHARPNESS_INFINITE`] and more is infinitely sharp.
     pub sharpness: f32,
 }
 
 /// Values that may differ at one vertex from face to face: a pool, and an index into it a face corner.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FaceVarying<T> {
+    /// The pool, in any order.
     pub values: Vec<T>,
     /// One a face corner, in the order of the faces' corners.
     pub indices: Vec<u32>,
@@ -103,13 +108,19 @@ pub struct MeshData {
     pub texcoords: Option<FaceVarying<[f32; 2]>>,
     /// Authored normals. The smooth surface has normals of its own; these are kept for callers.
     pub normals: Option<FaceVarying<[f32; 3]>>,
+    /// Sharp edges. Of several for one edge the last counts.
     pub creases: Vec<Crease>,
+    /// Sharp vertices.
     pub corners: Vec<Corner>,
     /// Faces that shape the surface but are not drawn.
     pub holes: Vec<u32>,
+    /// What boundaries do to the surface.
     pub boundary: BoundaryRule,
+    /// How finite sharpness is subdivided.
     pub crease_method: CreaseMethod,
+    /// How triangles are subdivided.
     pub triangle_rule: TriangleRule,
+    /// How texture coordinates are refined ([`crate::limit::refine`]). Within a patch they are interpolated linearly.
     pub face_varying_rule: FaceVaryingRule,
 }
 
@@ -117,6 +128,9 @@ pub struct MeshData {
 ///
 /// Vertices, faces and face corners keep the numbers they were given. A *corner number* (also: half-edge number) is
 /// an index into [`MeshData::face_vertices`]; half-edge `h` runs from its corner to the next corner of the face.
+///
+/// # Panics
+/// Methods that take the number of a vertex or a face panic if there is none with that number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControlMesh {
     data: MeshData,
@@ -150,10 +164,12 @@ impl ControlMesh {
         self.data
     }
 
+    /// The number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.data.positions.len()
     }
 
+    /// The number of faces, holes included.
     pub fn face_count(&self) -> usize {
         self.data.face_sizes.len()
     }
@@ -173,6 +189,7 @@ impl ControlMesh {
         self.twins.iter().filter(|&&t| t == adjacency::NO_TWIN).count()
     }
 
+    /// Where a vertex is, in object space.
     pub fn position(&self, vertex: u32) -> DVec3 {
         self.data.positions[vertex as usize].into()
     }
@@ -228,8 +245,8 @@ fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     if data.face_sizes.is_empty() {
         return Err(MeshError::Empty { what: "faces" });
     }
-    // The top bit of an index is a flag in the GPU tables, and u32::MAX means "none".
-    let max = (u32::MAX >> 1) as usize;
+    // Ring tables have up to three entries a face corner, counted in u32; the top bit of an index is a flag there.
+    let max = 1 << 30;
     for (what, count) in [("vertices", count), ("face corners", data.face_vertices.len())] {
         if count > max {
             return Err(MeshError::TooLarge { what, count, max });
@@ -248,7 +265,8 @@ fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     if corners != data.face_vertices.len() {
         return Err(MeshError::CornerCount { what: "vertices", given: data.face_vertices.len(), corners });
     }
-    if let Some(vertex) = data.positions.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+    // As the GPU sees them.
+    if let Some(vertex) = data.positions.iter().position(|p| p.iter().any(|&x| !(x as f32).is_finite())) {
         return Err(MeshError::NotFinite { vertex: vertex as u32, position: data.positions[vertex] });
     }
     // Which face used a vertex last: finds repeated vertices in linear time whatever the size of a face.

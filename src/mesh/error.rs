@@ -4,12 +4,13 @@ use std::path::PathBuf;
 ///
 /// Face, vertex and corner numbers count from zero; `line` numbers from one. A reader that knows the line of the
 /// offending element wraps the error in [`MeshError::AtLine`].
+#[allow(missing_docs, reason = "the messages say it")]
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
     #[error("the mesh has no {what}: a control mesh needs at least one face")]
     Empty { what: &'static str },
-    #[error("vertex {vertex} is at ({}, {}, {}): positions must be finite numbers", position[0], position[1], position[2])]
+    #[error("vertex {vertex} is at ({}, {}, {}): positions must be finite numbers of at most 3.4e38", position[0], position[1], position[2])]
     NotFinite { vertex: u32, position: [f64; 3] },
     #[error("vertex {vertex} is at ({}, {}, {}): the limit surface needs coordinates up to {max:e}", position[0], position[1], position[2])]
     TooFar { vertex: u32, position: [f64; 3], max: f64 },

@@ -12,7 +12,9 @@ use crate::patch::bicubic::{Basis, cubic, evaluate_tensor};
 /// What a corner of a patch takes from its one-ring.
 #[derive(Debug)]
 pub struct PatchCorner<'r, T> {
+    /// The one-ring around the corner.
     pub ring: &'r RingValues<T>,
+    /// Its limit point and tangents.
     pub frame: &'r Frame<T>,
     /// The ring edge that is the corner's plus edge; the next one is its minus edge.
     pub index: usize,
@@ -27,7 +29,7 @@ impl<T: Blend> PatchCorner<'_, T> {
         self.ring.edge_point(self.frame, self.minus_index())
     }
 
-    fn minus_index(&self) -> usize {
+    pub(crate) fn minus_index(&self) -> usize {
         (self.index + 1) % self.ring.shape.edges()
     }
 }
@@ -94,29 +96,37 @@ pub fn evaluate_gregory_triangle<P: Point>(points: &[P; 15], u: P::Scalar, v: P:
     let [c1, c2, c3, c12, c24] = [1.0, 2.0, 3.0, 12.0, 24.0].map(scalar::<P>);
     let b = [u, v, c1 - u - v];
     let [p, e, f] = [&points[0..3], &points[3..9], &points[9..15]];
-    let mut position = P::default();
+    // On an edge the terms of the others are zero, and what is left has the bits of a quad's sum along its edge.
+    let cube = |k: usize| p[k] * ((b[k] * b[k]) * b[k]);
+    let corners = (cube(0) + cube(1)) + cube(2);
+    // The two inner terms of the cubic along the edge from corner k to corner n; the factor is 1 on the edge itself.
+    let edge_terms = |k: usize, n: usize| {
+        let (x, y) = (b[k], b[n]);
+        (e[2 * k] * (c3 * (x * x) * y) + e[2 * n + 1] * (c3 * (y * y) * x)) * (x + y)
+    };
+    let edges = (edge_terms(0, 1) + edge_terms(1, 2)) + edge_terms(2, 0);
+    let mut inner = P::default();
     // Partial derivatives by u, v and w as if they were independent.
     let mut gradient = [P::default(); 3];
     for k in 0..3 {
         let (n, o) = ((k + 1) % 3, (k + 2) % 3);
         let (x, y, z) = (b[k], b[n], b[o]);
         // Corner k.
-        position = position + p[k] * (x * x * x);
         gradient[k] = gradient[k] + p[k] * (c3 * x * x);
         // The edge from corner k to corner n.
         let (plus, minus) = (e[2 * k], e[2 * n + 1]);
         let edge = plus * x + minus * y;
         let scale = c3 * x * y * (x + y);
-        position = position + edge * scale;
         gradient[k] = gradient[k] + edge * (c3 * y * (c2 * x + y)) + plus * scale;
         gradient[n] = gradient[n] + edge * (c3 * x * (x + c2 * y)) + minus * scale;
         // The face point of corner k.
         let face = blend(f[2 * k], y, f[2 * k + 1], z);
-        position = position + face * (c12 * x * x * y * z);
+        inner = inner + face * (c12 * x * x * y * z);
         gradient[k] = gradient[k] + face * (c24 * x * y * z);
         gradient[n] = gradient[n] + face * (c12 * x * x * z);
         gradient[o] = gradient[o] + face * (c12 * x * x * y);
     }
+    let position = (corners + edges) + inner;
     let normal = unit_normal(gradient[0] - gradient[2], gradient[1] - gradient[2], (p[1] - p[0]).cross(p[2] - p[0]));
     Sample { position, normal }
 }

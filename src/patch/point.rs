@@ -7,9 +7,12 @@ use std::ops::{Add, Mul, Sub};
 pub trait Point:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<Self::Scalar, Output = Self> + Send + Sync
 {
+    /// Of its coordinates.
     type Scalar: num_traits::Float + Send + Sync;
 
+    /// The cross product.
     fn cross(self, other: Self) -> Self;
+    /// The scalar product.
     fn dot(self, other: Self) -> Self::Scalar;
 }
 
@@ -40,6 +43,7 @@ impl Point for DVec3 {
 /// A point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample<P> {
+    /// Object space.
     pub position: P,
     /// Of length one, towards the side from which the patch is counter-clockwise.
     pub normal: P,
@@ -58,6 +62,8 @@ pub(crate) fn unit_normal<P: Point>(du: P, dv: P, fallback: P) -> P {
     use num_traits::Float;
     let normal = du.cross(dv);
     let (squared, zero) = (normal.dot(normal), scalar::<P>(0.0));
-    let (normal, squared) = if squared > zero { (normal, squared) } else { (fallback, fallback.dot(fallback)) };
+    // Within 1e-5 rad of each other: what is left of the cross product is rounding.
+    let least = scalar::<P>(1e-10) * (du.dot(du) * dv.dot(dv));
+    let (normal, squared) = if squared > least { (normal, squared) } else { (fallback, fallback.dot(fallback)) };
     if squared > zero { normal * squared.sqrt().recip() } else { normal }
 }

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 /// The connectivity of a one-ring, without the values: what all of its weights depend on.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct RingShape {
+    /// The rule for its limit point and tangents.
     pub kind: RingKind,
     /// Whether the first and the last edge differ: always for [`RingKind::Crease`], never for [`RingKind::Smooth`].
     pub open: bool,
@@ -25,10 +26,12 @@ impl RingShape {
         Self { kind: ring.kind, open: ring.open, triangles }
     }
 
+    /// Number of faces.
     pub fn faces(&self) -> usize {
         self.triangles.len()
     }
 
+    /// Number of edges: as many as faces, and one more if the ring is open.
     pub fn edges(&self) -> usize {
         self.faces() + usize::from(self.open)
     }
@@ -54,9 +57,9 @@ impl RingShape {
         self.edge_direction(1)[0]
     }
 
-    /// Whether [`RingValues::edge_point`] is the frame's: everywhere but around a corner with several faces, which is a cone.
+    /// Whether [`RingValues::edge_point`] is the frame's: everywhere but in a corner, which is a cone.
     pub fn has_frame(&self) -> bool {
-        self.kind != RingKind::Corner || (self.open && self.faces() == 1)
+        self.kind != RingKind::Corner
     }
 }
 
@@ -73,6 +76,7 @@ fn cos_sin(num: usize, den: usize) -> [f64; 2] {
 /// A one-ring of quads and triangles with a value at each vertex.
 #[derive(Debug, Clone)]
 pub struct RingValues<T> {
+    /// What the weights depend on.
     pub shape: RingShape,
     /// At the vertex itself.
     pub centre: T,
@@ -85,8 +89,11 @@ pub struct RingValues<T> {
 /// The limit point of a ring and its tangent frame: `e_j = p + a cos(phi_j) + b sin(phi_j)`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Frame<T> {
+    /// The limit point.
     pub p: T,
+    /// From `p` to the edge point of edge 0.
     pub a: T,
+    /// The tangent at a right angle to `a` in the plane of parameters, counter-clockwise.
     pub b: T,
 }
 
@@ -132,12 +139,14 @@ impl<T: Blend> RingValues<T> {
 
     /// Limit point and tangent frame (Loop et al. 2009, sections 3.2, 3.3 and 4.6; patch_maths A and B).
     ///
-    /// At a corner with several faces `a` and `b` are zero: see [`RingValues::edge_point`].
+    /// At a corner `a` and `b` are zero: see [`RingValues::edge_point`].
+    ///
+    /// Along a crease the rings on both sides give the same bits for `p`, and `a` but for its sign.
     pub fn frame(&self) -> Frame<T> {
         match self.shape.kind {
             RingKind::Smooth => self.smooth_frame(),
             RingKind::Crease => self.crease_frame(),
-            RingKind::Corner => self.corner_frame(),
+            RingKind::Corner => Frame { p: self.centre.clone(), ..Frame::default() },
         }
     }
 
@@ -169,7 +178,8 @@ impl<T: Blend> RingValues<T> {
     fn crease_frame(&self) -> Frame<T> {
         let faces = self.shape.faces();
         let (first, last) = (self.edge(0), self.edge(faces));
-        let p = T::sum([(4.0 / 6.0, &self.centre), (1.0 / 6.0, first), (1.0 / 6.0, last)]);
+        // The ends first: the ring on the other side of the crease has them the other way round, and the same sum.
+        let p = T::sum([(1.0 / 6.0, first), (1.0 / 6.0, last), (4.0 / 6.0, &self.centre)]);
         let a = T::sum([(1.0 / 6.0, first), (-1.0 / 6.0, last)]);
         let mut b = T::default();
         if faces == 1 {
@@ -195,15 +205,6 @@ impl<T: Blend> RingValues<T> {
             }
         }
         Frame { p, a, b }
-    }
-
-    fn corner_frame(&self) -> Frame<T> {
-        let mut frame = Frame { p: self.centre.clone(), ..Frame::default() };
-        if self.shape.has_frame() {
-            frame.a = T::sum([(1.0 / 3.0, self.edge(0)), (-1.0 / 3.0, &self.centre)]);
-            frame.b = T::sum([(1.0 / 3.0, self.edge(1)), (-1.0 / 3.0, &self.centre)]);
-        }
-        frame
     }
 
     /// The edge point `e_j`: the second Bezier point of the curve along edge j.
@@ -246,7 +247,7 @@ impl<T: Blend> RingValues<T> {
 }
 
 /// The subdominant eigenvalue of Catmull-Clark subdivision around a vertex with `n` faces.
-fn tangent_scale(n: usize) -> f64 {
+pub(super) fn tangent_scale(n: usize) -> f64 {
     let (cos, cos_half) = (cos_sin(1, n)[0], cos_sin(1, 2 * n)[0]);
     (5.0 + cos + cos_half * (18.0 + 2.0 * cos).sqrt()) / 16.0
 }

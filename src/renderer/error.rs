@@ -1,13 +1,17 @@
 use super::ModelId;
 use crate::gpu::GpuError;
 use crate::mesh::MeshError;
+use crate::table::TableError;
 
 /// What can go wrong in the renderer.
+#[allow(missing_docs, reason = "the messages say it")]
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    #[error(transparent)]
+    Table(#[from] TableError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error("{device}: missing {}: choose another device, or options that need less", missing.join(", "))]

@@ -12,23 +12,29 @@
 //!
 //! | pass | reads | writes |
 //! |---|---|---|
-//! | copies | staging buffers | tables, positions |
-//! | VS, two-stage | positions, ring table | limit point and tangent frame a corner |
-//! | TCS | the frames or the stencil table, positions | control points, factors |
-//! | TES | control points | position, normal, texture coordinate |
-//! | FS | those | the caller's attachments |
+//! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
+//! | VS, two-stage | patch corners, rings and their weights, positions | limit point and tangent frame, for each patch corner |
+//! | VS, stencil | nothing | the number of the patch, for each patch |
+//! | TCS, two-stage | the frames of its corners, their rings, positions | control points, factors |
+//! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
+//! | TES | control points, the view | position, normal, texture coordinate |
+//! | FS | those, the view | the caller's attachments |
+//!
+//! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
 
 mod error;
 mod gpu_data;
 mod model;
 mod options;
 mod pipelines;
+mod stages;
 mod tables;
 mod view;
 
 pub use error::Error;
 pub use options::{
-    Construction, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style, Target, check, requirements,
+    ColorEncoding, Construction, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style, Target, check,
+    requirements,
 };
 pub use tables::{ModelTables, TableBytes};
 pub use view::View;
@@ -44,7 +50,7 @@ use crate::topology::PatchKind;
 use ash::vk;
 use gpu_data::{DrawConstants, ViewData};
 use model::Model;
-use pipelines::{GeometryKey, PipelineKey, Pipelines, STAGES, input_points};
+use pipelines::{GeometryKey, PipelineKey, Pipelines, STAGES};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -55,6 +61,7 @@ pub struct ModelId(u64);
 /// One model drawn once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawItem {
+    /// Which.
     pub model: ModelId,
     /// Object to world, by columns. Affine.
     pub transform: [[f32; 4]; 4],
@@ -63,29 +70,42 @@ pub struct DrawItem {
     /// Index into [`Options::styles`].
     pub style: usize,
     /// Linear RGBA of regular patches, irregular quads and triangles.
-    pub colours: [[f32; 4]; 3],
+    pub colors: [[f32; 4]; 3],
 }
 
 impl DrawItem {
     /// The model where it is, in the first style, in light grey.
     pub fn new(model: ModelId, factor: f32) -> Self {
         let transform = glam::Mat4::IDENTITY.to_cols_array_2d();
-        Self { model, transform, factor, style: 0, colours: [[0.7, 0.7, 0.7, 1.0]; 3] }
+        Self { model, transform, factor, style: 0, colors: [[0.7, 0.7, 0.7, 1.0]; 3] }
     }
 
     /// All patches in one colour.
-    pub fn colour(self, colour: [f32; 4]) -> Self {
-        Self { colours: [colour; 3], ..self }
+    pub fn color(self, color: [f32; 4]) -> Self {
+        Self { colors: [color; 3], ..self }
     }
 }
 
 /// Bytes by what they are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MemoryUsage {
-    /// Tables and positions on the device.
-    pub device: u64,
-    /// Staging buffers and view data that the host writes.
-    pub host: u64,
+    /// Connectivity or stencils, and texture coordinates, on the device.
+    pub tables: u64,
+    /// Control vertices on the device.
+    pub positions: u64,
+    /// Edges and faces of control meshes on the device, if a style draws them.
+    pub control_meshes: u64,
+    /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
+    pub staging: u64,
+    /// What the host writes for each view.
+    pub views: u64,
+}
+
+impl MemoryUsage {
+    /// All together.
+    pub fn total(self) -> u64 {
+        self.tables + self.positions + self.control_meshes + self.staging + self.views
+    }
 }
 
 /// Something that must outlive the frames that may still use it.
@@ -185,6 +205,9 @@ impl Renderer {
 
     /// As [`Renderer::add_model`], with tables that were built elsewhere, such as on another thread, with the same
     /// options.
+    ///
+    /// # Errors
+    /// As [`Renderer::add_model`]; [`Error::PositionCount`].
     pub fn add_tables(
         &mut self,
         tables: ModelTables,
@@ -197,13 +220,16 @@ impl Renderer {
         }
         let options = ModelOptions { construction: tables.construction(), ..options.clone() };
         let model = Model::new(&self.context, &self.pipelines, &self.options, id, &options, tables, positions)?;
-        self.pipelines.make(&model.kinds, options.construction, options.spacing)?;
+        self.pipelines.make(&model.stages)?;
         self.next_id += 1;
         self.models.insert(id, model);
         Ok(id)
     }
 
     /// Removes a model. Its memory is freed when every frame has been prepared again.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`].
     pub fn remove_model(&mut self, id: ModelId) -> Result<(), Error> {
         let model = self.models.remove(&id).ok_or(Error::NoSuchModel { id })?;
         let frames = vec![true; self.options.frames_in_flight as usize];
@@ -212,11 +238,17 @@ impl Renderer {
     }
 
     /// The tables of a model.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`].
     pub fn tables(&self, id: ModelId) -> Result<&ModelTables, Error> {
         Ok(&self.model(id)?.tables)
     }
 
     /// What a user will want to know about how a model is drawn, such as that it was refined.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`].
     pub fn notices(&self, id: ModelId) -> Result<&[Notice], Error> {
         Ok(self.model(id)?.tables.notices())
     }
@@ -225,12 +257,18 @@ impl Renderer {
     /// positions are set in any frame. Object space, one position a vertex of the mesh, in its order.
     ///
     /// The last use of `frame_index` must be done on the device.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`], [`Error::NoSuchFrame`], [`Error::PositionCount`].
     pub fn set_positions(&mut self, id: ModelId, frame_index: u32, positions: &[[f32; 3]]) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_positions(frame_index, positions)
     }
 
     /// Records what has to happen before this frame's draws: copies and barriers. Once a frame.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchFrame`]; nothing is recorded then.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw. The device is done with what was
@@ -318,12 +356,8 @@ impl Renderer {
 
     /// Bytes of all models together.
     pub fn memory_usage(&self) -> MemoryUsage {
-        let mut usage = MemoryUsage { device: 0, host: self.views.size() };
-        for model in self.models.values() {
-            let [device, host] = model.memory();
-            usage.device += device;
-            usage.host += host;
-        }
+        let mut usage = MemoryUsage { views: self.views.size(), ..MemoryUsage::default() };
+        self.models.values().for_each(|model| model.add_memory(&mut usage));
         usage
     }
 
@@ -351,7 +385,7 @@ impl Renderer {
                 device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set], &[]);
             }
             if style.geometry != Geometry::Surface {
-                constants.colour = item.colours[0];
+                constants.colour = item.colors[0];
                 self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Control }, bound);
                 self.push(cmd, &constants);
                 if let Some(control) = &model.control {
@@ -365,14 +399,13 @@ impl Renderer {
                 return Ok(());
             }
             let plan = model.tables.plan();
-            let (construction, spacing) = (model.options.construction, model.options.spacing);
-            for &kind in &model.kinds {
-                let geometry = GeometryKey::Patches { kind, construction, spacing };
-                self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
+            for &stages in &model.stages {
+                let (kind, spacing) = (stages.kind, stages.spacing);
+                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
                 let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
                 let vertices = tessellated_vertices(domain, spacing, factor, properties.max_tessellation_level);
-                let points = input_points(kind, construction);
-                constants.colour = item.colours[kind as usize];
+                let points = stages.input_points();
+                constants.colour = item.colors[kind as usize];
                 constants.first_corner = plan.first_corner(kind);
                 constants.first_patch = plan.range(kind).start as u32;
                 for draw in properties.patch_batch.draws(plan.count(kind), points, vertices) {

@@ -1,7 +1,8 @@
 //! A model on the GPU.
 
 use super::pipelines::{MODEL_BINDINGS, Pipelines};
-use super::{Error, Geometry, ModelId, ModelOptions, ModelTables, Options};
+use super::stages::PatchStages;
+use super::{Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::topology::PatchKind;
 use ash::vk;
@@ -12,9 +13,9 @@ const ALIGNMENT: u64 = 256;
 
 pub(super) struct Model {
     pub id: ModelId,
-    pub options: ModelOptions,
     pub tables: ModelTables,
-    pub kinds: Vec<PatchKind>,
+    /// How each kind of patch that the model has is drawn.
+    pub stages: Vec<PatchStages>,
     pub set: vk::DescriptorSet,
     _pool: Owned<vk::DescriptorPool>,
     /// All tables of the construction and the texture coordinates, one after the other.
@@ -119,10 +120,11 @@ impl Model {
 
         let (pool, set) = descriptor_set(context, pipelines.model_layout.raw(), name)?;
         write_set(context, set, &positions, &table_buffer, &ranges);
+        let ModelOptions { scheme, construction, spacing, .. } = *model_options;
+        let stages = |kind| PatchStages { scheme, kind, construction, spacing };
         Ok(Self {
             id,
-            options: model_options.clone(),
-            kinds: PatchKind::ALL.into_iter().filter(|&kind| tables.plan.count(kind) > 0).collect(),
+            stages: PatchKind::ALL.into_iter().filter(|&kind| tables.plan.count(kind) > 0).map(stages).collect(),
             tables,
             set,
             _pool: pool,
@@ -178,11 +180,12 @@ impl Model {
         uploads.into_iter().map(|(staged, _)| staged).collect()
     }
 
-    /// Bytes on the device, and bytes that the host writes for it.
-    pub(super) fn memory(&self) -> [u64; 2] {
-        let control = self.control.as_ref().map_or(0, |c| c.buffer.size());
-        let staged: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
-        [self.table_buffer.size() + self.positions.size() + control, self.staged_positions.size() + staged]
+    pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
+        usage.tables += self.table_buffer.size();
+        usage.positions += self.positions.size();
+        usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
+        let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
+        usage.staging += self.staged_positions.size() + uploads;
     }
 }
 

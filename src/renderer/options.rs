@@ -1,33 +1,70 @@
 //! What the caller says once: where to draw, and how.
 
 use super::Error;
-use crate::gpu::{Blend, DepthBias, DepthState, DeviceProperties, Features, Spacing};
+use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, Spacing};
 use crate::patch::Scheme;
 use ash::vk;
 
 /// What the renderer draws into.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
+    /// The rendering that is open when draws are recorded.
     pub pass: Pass,
+    /// Samples a pixel.
     pub samples: vk::SampleCountFlags,
+    /// What the values in the colour attachment mean.
+    pub encoding: ColorEncoding,
     /// Whether there is a depth attachment; without one nothing is hidden by what lies in front.
     pub depth: bool,
+}
+
+/// What the values that our fragment shaders write mean. Your own shaders write what they like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ColorEncoding {
+    /// Linear light: for sRGB formats, which encode by themselves, and for high dynamic range.
+    #[default]
+    Linear,
+    /// sRGB, encoded by the shader: for formats such as `R8G8B8A8_UNORM` that are shown as sRGB. Blending is then not
+    /// linear.
+    Srgb,
 }
 
 /// The rendering that [`Renderer::cmd_draw`](super::Renderer::cmd_draw) is recorded in.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pass {
     /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
-    Dynamic { color: Vec<vk::Format>, depth: vk::Format, stencil: vk::Format, view_mask: u32 },
+    Dynamic {
+        /// Of each colour attachment. Fragments are written to the first.
+        color: Vec<vk::Format>,
+        /// Of the depth attachment.
+        depth: vk::Format,
+        /// Of the stencil attachment. The crate does not test or write stencils.
+        stencil: vk::Format,
+        /// As in `VkRenderingInfo`: 0 without multiview.
+        view_mask: u32,
+    },
     /// A subpass that has this many colour attachments. The render pass must live as long as the renderer.
-    RenderPass { render_pass: vk::RenderPass, subpass: u32, color_attachments: u32 },
+    RenderPass {
+        /// The render pass, or one compatible with it.
+        render_pass: vk::RenderPass,
+        /// Its subpass that is drawn in.
+        subpass: u32,
+        /// How many colour attachments the subpass has.
+        color_attachments: u32,
+    },
 }
 
 impl Target {
     /// Dynamic rendering into one colour attachment and one for depth.
     pub fn dynamic(color: vk::Format, depth: vk::Format, samples: vk::SampleCountFlags) -> Self {
         let pass = Pass::Dynamic { color: vec![color], depth, stencil: vk::Format::UNDEFINED, view_mask: 0 };
-        Self { pass, samples, depth: depth != vk::Format::UNDEFINED }
+        Self { pass, samples, encoding: ColorEncoding::Linear, depth: depth != vk::Format::UNDEFINED }
+    }
+
+    /// A subpass with one colour attachment and one for depth.
+    pub fn render_pass(render_pass: vk::RenderPass, subpass: u32, samples: vk::SampleCountFlags) -> Self {
+        let pass = Pass::RenderPass { render_pass, subpass, color_attachments: 1 };
+        Self { pass, samples, encoding: ColorEncoding::Linear, depth: true }
     }
 }
 
@@ -59,21 +96,28 @@ pub enum Fragment {
     Normals,
     /// The colour of the draw as it is.
     Flat,
+    /// Your own, of Vulkan 1.3 or older, with the entry point `main`.
     Spirv(Vec<u32>),
 }
 
 /// How a model is drawn: a pipeline state. A draw names one of [`Options::styles`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
+    /// What of the model is drawn.
     pub geometry: Geometry,
+    /// How it is shaded.
     pub fragment: Fragment,
     /// Draw triangles as lines ([`Features::fill_mode_non_solid`]).
     pub wireframe: bool,
+    /// The faces that are left out.
     pub cull: vk::CullModeFlags,
+    /// The winding of front faces in the framebuffer.
     pub front_face: vk::FrontFace,
     /// No depth test if none. Not looked at if the target has no depth.
     pub depth: Option<DepthState>,
+    /// Added to the depth, such as for lines on a surface.
     pub depth_bias: Option<DepthBias>,
+    /// How colours are mixed with what is there.
     pub blend: Blend,
     /// Pixels; other widths than 1 need [`Features::wide_lines`].
     pub line_width: f32,
@@ -133,6 +177,7 @@ pub struct Options {
     pub texcoords: bool,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
+    /// Used for all pipelines; null for none.
     pub pipeline_cache: vk::PipelineCache,
 }
 
@@ -162,6 +207,7 @@ pub enum Construction {
 }
 
 impl Construction {
+    /// Both.
     pub const ALL: [Self; 2] = [Self::TwoStage, Self::Stencil];
 
     /// As the program calls it.
@@ -178,8 +224,11 @@ impl Construction {
 pub struct ModelOptions {
     /// The debug name.
     pub name: String,
+    /// Which patches faces become.
     pub scheme: Scheme,
+    /// How the control points are made.
     pub construction: Construction,
+    /// Where the tessellator puts its vertices along an edge.
     pub spacing: Spacing,
     /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
     pub refine: u32,
@@ -194,6 +243,13 @@ pub struct Requirements {
     pub features: Features,
     /// Device extensions to enable: none so far.
     pub device_extensions: Vec<&'static std::ffi::CStr>,
+}
+
+impl Requirements {
+    /// What [`DeviceContext::new`](crate::DeviceContext::new) is told of a device made with these requirements.
+    pub fn context_options(&self) -> ContextOptions {
+        ContextOptions { features: self.features, ..ContextOptions::default() }
+    }
 }
 
 /// What a device must be made with; ask before creating it.
@@ -233,7 +289,10 @@ pub(super) fn check_properties(
     options: &Options,
 ) -> Result<(), Error> {
     let needed = requirements(target, options);
-    let mut missing: Vec<String> = features.missing(needed.features).into_iter().map(String::from).collect();
+    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
+    let lacking = properties.features.missing(needed.features);
+    let name = |name| if lacking.contains(&name) { String::from(name) } else { format!("{name} {off}") };
+    let mut missing: Vec<String> = features.missing(needed.features).into_iter().map(name).collect();
     if properties.api_version < needed.api_version {
         let version = properties.api_version;
         let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));

@@ -1,17 +1,18 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
-use super::{Construction, Fragment, Geometry, Options, Pass, Style, Target};
+use super::stages::PatchStages;
+use super::{ColorEncoding, Construction, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
-    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
-    descriptor_set_layout, pipeline_layout, shaders,
+    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Specialization, descriptor_set_layout,
+    pipeline_layout, shaders,
 };
-use crate::topology::PatchKind;
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// What the tessellation stages do besides drawing: nothing, or write down what they computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(not(feature = "headless"), expect(dead_code, reason = "only `capture` asks for it"))]
 pub(crate) enum Capture {
     #[default]
     Off,
@@ -33,7 +34,7 @@ pub(super) struct PipelineKey {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum GeometryKey {
-    Patches { kind: PatchKind, construction: Construction, spacing: Spacing },
+    Patches(PatchStages),
     Control,
 }
 
@@ -100,21 +101,15 @@ impl Pipelines {
         self.made.get(&key).map(Owned::raw)
     }
 
-    /// Makes what patches of these kinds need in every style.
-    pub(super) fn make(
-        &mut self,
-        kinds: &[PatchKind],
-        construction: Construction,
-        spacing: Spacing,
-    ) -> Result<(), GpuError> {
+    /// Makes what these patches need in every style.
+    pub(super) fn make(&mut self, patches: &[PatchStages]) -> Result<(), GpuError> {
         for style in 0..self.styles.len() {
             if self.styles[style].geometry != Geometry::Surface {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Control })?;
                 continue;
             }
-            for &kind in kinds {
-                let geometry = GeometryKey::Patches { kind, construction, spacing };
-                self.make_one(PipelineKey { style, geometry })?;
+            for &stages in patches {
+                self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages) })?;
             }
         }
         Ok(())
@@ -125,26 +120,27 @@ impl Pipelines {
             return Ok(());
         }
         let style = &self.styles[key.style];
+        let encode = [Specialization::bool(1, self.target.encoding == ColorEncoding::Srgb)];
         let pipeline = match key.geometry {
             GeometryKey::Control => {
                 let name = format!("subdiv style {} of the control mesh", key.style);
-                let stages = [Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT), fragment(style)];
+                let stages = [Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT), fragment(style, &encode)];
                 self.create(&name, style, &stages, 0)?
             }
-            GeometryKey::Patches { kind, construction, spacing } => {
-                let name = format!("subdiv style {} {kind:?} {construction:?} {spacing:?}", key.style);
-                let corners = [Specialization::uint(0, kind.corners() as u32)];
-                let vertex = match construction {
+            GeometryKey::Patches(patch) => {
+                let name = format!("subdiv style {} {patch:?}", key.style);
+                let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
+                let vertex = match patch.construction {
                     Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
                     Construction::Stencil => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
                 };
                 let stages = [
                     vertex,
-                    Shader::tess_control(control_shader(kind, construction, self.capture, self.texcoords)),
-                    Shader::tess_evaluation(evaluation_shader(kind, spacing, self.capture, self.texcoords)),
-                    fragment(style),
+                    Shader::tess_control(patch.control(self.capture, self.texcoords)?),
+                    Shader::tess_evaluation(patch.evaluation(self.capture, self.texcoords)?),
+                    fragment(style, &encode),
                 ];
-                self.create(&name, style, &stages, input_points(kind, construction))?
+                self.create(&name, style, &stages, patch.input_points())?
             }
         };
         self.made.insert(key, pipeline);
@@ -189,131 +185,14 @@ impl Pipelines {
     }
 }
 
-/// Control points that go into the control shader: one a corner, or one a patch that only says which patch it is.
-pub(super) fn input_points(kind: PatchKind, construction: Construction) -> u32 {
-    match construction {
-        Construction::TwoStage => kind.corners() as u32,
-        Construction::Stencil => 1,
-    }
-}
-
-fn fragment(style: &Style) -> Shader<'_> {
-    Shader::fragment(match (&style.fragment, style.geometry) {
-        (Fragment::Spirv(code), _) => code,
+/// The fragment shader; `ours` are the constants of those that are ours.
+fn fragment<'a>(style: &'a Style, ours: &'a [Specialization]) -> Shader<'a> {
+    let code = match (&style.fragment, style.geometry) {
+        (Fragment::Spirv(code), _) => return Shader::fragment(code),
         (Fragment::Lit, Geometry::Surface) => shaders::SHADE_LIT_FRAG,
         (Fragment::Lit, Geometry::ControlFaces) => shaders::SHADE_FACETS_FRAG,
         (Fragment::Normals, Geometry::Surface) => shaders::SHADE_NORMALS_FRAG,
         _ => shaders::SHADE_FLAT_FRAG,
-    })
-}
-
-fn control_shader(kind: PatchKind, construction: Construction, capture: Capture, texcoords: bool) -> &'static [u32] {
-    /// The variants of one control shader.
-    macro_rules! variants {
-        ($plain:ident, $texcoord:ident, $capture:ident, $points:ident) => {
-            match capture {
-                Capture::Points => shaders::$points,
-                Capture::Vertices | Capture::Grid => shaders::$capture,
-                Capture::Off if texcoords => shaders::$texcoord,
-                Capture::Off => shaders::$plain,
-            }
-        };
-    }
-    match (construction, kind) {
-        (Construction::TwoStage, PatchKind::Regular) => variants!(
-            CONSTRUCT_REGULAR_TESC,
-            CONSTRUCT_REGULAR_TESC_TEXCOORD,
-            CONSTRUCT_REGULAR_TESC_CAPTURE,
-            CONSTRUCT_REGULAR_TESC_CAPTURE_POINTS
-        ),
-        (Construction::TwoStage, PatchKind::IrregularQuad) => variants!(
-            CONSTRUCT_GREGORY_TESC,
-            CONSTRUCT_GREGORY_TESC_TEXCOORD,
-            CONSTRUCT_GREGORY_TESC_CAPTURE,
-            CONSTRUCT_GREGORY_TESC_CAPTURE_POINTS
-        ),
-        (Construction::TwoStage, PatchKind::Triangle) => variants!(
-            CONSTRUCT_GREGORY_TESC_TRIANGLE,
-            CONSTRUCT_GREGORY_TESC_TRIANGLE_TEXCOORD,
-            CONSTRUCT_GREGORY_TESC_TRIANGLE_CAPTURE,
-            CONSTRUCT_GREGORY_TESC_TRIANGLE_CAPTURE_POINTS
-        ),
-        (Construction::Stencil, PatchKind::Regular) => variants!(
-            CONSTRUCT_STENCIL_TESC_REGULAR,
-            CONSTRUCT_STENCIL_TESC_REGULAR_TEXCOORD,
-            CONSTRUCT_STENCIL_TESC_REGULAR_CAPTURE,
-            CONSTRUCT_STENCIL_TESC_REGULAR_CAPTURE_POINTS
-        ),
-        (Construction::Stencil, PatchKind::IrregularQuad) => variants!(
-            CONSTRUCT_STENCIL_TESC,
-            CONSTRUCT_STENCIL_TESC_TEXCOORD,
-            CONSTRUCT_STENCIL_TESC_CAPTURE,
-            CONSTRUCT_STENCIL_TESC_CAPTURE_POINTS
-        ),
-        (Construction::Stencil, PatchKind::Triangle) => variants!(
-            CONSTRUCT_STENCIL_TESC_TRIANGLE,
-            CONSTRUCT_STENCIL_TESC_TRIANGLE_TEXCOORD,
-            CONSTRUCT_STENCIL_TESC_TRIANGLE_CAPTURE,
-            CONSTRUCT_STENCIL_TESC_TRIANGLE_CAPTURE_POINTS
-        ),
-    }
-}
-
-fn evaluation_shader(kind: PatchKind, spacing: Spacing, capture: Capture, texcoords: bool) -> &'static [u32] {
-    /// The variants of one evaluation shader.
-    macro_rules! variants {
-        ($equal:ident, $odd:ident, $even:ident, $equal_uv:ident, $odd_uv:ident, $even_uv:ident,
-         $equal_capture:ident, $odd_capture:ident, $even_capture:ident, $grid:ident) => {
-            match (capture, spacing) {
-                (Capture::Grid, _) => shaders::$grid,
-                (Capture::Vertices, Spacing::Equal) => shaders::$equal_capture,
-                (Capture::Vertices, Spacing::FractionalOdd) => shaders::$odd_capture,
-                (Capture::Vertices, Spacing::FractionalEven) => shaders::$even_capture,
-                (Capture::Off, Spacing::Equal) if texcoords => shaders::$equal_uv,
-                (Capture::Off, Spacing::FractionalOdd) if texcoords => shaders::$odd_uv,
-                (Capture::Off, Spacing::FractionalEven) if texcoords => shaders::$even_uv,
-                (Capture::Off | Capture::Points, Spacing::Equal) => shaders::$equal,
-                (Capture::Off | Capture::Points, Spacing::FractionalOdd) => shaders::$odd,
-                (Capture::Off | Capture::Points, Spacing::FractionalEven) => shaders::$even,
-            }
-        };
-    }
-    match kind {
-        PatchKind::Regular => variants!(
-            EVALUATE_BICUBIC_TESE,
-            EVALUATE_BICUBIC_TESE_FRACTIONAL_ODD,
-            EVALUATE_BICUBIC_TESE_FRACTIONAL_EVEN,
-            EVALUATE_BICUBIC_TESE_TEXCOORD,
-            EVALUATE_BICUBIC_TESE_FRACTIONAL_ODD_TEXCOORD,
-            EVALUATE_BICUBIC_TESE_FRACTIONAL_EVEN_TEXCOORD,
-            EVALUATE_BICUBIC_TESE_CAPTURE,
-            EVALUATE_BICUBIC_TESE_FRACTIONAL_ODD_CAPTURE,
-            EVALUATE_BICUBIC_TESE_FRACTIONAL_EVEN_CAPTURE,
-            EVALUATE_BICUBIC_TESE_CAPTURE_GRID
-        ),
-        PatchKind::IrregularQuad => variants!(
-            EVALUATE_GREGORY_QUAD_TESE,
-            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_ODD,
-            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_EVEN,
-            EVALUATE_GREGORY_QUAD_TESE_TEXCOORD,
-            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_ODD_TEXCOORD,
-            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_EVEN_TEXCOORD,
-            EVALUATE_GREGORY_QUAD_TESE_CAPTURE,
-            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_ODD_CAPTURE,
-            EVALUATE_GREGORY_QUAD_TESE_FRACTIONAL_EVEN_CAPTURE,
-            EVALUATE_GREGORY_QUAD_TESE_CAPTURE_GRID
-        ),
-        PatchKind::Triangle => variants!(
-            EVALUATE_GREGORY_TRIANGLE_TESE,
-            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_ODD,
-            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_EVEN,
-            EVALUATE_GREGORY_TRIANGLE_TESE_TEXCOORD,
-            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_ODD_TEXCOORD,
-            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_EVEN_TEXCOORD,
-            EVALUATE_GREGORY_TRIANGLE_TESE_CAPTURE,
-            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_ODD_CAPTURE,
-            EVALUATE_GREGORY_TRIANGLE_TESE_FRACTIONAL_EVEN_CAPTURE,
-            EVALUATE_GREGORY_TRIANGLE_TESE_CAPTURE_GRID
-        ),
-    }
+    };
+    Shader::fragment(code).specialized(ours)
 }

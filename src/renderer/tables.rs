@@ -2,8 +2,8 @@
 
 use super::{Construction, ModelOptions};
 use crate::limit::Stencils;
-use crate::mesh::{ControlMesh, MeshError};
-use crate::table::{FaceOrigin, Notice, PatchPlan, RingTable, StencilTable, bytes, prepare};
+use crate::mesh::ControlMesh;
+use crate::table::{FaceOrigin, Notice, PatchPlan, RingTable, StencilTable, TableError, bytes, prepare};
 use crate::topology::{PatchKind, Topology};
 use glam::Vec3;
 use std::borrow::Cow;
@@ -39,14 +39,16 @@ impl ModelTables {
     /// Prepares a mesh and builds its tables.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if a refined mesh cannot be addressed.
-    pub fn new(mesh: &ControlMesh, options: &ModelOptions) -> Result<Self, MeshError> {
+    /// A refined mesh or a table that cannot be addressed; faces that the scheme has no patch for.
+    pub fn new(mesh: &ControlMesh, options: &ModelOptions) -> Result<Self, TableError> {
         let prepared = prepare(mesh, options.refine)?;
         let topology = Topology::new(&prepared.mesh);
         let mut plan = PatchPlan::new(&topology);
+        let scheme = options.scheme;
+        scheme.check(&plan)?;
         let construction = match options.construction {
-            Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan)),
-            Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan)),
+            Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan, scheme)),
+            Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan, scheme)?),
         };
         Ok(Self {
             texcoords: plan.texcoords(&topology),
@@ -106,6 +108,7 @@ impl ModelTables {
         }
     }
 
+    /// How many patches of a kind there are.
     pub fn patch_count(&self, kind: PatchKind) -> u32 {
         self.plan.count(kind)
     }

@@ -1,8 +1,8 @@
 //! The CPU twin: every patch of a mesh, constructed and evaluated on the host.
 
-use super::{FaceOrigin, PatchPlan, Prepared, prepare};
-use crate::mesh::{ControlMesh, MeshError};
-use crate::patch::{Blend, Point, Sample, control_points, evaluate};
+use super::{FaceOrigin, PatchPlan, Prepared, TableError, prepare};
+use crate::mesh::ControlMesh;
+use crate::patch::{Blend, Point, Sample, Scheme};
 use crate::topology::{PatchKind, Topology};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,35 +10,39 @@ use rayon::prelude::*;
 /// The patches of a mesh on the CPU, in the order in which the two-stage construction stores them.
 ///
 /// ```
-/// use ash_subdiv::{shape, table::CpuSurface};
+/// use ash_subdiv::{Scheme, shape, table::CpuSurface};
 /// let torus = shape("torus")?;
-/// let surface = CpuSurface::new(&torus, 0)?;
+/// let surface = CpuSurface::new(&torus, Scheme::Gregory, 0)?;
 /// let points = surface.control_points(|position| position);
 /// let samples = surface.grid(&points, 5);
 /// assert_eq!(samples[0].len(), 25);
-/// # Ok::<(), ash_subdiv::MeshError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct CpuSurface<'m> {
     prepared: Prepared<'m>,
     plan: PatchPlan,
+    scheme: Scheme,
 }
 
 impl<'m> CpuSurface<'m> {
     /// Prepares `mesh` as [`prepare`] does, with at least `refine` steps of refinement.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if a refined mesh cannot be addressed.
-    pub fn new(mesh: &'m ControlMesh, refine: u32) -> Result<Self, MeshError> {
+    /// A refined mesh that cannot be addressed; faces that the scheme has no patch for.
+    pub fn new(mesh: &'m ControlMesh, scheme: Scheme, refine: u32) -> Result<Self, TableError> {
         let prepared = prepare(mesh, refine)?;
         let plan = PatchPlan::new(&Topology::new(&prepared.mesh));
-        Ok(Self { prepared, plan })
+        scheme.check(&plan)?;
+        Ok(Self { prepared, plan, scheme })
     }
 
+    /// The patches, in the order of the tables.
     pub fn plan(&self) -> &PatchPlan {
         &self.plan
     }
 
+    /// The mesh that the patches are of.
     pub fn prepared(&self) -> &Prepared<'m> {
         &self.prepared
     }
@@ -53,7 +57,7 @@ impl<'m> CpuSurface<'m> {
         let mesh = &*self.prepared.mesh;
         let topology = Topology::new(mesh);
         let of_patch = |patch: &super::Patch| {
-            control_points(&topology, patch.face, patch.kind, |vertex| value(mesh.position(vertex)))
+            self.scheme.control_points(&topology, patch.face, patch.kind, |vertex| value(mesh.position(vertex)))
         };
         self.plan.patches().par_iter().map(of_patch).collect()
     }
@@ -69,7 +73,7 @@ impl<'m> CpuSurface<'m> {
         let scalar = crate::patch::scalar::<P>;
         let sample = |(patch, points): (&super::Patch, &Vec<P>)| {
             let parameters = grids[patch.kind as usize].iter();
-            parameters.map(|&[u, v]| evaluate(patch.kind, points, scalar(u), scalar(v))).collect()
+            parameters.map(|&[u, v]| self.scheme.evaluate(patch.kind, points, scalar(u), scalar(v))).collect()
         };
         patches.map(sample).collect()
     }

@@ -8,12 +8,14 @@
 //! noise, and texel buffers may end at 65 536 elements.
 
 mod cpu;
+mod error;
 mod plan;
 mod prepare;
 mod rings;
 mod stencils;
 
 pub use cpu::{CpuSurface, grid_parameters};
+pub use error::TableError;
 pub use plan::{Patch, PatchPlan};
 pub use prepare::{FaceOrigin, Notice, Prepared, prepare};
 pub use rings::RingTable;

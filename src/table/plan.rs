@@ -7,7 +7,9 @@ use std::ops::Range;
 /// A patch and the face of the prepared mesh it covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Patch {
+    /// The face of the prepared mesh.
     pub face: u32,
+    /// What it becomes.
     pub kind: PatchKind,
 }
 
@@ -38,10 +40,12 @@ impl PatchPlan {
         Self { patches, counts }
     }
 
+    /// All patches, in order.
     pub fn patches(&self) -> &[Patch] {
         &self.patches
     }
 
+    /// How many patches of a kind there are.
     pub fn count(&self, kind: PatchKind) -> u32 {
         self.counts[kind as usize]
     }

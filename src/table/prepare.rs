@@ -22,11 +22,24 @@ pub struct FaceOrigin {
 #[non_exhaustive]
 pub enum Notice {
     /// Faces with five or more corners: the whole mesh was refined once so that all faces are quads.
-    RefinedPolygons { polygons: usize, first: u32 },
+    RefinedPolygons {
+        /// How many such faces there are.
+        polygons: usize,
+        /// The first of them.
+        first: u32,
+    },
     /// Vertices where fans of faces touch in a point were split.
-    SplitVertices { count: usize },
+    SplitVertices {
+        /// How many vertices that added.
+        count: usize,
+    },
     /// Creases or corners of finite sharpness that patches cannot follow.
-    SemiSharp { sharp: usize, smooth: usize },
+    SemiSharp {
+        /// Those drawn infinitely sharp: from [`SHARP_FROM`] up.
+        sharp: usize,
+        /// Those drawn smooth.
+        smooth: usize,
+    },
 }
 
 impl fmt::Display for Notice {
@@ -51,6 +64,7 @@ impl fmt::Display for Notice {
 /// A mesh of triangles and quads, and the way there from the caller's mesh.
 #[derive(Debug, Clone)]
 pub struct Prepared<'m> {
+    /// Triangles and quads only.
     pub mesh: Cow<'m, ControlMesh>,
     /// The refinement steps, in order. Each step's inputs are the outputs of the one before.
     pub steps: Vec<Stencils>,

@@ -1,7 +1,7 @@
 //! The connectivity of the two-stage construction: every one-ring in order, and what its weights are.
 
 use super::{PatchPlan, bytes};
-use crate::patch::{RingShape, RingValues, Row};
+use crate::patch::{RingShape, RingValues, Row, Scheme};
 use crate::topology::{Ring, RingKind, Topology};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -30,8 +30,9 @@ pub struct RingTable {
 }
 
 impl RingTable {
-    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
-        let mut types = RingTypes::default();
+    /// The rings of a mesh of triangles and quads, and the corners of the patches in `plan`.
+    pub fn new(topology: &Topology, plan: &PatchPlan, scheme: Scheme) -> Self {
+        let mut types = RingTypes { scheme, ..RingTypes::default() };
         let mut entries = 0;
         let headers: Vec<[u32; 4]> = topology
             .rings()
@@ -61,6 +62,7 @@ impl RingTable {
         }
     }
 
+    /// Bytes of all arrays together.
     pub fn bytes(&self) -> u64 {
         bytes(&self.headers) + bytes(&self.entries) + bytes(&self.types) + bytes(&self.corners)
     }
@@ -95,6 +97,7 @@ fn ring_entries(topology: &Topology, count: usize) -> Vec<u32> {
 /// The types of rings met so far: rings of one shape share their weights.
 #[derive(Default)]
 struct RingTypes {
+    scheme: Scheme,
     words: Vec<f32>,
     count: usize,
     /// Rings of quads only, by kind, openness and faces: no need to look at their faces one by one.
@@ -126,7 +129,7 @@ impl RingTypes {
         for j in 0..shape.edges() {
             self.words.extend(shape.edge_direction(j).map(|x| x as f32));
         }
-        let frame = RingValues::unknowns(shape.clone()).frame();
+        let frame = self.scheme.frame(&RingValues::unknowns(shape.clone()));
         for entry in 0..=(shape.faces() + shape.edges()) as u32 {
             self.words.extend([&frame.p, &frame.a, &frame.b].map(|row| row.weight(entry) as f32));
         }

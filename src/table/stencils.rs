@@ -1,18 +1,12 @@
 //! The weights of the stencil construction, one set for each type of connectivity around a patch.
 
 use super::{PatchPlan, bytes};
-use crate::patch::bicubic::CORNER_SLOTS;
-use crate::patch::{Row, control_points};
+use crate::mesh::MeshError;
+use crate::patch::{Row, Scheme};
 use crate::table::Patch;
-use crate::topology::{PatchKind, Topology};
+use crate::topology::Topology;
 use rayon::prelude::*;
 use std::collections::HashMap;
-
-/// Control points that one corner of a patch owns: `p`, `e+`, `e-`, `f+`, `f-`. A regular patch has one face point a
-/// corner; its fifth weights are zero.
-pub const POINTS_PER_CORNER: usize = 5;
-/// Words of an entry of [`StencilTable::types`].
-pub const ENTRY_WORDS: usize = 1 + POINTS_PER_CORNER;
 
 /// Patches as weighted sums of the vertices around them. GLSL twin: `glsl/lib/stencils.glsl`.
 ///
@@ -25,7 +19,7 @@ pub struct StencilTable {
     pub vertices: Vec<u32>,
     /// For each type, in words: for each corner of the patch where its entries start (counted from the start of the
     /// type) and how many there are; then the entries: the number of a vertex in the patch's one-ring and, as f32
-    /// bits, its weights in the five control points of the corner. Vertices without weight are left out.
+    /// bits, its weights in the control points that the corner owns ([`Scheme::corner_slots`]). Vertices without weight are left out.
     pub types: Vec<u32>,
     /// How many types there are.
     pub type_count: usize,
@@ -46,7 +40,15 @@ struct PatchRing {
 
 impl StencilTable {
     /// Builds the table and sorts the patches of each kind by type: `plan` becomes the order of the table.
-    pub fn new(topology: &Topology, plan: &mut PatchPlan) -> Self {
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the one-rings of all patches together have more vertices than can be addressed. A
+    /// vertex of valence n alone takes n * n; the two-stage construction takes n.
+    pub fn new(topology: &Topology, plan: &mut PatchPlan, scheme: Scheme) -> Result<Self, MeshError> {
+        let (count, max) = (largest_vertex_count(topology, plan), u32::MAX as usize);
+        if count > max {
+            return Err(MeshError::TooLarge { what: "vertices around its patches (stencil construction)", count, max });
+        }
         let chunk = plan.patches().len().div_ceil(4 * rayon::current_num_threads()).max(256);
         let chunks: Vec<_> = plan
             .patches()
@@ -75,7 +77,7 @@ impl StencilTable {
                 .into_iter()
                 .map(|(key, (_, example))| {
                     let next = types.len() as u32;
-                    *types.entry(key).or_insert_with(|| (next, table.push_type(topology, &chunk[example])))
+                    *types.entry(key).or_insert_with(|| (next, table.push_type(topology, scheme, &chunk[example])))
                 })
                 .collect();
             rings.extend(chunk.into_iter().map(|ring| {
@@ -91,47 +93,48 @@ impl StencilTable {
             table.largest_ring = table.largest_ring.max(ring.vertices.len());
         }
         plan.reorder(rings.into_iter().map(|(_, _, ring)| ring.patch).collect());
-        table
+        Ok(table)
     }
 
+    /// Bytes of all arrays together.
     pub fn bytes(&self) -> u64 {
         bytes(&self.patches) + bytes(&self.vertices) + bytes(&self.types)
     }
 
     /// Appends the weights for patches connected like `ring`'s. Gives where they start.
-    fn push_type(&mut self, topology: &Topology, ring: &PatchRing) -> u32 {
+    fn push_type(&mut self, topology: &Topology, scheme: Scheme, ring: &PatchRing) -> u32 {
         let local: HashMap<u32, u32> = ring.vertices.iter().zip(0..).map(|(&vertex, i)| (vertex, i)).collect();
-        let rows = control_points(topology, ring.patch.face, ring.patch.kind, |vertex| Row::unit(local[&vertex]));
-        let corners = ring.patch.kind.corners();
+        let patch = ring.patch;
+        let rows = scheme.control_points(topology, patch.face, patch.kind, |vertex| Row::unit(local[&vertex]));
+        let corners = patch.kind.corners();
         let start = self.types.len();
         self.types.resize(start + 2 * corners, 0);
+        let mut weights = Vec::with_capacity(scheme.owned(patch.kind));
         for k in 0..corners {
-            let owned = corner_rows(ring.patch.kind, &rows, k);
+            let owned = scheme.corner_slots(patch.kind, k);
             let first = self.types.len();
             for vertex in 0..ring.vertices.len() as u32 {
-                let weights: [f32; POINTS_PER_CORNER] =
-                    std::array::from_fn(|i| owned[i].map_or(0.0, |row| row.weight(vertex) as f32));
+                weights.clear();
+                weights.extend(owned.iter().map(|&slot| rows[slot].weight(vertex) as f32));
                 if weights.iter().any(|&w| w != 0.0) {
                     self.types.push(vertex);
-                    self.types.extend(weights.map(f32::to_bits));
+                    self.types.extend(weights.iter().map(|w| w.to_bits()));
                 }
             }
             self.types[start + 2 * k] = (first - start) as u32;
-            self.types[start + 2 * k + 1] = ((self.types.len() - first) / ENTRY_WORDS) as u32;
+            self.types[start + 2 * k + 1] = ((self.types.len() - first) / (1 + owned.len())) as u32;
         }
         start as u32
     }
 }
 
-/// The control points that corner k owns.
-fn corner_rows(kind: PatchKind, rows: &[Row], k: usize) -> [Option<&Row>; POINTS_PER_CORNER] {
-    let n = kind.corners();
-    if kind == PatchKind::Regular {
-        let [p, plus, minus, face] = CORNER_SLOTS[k].map(|slot| Some(&rows[slot]));
-        [p, plus, minus, face, None]
-    } else {
-        [k, n + 2 * k, n + 2 * k + 1, 3 * n + 2 * k, 3 * n + 2 * k + 1].map(|slot| Some(&rows[slot]))
-    }
+/// An upper bound of the vertices in all one-rings: what two corners of a patch share is counted twice.
+fn largest_vertex_count(topology: &Topology, plan: &PatchPlan) -> usize {
+    let around = |h: &u32| {
+        let ring = &topology.rings()[topology.place(*h).ring as usize];
+        1 + ring.faces as usize + ring.edges() as usize
+    };
+    plan.corners(topology).iter().map(around).sum()
 }
 
 /// The vertices of a patch's one-ring and its connectivity, from a walk around it that starts at its first corner.

@@ -10,6 +10,7 @@ pub enum PatchKind {
     Regular,
     /// Any other quad.
     IrregularQuad,
+    /// A triangle, in whatever surroundings.
     Triangle,
 }
 

@@ -21,8 +21,11 @@ pub const SHARP_FROM: f32 = 1.0;
 /// `vertex(next(h))` and has its face on the left.
 ///
 /// A *vertex* here is manifold: a vertex of the mesh where several fans of faces touch in a point is split into one
-/// for each fan ([`Topology::source`] leads back), all of which are corners, as in OpenSubdiv. A [`Ring`] is a sector of a vertex between sharp edges: around
-/// most vertices there is just one.
+/// for each fan ([`Topology::source`] leads back), all of which are corners, as in OpenSubdiv. A [`Ring`] is a sector
+/// of a vertex between sharp edges: around most vertices there is just one.
+///
+/// # Panics
+/// Methods that take the number of a half-edge, a face or a vertex panic if there is none with that number.
 pub struct Topology<'m> {
     mesh: &'m ControlMesh,
     /// The face of each half-edge.
@@ -42,7 +45,9 @@ pub struct Topology<'m> {
 /// corner of the face) ring edge `index`, its *minus* edge ring edge `index + 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
+    /// Index into [`Topology::rings`].
     pub ring: u32,
+    /// Index of the face in the ring.
     pub index: u32,
 }
 
@@ -178,7 +183,8 @@ impl<'m> Topology<'m> {
         (0..self.mesh.corner_count() as u32)
             .map(|h| {
                 let (a, b) = (self.mesh_vertex(h), self.mesh_vertex(self.next(h)));
-                sharpness.contains_key(&(a.min(b), a.max(b)))
+                // A boundary that is tagged as well would count twice.
+                self.twin(h).is_some() && sharpness.contains_key(&(a.min(b), a.max(b)))
             })
             .collect()
     }

@@ -27,6 +27,7 @@ pub struct Ring {
     pub start: u32,
     /// Number of faces.
     pub faces: u32,
+    /// The rule for its limit point and tangents.
     pub kind: RingKind,
     /// Whether the first and the last edge differ.
     pub open: bool,

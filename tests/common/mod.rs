@@ -1,8 +1,15 @@
 //! What several integration tests need.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+pub mod edges;
+#[cfg(all(feature = "headless", feature = "png"))]
+pub mod golden;
 pub mod limit;
+pub mod random;
+#[cfg(feature = "headless")]
+pub mod render_pass;
 
+use ash_subdiv::ControlMesh;
 use std::path::PathBuf;
 
 /// The folder beside the checkout with reference data.
@@ -24,4 +31,17 @@ pub fn vectors() -> Vec<(String, serde_json::Value)> {
             (path.file_stem().unwrap().to_string_lossy().into_owned(), serde_json::from_str(&text).expect("JSON"))
         })
         .collect()
+}
+
+/// A device that says everything that is wrong; end with `finish_silent`.
+#[cfg(feature = "headless")]
+pub fn headless() -> ash_subdiv::headless::Headless {
+    use ash_subdiv::headless::{Headless, HeadlessOptions};
+    Headless::new(&HeadlessOptions { validation: true, ..HeadlessOptions::default() }).expect("a Vulkan device")
+}
+
+/// The largest coordinate of the control points, whatever its sign: rounding is in units of it.
+pub fn largest_coordinate(mesh: &ControlMesh) -> f64 {
+    let [low, high] = mesh.bounds();
+    low.abs().max(high.abs()).max_element()
 }

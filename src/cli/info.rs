@@ -1,0 +1,166 @@
+//! `subdiv info`: what a mesh has, and what it becomes.
+
+use super::error::CliError;
+use super::output::{self, Progress, Table};
+use super::parse;
+use super::source::MeshArgs;
+use ash_subdiv::renderer::ModelTables;
+use ash_subdiv::topology::{PatchKind, Topology};
+use ash_subdiv::{Construction, ControlMesh, ModelOptions};
+use clap::Args;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  subdiv info --shape creature\n  subdiv info model.obj --construction stencil --json"
+)]
+pub(super) struct InfoArgs {
+    #[command(flatten)]
+    mesh: MeshArgs,
+    /// The construction whose tables are counted.
+    #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::construction())]
+    construction: Construction,
+}
+
+#[derive(Serialize)]
+struct Info {
+    vertices: usize,
+    edges: usize,
+    faces: usize,
+    /// Faces by their number of corners.
+    face_sizes: BTreeMap<u32, usize>,
+    /// Faces with five or more corners.
+    ngons: usize,
+    holes: usize,
+    boundary_edges: usize,
+    creased_edges: usize,
+    sharp_corners: usize,
+    /// Vertices by their number of edges.
+    valence: BTreeMap<u32, usize>,
+    bounds: [[f64; 3]; 2],
+    refine: u32,
+    patches: Patches,
+    construction: &'static str,
+    /// Rings (two-stage) or patches (stencil) that differ in connectivity and so have weights of their own.
+    connectivity_types: usize,
+    /// By table, and `total`.
+    bytes: BTreeMap<&'static str, u64>,
+    notices: Vec<String>,
+}
+
+/// Patches by kind.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct Patches {
+    regular: u32,
+    irregular_quad: u32,
+    triangle: u32,
+}
+
+impl Patches {
+    pub(super) fn of(tables: &ModelTables) -> Self {
+        Self {
+            regular: tables.patch_count(PatchKind::Regular),
+            irregular_quad: tables.patch_count(PatchKind::IrregularQuad),
+            triangle: tables.patch_count(PatchKind::Triangle),
+        }
+    }
+
+    pub(super) fn total(self) -> u32 {
+        self.regular + self.irregular_quad + self.triangle
+    }
+}
+
+impl std::fmt::Display for Patches {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { regular, irregular_quad, triangle } = self;
+        write!(f, "{} patches ({regular} regular, {irregular_quad} irregular, {triangle} triangles)", self.total())
+    }
+}
+
+pub(super) fn run(args: &InfoArgs, json: bool) -> Result<(), CliError> {
+    let progress = Progress::new("reading the mesh");
+    let mesh = args.mesh.load()?;
+    progress.now("building tables");
+    let options = args.mesh.model_options(args.construction);
+    let tables = ModelTables::new(&mesh, &options)?;
+    let info = Info::new(&mesh, &tables, &options);
+    drop(progress);
+    if json { output::json_pretty(&info) } else { info.print() }
+}
+
+impl Info {
+    fn new(mesh: &ControlMesh, tables: &ModelTables, options: &ModelOptions) -> Self {
+        let data = mesh.data();
+        let mut face_sizes = BTreeMap::new();
+        data.face_sizes.iter().for_each(|&size| *face_sizes.entry(size).or_insert(0) += 1);
+        let mut bytes: BTreeMap<_, _> = tables.bytes().into_iter().collect();
+        bytes.insert("total", bytes.values().sum());
+        Self {
+            vertices: mesh.vertex_count(),
+            edges: mesh.edge_count(),
+            faces: mesh.face_count(),
+            ngons: face_sizes.range(5..).map(|(_, count)| count).sum(),
+            face_sizes,
+            holes: data.holes.len(),
+            boundary_edges: mesh.boundary_edge_count(),
+            creased_edges: Topology::new(mesh).creased_edge_count(),
+            sharp_corners: data.corners.iter().filter(|corner| corner.sharpness > 0.0).count(),
+            valence: valence(mesh),
+            bounds: mesh.bounds().map(Into::into),
+            refine: options.refine,
+            patches: Patches::of(tables),
+            construction: options.construction.name(),
+            connectivity_types: tables.type_count(),
+            bytes,
+            notices: tables.notices().iter().map(ToString::to_string).collect(),
+        }
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        let mut table = Table::new(&[1]);
+        table.row([&"vertices", &self.vertices]);
+        table.row([&"edges", &self.edges]);
+        table.row([&"  on a boundary", &self.boundary_edges]);
+        table.row([&"  creased", &self.creased_edges]);
+        table.row([&"faces", &self.faces]);
+        for (size, count) in &self.face_sizes {
+            table.row([&format!("  of {size} corners"), count]);
+        }
+        table.row([&"  holes", &self.holes]);
+        table.row([&"sharp corners", &self.sharp_corners]);
+        for (valence, count) in &self.valence {
+            table.row([&format!("vertices of valence {valence}"), count]);
+        }
+        table.row([&"patches", &self.patches.total()]);
+        table.row([&"  regular", &self.patches.regular]);
+        table.row([&"  irregular quads", &self.patches.irregular_quad]);
+        table.row([&"  triangles", &self.patches.triangle]);
+        table.row([&"connectivity types", &self.connectivity_types]);
+        table.row([&format!("bytes, {}", self.construction), &self.bytes["total"]]);
+        for (name, bytes) in self.bytes.iter().filter(|(name, _)| **name != "total") {
+            table.row([&format!("  {}", name.replace('_', " ")), bytes]);
+        }
+        table.print()?;
+        self.notices.iter().for_each(output::note);
+        Ok(())
+    }
+}
+
+/// How many vertices have how many edges.
+fn valence(mesh: &ControlMesh) -> BTreeMap<u32, usize> {
+    let mut edges = vec![0u32; mesh.vertex_count()];
+    for face in 0..mesh.face_count() as u32 {
+        let vertices = mesh.face(face);
+        for (k, h) in mesh.face_corners(face).enumerate() {
+            // An edge counts once: at its lower half-edge; a boundary's twin is above all.
+            if mesh.twins()[h] > h as u32 {
+                edges[vertices[k] as usize] += 1;
+                edges[vertices[(k + 1) % vertices.len()] as usize] += 1;
+            }
+        }
+    }
+    let mut valence = BTreeMap::new();
+    edges.into_iter().for_each(|count| *valence.entry(count).or_insert(0) += 1);
+    valence
+}

@@ -1,0 +1,85 @@
+//! The command line: one file a command, and what they share.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `camera`, `shading`, `picture` | what `render` needs |
+//! | `obj` | what `shapes` writes |
+//! | `source` | where the mesh comes from, how it is prepared, which device |
+//! | `output` | standard output, notes, tables of text, progress, files |
+//! | `parse` | values of options |
+//! | `error` | what goes to the user, and the exit code |
+
+mod camera;
+mod devices;
+mod error;
+mod info;
+mod obj;
+mod output;
+mod parse;
+mod patches;
+mod picture;
+mod render;
+mod sample;
+mod shading;
+mod shapes;
+mod source;
+
+use clap::{Parser, Subcommand};
+use error::CliError;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Catmull-Clark control meshes, drawn smooth by Vulkan's tessellation stages with Gregory patches.
+#[derive(Debug, Parser)]
+#[command(name = "subdiv", version, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Write JSON to standard output, and nothing else there.
+    #[arg(long, global = true, display_order = 1000)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  subdiv render --shape creature -o creature.png
+  subdiv render model.obj --shading patches -o patches.png
+  subdiv info model.glb --json
+  subdiv sample model.obj --grid 9 --cpu --json > samples.json
+
+Exit codes: 0 done, 1 the work failed, 2 wrong usage.
+SUBDIV_DEVICE chooses a device where --device does not; SUBDIV_VALIDATION=1 turns validation on.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Draw a mesh to a PNG file.
+    Render(Box<render::RenderArgs>),
+    /// Count what a mesh has, which patches it becomes and how many bytes they take. Needs no device.
+    Info(info::InfoArgs),
+    /// The control points of every patch, as the GPU or the CPU makes them.
+    Patches(patches::PatchesArgs),
+    /// Positions and normals on a lattice of every patch, as the GPU or the CPU evaluates them.
+    Sample(sample::SampleArgs),
+    /// List the built-in shapes, or write one as OBJ.
+    Shapes(shapes::ShapesArgs),
+    /// List the Vulkan devices, what they can do and what they lack.
+    Devices,
+}
+
+/// Runs the program and says how it ended.
+pub(crate) fn main() -> ExitCode {
+    let result = Cli::try_parse().map_err(CliError::from_clap).and_then(|cli| match cli.command {
+        Command::Render(args) => render::run(&args, cli.json),
+        Command::Info(args) => info::run(&args, cli.json),
+        Command::Patches(args) => patches::run(&args, cli.json),
+        Command::Sample(args) => sample::run(&args, cli.json),
+        Command::Shapes(args) => shapes::run(&args, cli.json),
+        Command::Devices => devices::run(cli.json),
+    });
+    let Err(error) = result else { return ExitCode::SUCCESS };
+    if let Some(message) = error.message() {
+        // Where standard error is closed there is nobody to tell.
+        let _ = writeln!(std::io::stderr(), "error: {message}");
+    }
+    error.exit_code()
+}

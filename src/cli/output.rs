@@ -1,0 +1,130 @@
+//! What goes out: standard output, notes, progress, files.
+
+use super::error::CliError;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+use std::time::Duration;
+
+/// Writes a small value to standard output, readable.
+pub(super) fn json_pretty(value: &impl Serialize) -> Result<(), CliError> {
+    with_stdout(|out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        Ok(writeln!(out)?)
+    })
+}
+
+/// Writes a value to standard output as it is walked, without building it first.
+pub(super) fn json(value: &impl Serialize) -> Result<(), CliError> {
+    with_stdout(|out| {
+        serde_json::to_writer(&mut *out, value)?;
+        Ok(writeln!(out)?)
+    })
+}
+
+/// Writes to standard output.
+pub(super) fn with_stdout(write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>) -> Result<(), CliError> {
+    let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    write(&mut out)?;
+    Ok(out.flush()?)
+}
+
+/// Tells something that is not asked for but good to know.
+pub(super) fn note(message: impl Display) {
+    // Where standard error is closed there is nobody to tell.
+    let _ = writeln!(io::stderr(), "note: {message}");
+}
+
+/// Rows of text whose columns stand under each other.
+pub(super) struct Table {
+    rows: Vec<Vec<String>>,
+    /// Columns of numbers, which stand at the right.
+    right: &'static [usize],
+}
+
+impl Table {
+    pub(super) fn new(right: &'static [usize]) -> Self {
+        Self { rows: Vec::new(), right }
+    }
+
+    pub(super) fn row<const N: usize>(&mut self, cells: [&dyn Display; N]) {
+        self.rows.push(cells.map(|cell| cell.to_string()).into());
+    }
+
+    /// Writes the rows to standard output.
+    pub(super) fn print(&self) -> Result<(), CliError> {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let width =
+            |column: usize| self.rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
+        let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+        with_stdout(|out| {
+            for row in &self.rows {
+                let mut line = String::new();
+                for (column, cell) in row.iter().enumerate() {
+                    let width = widths[column];
+                    line += &match self.right.contains(&column) {
+                        true => format!("{cell:>width$}  "),
+                        false => format!("{cell:<width$}  "),
+                    };
+                }
+                writeln!(out, "{}", line.trim_end())?;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Shows on a terminal that something is going on, until dropped.
+pub(super) struct Progress(ProgressBar);
+
+impl Progress {
+    /// Nothing is shown where standard error is no terminal.
+    pub(super) fn new(what: &'static str) -> Self {
+        let bar = ProgressBar::new_spinner().with_message(what);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self(bar)
+    }
+
+    /// What is going on now.
+    pub(super) fn now(&self, what: &'static str) {
+        self.0.set_message(what);
+    }
+
+    /// Tells a note without being drawn over it.
+    pub(super) fn note(&self, message: impl Display) {
+        self.0.suspend(|| note(message));
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Writes a file beside `path` and then puts it in its place, so that nobody finds half of it. Makes missing folders.
+/// `write` says what went wrong without naming the file.
+pub(super) fn write_file(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Result<(), CliError> {
+    let error = |message: String| CliError::Work(format!("{}: {message}", path.display()));
+    let Some(name) = path.file_name().filter(|_| !path.is_dir()) else {
+        return Err(error("this is a folder: name a file".into()));
+    };
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|e| error(format!("its folder can't be made: {e}")))?;
+    }
+    let mut hidden = OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}.part", std::process::id()));
+    let part = path.with_file_name(hidden);
+    let written = write(&part).and_then(|()| std::fs::rename(&part, path).map_err(|e| e.to_string()));
+    if written.is_err() {
+        let _ = std::fs::remove_file(&part);
+    }
+    written.map_err(error)
+}

@@ -1,0 +1,150 @@
+//! Values of options.
+
+use ash_subdiv::{Construction, Scheme, Spacing};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use glam::DVec3;
+
+/// One of these by its name.
+fn named<T, const N: usize>(all: [(&'static str, T); N]) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(all.map(|(name, _)| name)).map(move |given| {
+        // The parser lets none but these names through.
+        all.into_iter().find(|(name, _)| *name == given).unwrap_or(all[0]).1
+    })
+}
+
+/// A scheme by its name.
+pub(super) fn scheme() -> impl TypedValueParser<Value = Scheme> {
+    named(Scheme::ALL.map(|scheme| (scheme.name(), scheme)))
+}
+
+/// A construction by its name.
+pub(super) fn construction() -> impl TypedValueParser<Value = Construction> {
+    named(Construction::ALL.map(|construction| (construction.name(), construction)))
+}
+
+const SPACINGS: [(&str, Spacing); 3] =
+    [("equal", Spacing::Equal), ("odd", Spacing::FractionalOdd), ("even", Spacing::FractionalEven)];
+
+/// A spacing by its name.
+pub(super) fn spacing() -> impl TypedValueParser<Value = Spacing> {
+    named(SPACINGS)
+}
+
+/// What [`spacing`] calls it.
+pub(super) fn spacing_name(spacing: Spacing) -> &'static str {
+    SPACINGS.into_iter().find(|(_, s)| *s == spacing).map_or("equal", |(name, _)| name)
+}
+
+/// A tessellation factor.
+pub(super) fn factor(text: &str) -> Result<f32, String> {
+    number(text).filter(|f| (1.0..=64.0).contains(f)).ok_or_else(|| "it must be a number from 1 to 64".into())
+}
+
+/// A full angle of view, in degrees.
+pub(super) fn fov(text: &str) -> Result<f32, String> {
+    number(text).filter(|f| (1.0..=170.0).contains(f)).ok_or_else(|| "it must be a number from 1 to 170".into())
+}
+
+/// An angle in degrees.
+pub(super) fn angle(text: &str) -> Result<f32, String> {
+    number(text).ok_or_else(|| "it must be a number of degrees".into())
+}
+
+/// Something above zero.
+pub(super) fn positive(text: &str) -> Result<f32, String> {
+    number(text).filter(|&f| f > 0.0).ok_or_else(|| "it must be a number above 0".into())
+}
+
+fn number(text: &str) -> Option<f32> {
+    text.parse().ok().filter(|f: &f32| f.is_finite())
+}
+
+/// `x,y,z`.
+pub(super) fn triple(text: &str) -> Result<DVec3, String> {
+    let numbers: Option<Vec<f64>> =
+        text.split(',').map(|n| n.trim().parse().ok().filter(|x: &f64| x.is_finite())).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
+        _ => Err("it must be three numbers with commas between, such as 1,2.5,-3".into()),
+    }
+}
+
+/// `WxH` in pixels.
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    sides.filter(|sides| !sides.contains(&0)).ok_or_else(|| "it must be WxH in pixels, such as 1024x768".into())
+}
+
+/// A colour as sRGB bytes; the last is opacity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Colour(pub [u8; 4]);
+
+impl Colour {
+    /// From `0xRRGGBB`.
+    pub(super) const fn rgb(hex: u32) -> Self {
+        let [_, r, g, b] = hex.to_be_bytes();
+        Self([r, g, b, 255])
+    }
+
+    /// Whether there is nothing to be seen of it.
+    pub(super) fn is_transparent(self) -> bool {
+        self.0[3] == 0
+    }
+
+    /// Linear RGB and opacity, not premultiplied.
+    pub(super) fn linear(self) -> [f32; 4] {
+        let [r, g, b, a] = self.0;
+        let [r, g, b] = [r, g, b].map(|c| super::picture::decode_srgb(f32::from(c) / 255.0));
+        [r, g, b, f32::from(a) / 255.0]
+    }
+}
+
+/// `R,G,B` from 0 to 255, `#rrggbb`, or `transparent`.
+pub(super) fn colour(text: &str) -> Result<Colour, String> {
+    let error = || "it must be R,G,B from 0 to 255, #rrggbb, or transparent".to_owned();
+    if text == "transparent" {
+        return Ok(Colour([0; 4]));
+    }
+    if let Some(digits) = text.strip_prefix('#') {
+        let all_hex = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
+        let hex = u32::from_str_radix(digits, 16).ok().filter(|_| all_hex);
+        return hex.map(Colour::rgb).ok_or_else(error);
+    }
+    let parts: Option<Vec<u8>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    match parts.as_deref() {
+        Some(&[r, g, b]) => Ok(Colour([r, g, b, 255])),
+        _ => Err(error()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_or_refused() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        for bad in ["640", "0x480", "640x", "-1x3", "4x4x4", "99999999999x1", ""] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+        assert_eq!(colour("#ff8000"), Ok(Colour([255, 128, 0, 255])));
+        assert_eq!(colour("1, 2,3"), Ok(Colour([1, 2, 3, 255])));
+        assert_eq!(colour("transparent"), Ok(Colour([0; 4])));
+        for bad in ["#fff", "#+12345", "#ff80001", "256,0,0", "1,2", "red", "#ééé"] {
+            assert!(colour(bad).is_err(), "{bad}");
+        }
+        assert_eq!(triple("1,-2.5, 3e1"), Ok(DVec3::new(1.0, -2.5, 30.0)));
+        for bad in ["1,2", "1,2,3,4", "a,b,c", "nan,0,0", "inf,0,0", ""] {
+            assert!(triple(bad).is_err(), "{bad}");
+        }
+        assert_eq!(factor("64"), Ok(64.0));
+        for bad in ["0", "0.99", "64.1", "nan", "inf", "-3", "x"] {
+            assert!(factor(bad).is_err(), "{bad}");
+        }
+        assert!(positive("0").is_err() && positive("1e-3").is_ok());
+        assert!(fov("0").is_err() && fov("180").is_err() && angle("inf").is_err());
+    }
+}

@@ -1,0 +1,175 @@
+//! `subdiv patches`: the control points of every patch.
+
+use super::error::CliError;
+use super::output::{self, Progress};
+use super::source::{DeviceArgs, MeshArgs, tell_notices};
+use ash_subdiv::capture::Captured;
+use ash_subdiv::table::{FaceOrigin, Patch};
+use ash_subdiv::topology::PatchKind;
+use ash_subdiv::{Construction, ControlMesh};
+use clap::{Args, ValueEnum};
+use serde::{Serialize, Serializer};
+use std::fmt::Display;
+
+/// Who makes the control points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Maker {
+    /// The GPU: rings in the vertex shader, patches in the control shader.
+    TwoStage,
+    /// The GPU: weighted sums in the control shader.
+    Stencil,
+    /// The CPU, in f64.
+    Cpu,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct PatchesArgs {
+    #[command(flatten)]
+    mesh: MeshArgs,
+    /// Who makes the control points.
+    #[arg(long, value_enum, default_value_t = Maker::TwoStage)]
+    construction: Maker,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+const EXAMPLES: &str = "\
+Order of points: a regular patch has 4 x 4 Bezier points, row-major with rows along u.
+Others have p0.., then e0+ e0- e1+ e1-.., then f0+ f0-..: 20 of a quad, 15 of a triangle.
+
+Examples:
+  subdiv patches --shape cube
+  subdiv patches model.obj --construction cpu --json > patches.json";
+
+/// A patch as it is written.
+#[derive(Serialize)]
+struct PatchOut<'p, T> {
+    /// The face of the input.
+    face: u32,
+    /// -1, or the corner of the face around which refinement made this part.
+    sub: i64,
+    kind: &'static str,
+    points: &'p [[T; 3]],
+}
+
+/// All patches as they were made; written one by one, sorted by their origins.
+#[derive(Clone, Copy)]
+struct Made<'o, T> {
+    patches: &'o [Patch],
+    origins: &'o [FaceOrigin],
+    points: &'o [Vec<[T; 3]>],
+}
+
+impl<T: Serialize> Serialize for Made<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(by_origin(self.origins).into_iter().map(|i| PatchOut {
+            face: self.origins[i].face,
+            sub: self.origins[i].sub,
+            kind: self.patches[i].kind.name(),
+            points: &self.points[i],
+        }))
+    }
+}
+
+#[derive(Serialize)]
+struct PatchesOut<'o, T: Serialize> {
+    construction: String,
+    patches: Made<'o, T>,
+}
+
+/// The numbers of patches in the order of the input's faces.
+pub(super) fn by_origin(origins: &[FaceOrigin]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..origins.len()).collect();
+    order.sort_by_key(|&i| (origins[i].face, origins[i].sub));
+    order
+}
+
+pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
+    let progress = Progress::new("reading the mesh");
+    let mesh = args.mesh.load()?;
+    match args.construction {
+        Maker::Cpu => {
+            progress.now("making control points");
+            let surface = args.mesh.cpu_surface(&mesh, &progress)?;
+            let points = surface.control_points(|p| p);
+            drop(progress);
+            let points: Vec<Vec<[f64; 3]>> =
+                points.into_iter().map(|patch| patch.into_iter().map(Into::into).collect()).collect();
+            write(args, json, Made { patches: surface.plan().patches(), origins: &surface.origins(), points: &points })
+        }
+        Maker::TwoStage => on_device(args, json, &mesh, Construction::TwoStage, progress),
+        Maker::Stencil => on_device(args, json, &mesh, Construction::Stencil, progress),
+    }
+}
+
+fn on_device(
+    args: &PatchesArgs,
+    json: bool,
+    mesh: &ControlMesh,
+    construction: Construction,
+    progress: Progress,
+) -> Result<(), CliError> {
+    let (tables, points) = args.device.run(|headless| {
+        progress.now("building tables");
+        let options = args.mesh.model_options(construction);
+        let captured = Captured::new(headless, mesh, &options)?;
+        tell_notices(captured.tables().notices(), &progress);
+        progress.now("making control points");
+        let points = captured.control_points()?;
+        Ok((captured.tables().clone(), points))
+    })?;
+    drop(progress);
+    write(args, json, Made { patches: tables.plan().patches(), origins: tables.origins(), points: &points })
+}
+
+fn write<T: Serialize + Display>(args: &PatchesArgs, json: bool, made: Made<T>) -> Result<(), CliError> {
+    let construction = args.construction.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default();
+    if json {
+        return output::json(&PatchesOut { construction, patches: made });
+    }
+    output::with_stdout(|out| {
+        for i in by_origin(made.origins) {
+            let (origin, kind) = (made.origins[i], made.patches[i].kind);
+            writeln!(out, "{}{}", heading(origin), kind.name())?;
+            for (number, point) in made.points[i].iter().enumerate() {
+                let [x, y, z] = point.each_ref().map(ToString::to_string);
+                writeln!(out, "  {:<4}{x:>24}{y:>24}{z:>24}", label(kind, number))?;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// What stands before the kind of a patch in text.
+pub(super) fn heading(origin: FaceOrigin) -> String {
+    match origin.sub {
+        -1 => format!("face {}: ", origin.face),
+        sub => format!("face {}, part {sub}: ", origin.face),
+    }
+}
+
+/// What a control point is called.
+fn label(kind: PatchKind, number: usize) -> String {
+    let n = kind.corners();
+    let sign = if (number - number.min(n)).is_multiple_of(2) { '+' } else { '-' };
+    match number {
+        _ if kind == PatchKind::Regular => format!("b{}{}", number / 4, number % 4),
+        k if k < n => format!("p{k}"),
+        k if k < 3 * n => format!("e{}{sign}", (k - n) / 2),
+        k => format!("f{}{sign}", (k - 3 * n) / 2),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_have_the_names_of_the_paper() {
+        let labels = |kind, n| (0..n).map(|i| label(kind, i)).collect::<Vec<_>>().join(" ");
+        assert_eq!(labels(PatchKind::Triangle, 15), "p0 p1 p2 e0+ e0- e1+ e1- e2+ e2- f0+ f0- f1+ f1- f2+ f2-");
+        assert!(labels(PatchKind::IrregularQuad, 20).ends_with("e3+ e3- f0+ f0- f1+ f1- f2+ f2- f3+ f3-"));
+        assert!(labels(PatchKind::Regular, 16).starts_with("b00 b01 b02 b03 b10"));
+    }
+}

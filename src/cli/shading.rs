@@ -1,0 +1,106 @@
+//! What a picture shows: the pipeline states and colours of each kind of shading.
+
+use super::parse::Colour;
+use ash::vk;
+use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
+use ash_subdiv::renderer::{Fragment, Geometry};
+use ash_subdiv::{DrawItem, ModelId, Style};
+use clap::ValueEnum;
+
+/// What the picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Shading {
+    /// The smooth surface in one colour.
+    Lit,
+    /// The direction of the normal as a colour.
+    Normals,
+    /// The kinds of patches: regular gold, irregular quads purple, triangles green.
+    Patches,
+    /// The tessellated triangles as lines over the surface.
+    Wireframe,
+    /// The edges of the control mesh as lines around the surface.
+    Cage,
+    /// The control mesh itself: its faces flat, and its edges.
+    ControlMesh,
+}
+
+const CLAY: Colour = Colour::rgb(0xddd3c6);
+/// Regular patches, irregular quads, triangles.
+const KINDS: [Colour; 3] = [Colour::rgb(0xe3b448), Colour::rgb(0x8a63b8), Colour::rgb(0x5aa469)];
+const WIRE: Colour = Colour([0x1c, 0x20, 0x28, 110]);
+const CAGE: Colour = Colour::rgb(0x1f5fae);
+/// Where it runs inside the surface or behind it.
+const HIDDEN_CAGE: Colour = Colour([0x1f, 0x5f, 0xae, 56]);
+const EDGES: Colour = Colour::rgb(0x2a2d33);
+
+/// One style and the colours it is drawn in, by kind of patch.
+struct Layer {
+    style: Style,
+    colours: [Colour; 3],
+}
+
+impl Layer {
+    fn surface(fragment: Fragment, colours: [Colour; 3]) -> Self {
+        Self { style: Style { fragment, ..Style::default() }, colours }
+    }
+
+    fn lines(style: Style, colour: Colour) -> Self {
+        Self { style: Style { blend: Blend::Alpha, ..style }, colours: [colour; 3] }
+    }
+}
+
+impl Shading {
+    /// Whether the control mesh is seen, and not only the surface.
+    pub(super) fn shows_control_mesh(self) -> bool {
+        matches!(self, Self::Cage | Self::ControlMesh)
+    }
+
+    pub(super) fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+
+    /// How colours are stored. Normals are numbers, not light: they are stored as they are.
+    pub(super) fn format(self) -> vk::Format {
+        if self == Self::Normals { vk::Format::R8G8B8A8_UNORM } else { vk::Format::R8G8B8A8_SRGB }
+    }
+
+    /// What is drawn, one over the other.
+    fn layers(self) -> Vec<Layer> {
+        let lit = |colours| Layer::surface(Fragment::Lit, colours);
+        match self {
+            Self::Lit => vec![lit([CLAY; 3])],
+            Self::Normals => vec![Layer::surface(Fragment::Normals, [CLAY; 3])],
+            Self::Patches => vec![lit(KINDS)],
+            Self::Wireframe => vec![lit([CLAY; 3]), Layer::lines(Style::wireframe(), WIRE)],
+            Self::Cage => {
+                let cage = Style { depth: Some(DepthState::LESS_OR_EQUAL), ..Style::cage() };
+                vec![lit([CLAY; 3]), Layer::lines(Style::cage(), HIDDEN_CAGE), Layer::lines(cage, CAGE)]
+            }
+            Self::ControlMesh => {
+                let faces = Style {
+                    geometry: Geometry::ControlFaces,
+                    // Behind the edges, which bias does not move: they are lines.
+                    depth_bias: Some(DepthBias { constant: 4.0, slope: 2.0 }),
+                    ..Style::default()
+                };
+                let edges = Style { depth: Some(DepthState::LESS_OR_EQUAL), ..Style::cage() };
+                vec![Layer { style: faces, colours: [CLAY; 3] }, Layer::lines(edges, EDGES)]
+            }
+        }
+    }
+
+    /// The styles of the layers.
+    pub(super) fn styles(self) -> Vec<Style> {
+        self.layers().into_iter().map(|layer| layer.style).collect()
+    }
+
+    /// A draw for each layer, in order.
+    pub(super) fn draws(self, model: ModelId, factor: f32) -> Vec<DrawItem> {
+        let draw = |(style, layer): (usize, Layer)| DrawItem {
+            style,
+            colors: layer.colours.map(Colour::linear),
+            ..DrawItem::new(model, factor)
+        };
+        self.layers().into_iter().enumerate().map(draw).collect()
+    }
+}

@@ -1,0 +1,64 @@
+//! `subdiv shapes`: the built-in meshes.
+
+use super::error::CliError;
+use super::obj;
+use super::output::{self, Table, write_file};
+use ash_subdiv::{shape, shapes};
+use clap::Args;
+use serde::Serialize;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  subdiv shapes\n  subdiv shapes machine-part --obj machine-part.obj")]
+pub(super) struct ShapesArgs {
+    /// Only this shape.
+    #[arg(requires = "obj")]
+    name: Option<String>,
+    /// Write it to a file, as OBJ with OpenSubdiv's tags.
+    #[arg(long, value_name = "FILE", requires = "name")]
+    obj: Option<PathBuf>,
+}
+
+#[derive(Serialize)]
+struct ShapeOut {
+    name: &'static str,
+    summary: &'static str,
+    vertices: usize,
+    faces: usize,
+}
+
+#[derive(Serialize)]
+struct WrittenOut<'a> {
+    shape: &'a str,
+    file: String,
+}
+
+pub(super) fn run(args: &ShapesArgs, json: bool) -> Result<(), CliError> {
+    if let (Some(name), Some(path)) = (&args.name, &args.obj) {
+        let mesh = shape(name)?;
+        let write = |part: &Path| -> io::Result<()> {
+            let mut out = BufWriter::new(std::fs::File::create(part)?);
+            obj::write(&mut out, &mesh)?;
+            out.flush()
+        };
+        write_file(path, |part| write(part).map_err(|error| error.to_string()))?;
+        let file = path.display().to_string();
+        return match json {
+            true => output::json_pretty(&WrittenOut { shape: name, file }),
+            false => output::with_stdout(|out| Ok(writeln!(out, "{file}: {} faces", mesh.face_count())?)),
+        };
+    }
+    let mut all = Vec::new();
+    for info in shapes() {
+        let mesh = shape(info.name)?;
+        let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
+        all.push(ShapeOut { name: info.name, summary: info.summary, vertices, faces });
+    }
+    if json {
+        return output::json_pretty(&all);
+    }
+    let mut table = Table::new(&[1]);
+    all.iter().for_each(|s| table.row([&s.name, &format!("{} faces", s.faces), &s.summary]));
+    table.print()
+}

@@ -1,0 +1,102 @@
+//! Where the mesh comes from, how it is prepared, and on which device the work is done.
+
+use super::error::CliError;
+use super::output::Progress;
+use super::parse;
+use ash_subdiv::headless::{Headless, HeadlessOptions};
+use ash_subdiv::mesh::{ReadOptions, read, shape};
+use ash_subdiv::table::{CpuSurface, Notice};
+use ash_subdiv::topology::Topology;
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme};
+use clap::Args;
+use std::path::PathBuf;
+
+/// The mesh, and the surface it is the control mesh of.
+#[derive(Debug, Args)]
+pub(super) struct MeshArgs {
+    /// The control mesh: a file ending in .obj, .gltf or .glb.
+    mesh: Option<PathBuf>,
+    /// A built-in shape instead of a file: see `subdiv shapes`.
+    #[arg(long, value_name = "NAME")]
+    shape: Option<String>,
+    /// Take out vertices that belong to no face, instead of refusing the file (OBJ).
+    #[arg(long)]
+    drop_isolated: bool,
+    /// Which mesh of a glTF scene, by its name or its node's; all of them if not given.
+    #[arg(long, value_name = "NAME", conflicts_with = "shape")]
+    mesh_name: Option<String>,
+    /// Which patches faces become.
+    #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::scheme())]
+    pub scheme: Scheme,
+    /// Steps of Catmull-Clark refinement before patches are made; each makes four times as many faces.
+    #[arg(long, value_name = "STEPS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
+    pub refine: u32,
+}
+
+impl MeshArgs {
+    /// How the mesh is to be drawn, with this construction.
+    pub(super) fn model_options(&self, construction: Construction) -> ModelOptions {
+        let name = self.shape.clone().unwrap_or_else(|| "mesh".into());
+        ModelOptions { name, scheme: self.scheme, construction, refine: self.refine, ..ModelOptions::default() }
+    }
+
+    /// The patches of the mesh on the CPU; tells the notices about it.
+    pub(super) fn cpu_surface<'m>(
+        &self,
+        mesh: &'m ControlMesh,
+        progress: &Progress,
+    ) -> Result<CpuSurface<'m>, CliError> {
+        let surface = CpuSurface::new(mesh, self.scheme, self.refine)?;
+        let prepared = surface.prepared();
+        tell_notices(&prepared.notices(&Topology::new(&prepared.mesh)), progress);
+        Ok(surface)
+    }
+
+    /// Reads the file, or makes the shape.
+    pub(super) fn load(&self) -> Result<ControlMesh, CliError> {
+        match (&self.mesh, &self.shape) {
+            (Some(path), None) => {
+                let options = ReadOptions { drop_isolated: self.drop_isolated, mesh: self.mesh_name.clone() };
+                Ok(read(path, &options)?)
+            }
+            (None, Some(name)) => Ok(shape(name)?),
+            (Some(path), Some(name)) => {
+                let path = path.display();
+                Err(CliError::Usage(format!("both a mesh ({path}) and --shape {name} are given: leave one out")))
+            }
+            (None, None) => Err(CliError::Usage(
+                "no mesh is given: name a file, or a built-in shape with --shape (`subdiv shapes` lists them)".into(),
+            )),
+        }
+    }
+}
+
+/// Tells what a user will want to know about how a mesh is drawn.
+pub(super) fn tell_notices(notices: &[Notice], progress: &Progress) {
+    notices.iter().for_each(|notice| progress.note(notice));
+}
+
+/// The device that works.
+#[derive(Debug, Args)]
+pub(super) struct DeviceArgs {
+    /// The Vulkan device, by number or part of its name: see `subdiv devices`.
+    #[arg(long, value_name = "DEVICE")]
+    device: Option<String>,
+    /// Have the Khronos validation layer look on, and fail if it has anything to say.
+    #[arg(long)]
+    validation: bool,
+}
+
+impl DeviceArgs {
+    /// Runs `work` on the device, and passes on what the validation layer said.
+    pub(super) fn run<R>(&self, work: impl FnOnce(&Headless) -> Result<R, CliError>) -> Result<R, CliError> {
+        let options =
+            HeadlessOptions { validation: self.validation, device: self.device.clone(), ..HeadlessOptions::default() };
+        let headless = Headless::new(&options)?;
+        let result = work(&headless)?;
+        match headless.finish().as_slice() {
+            [] => Ok(result),
+            messages => Err(CliError::Work(format!("validation: {}", messages.join("; ")))),
+        }
+    }
+}

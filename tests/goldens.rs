@@ -1,0 +1,170 @@
+//! Golden pictures of every built-in shape and every style, with both constructions against the same picture.
+//!
+//! Compared on the pinned driver only; elsewhere the tests say so and pass. `UPDATE_GOLDENS=1` rewrites the pictures.
+#![cfg(all(feature = "headless", feature = "png"))]
+
+mod common;
+
+use ash::vk;
+use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
+use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
+use ash_subdiv::renderer::{Fragment, Geometry};
+use ash_subdiv::{Construction, DrawItem, ModelOptions, Options, Renderer, Style, Target, View, shape, shapes};
+use common::golden;
+use common::render_pass::{Moment, RenderPassTarget};
+use std::collections::BTreeSet;
+
+const SIDE: u32 = 192;
+const EXTENT: vk::Extent2D = vk::Extent2D { width: SIDE, height: SIDE };
+const PAPER: [f32; 4] = [0.8, 0.8, 0.8, 1.0];
+const CLAY: [f32; 4] = [0.7, 0.6, 0.5, 1.0];
+const INK: [f32; 4] = [0.02, 0.03, 0.1, 0.6];
+
+/// One thing drawn over the other: styles and the colors of the kinds of patches.
+#[derive(Clone)]
+struct Layer {
+    style: Style,
+    colors: [[f32; 4]; 3],
+}
+
+fn surface(fragment: Fragment) -> Layer {
+    Layer { style: Style { fragment, ..Style::default() }, colors: [CLAY; 3] }
+}
+
+fn lines(style: Style) -> Layer {
+    Layer { style: Style { blend: Blend::Alpha, ..style }, colors: [INK; 3] }
+}
+
+/// Opaque lines: the constructions draw patches in different orders, and an edge of two triangles is drawn twice.
+fn wire() -> Vec<Layer> {
+    let wire = Layer { style: Style::wireframe(), colors: [[0.02, 0.03, 0.1, 1.0]; 3] };
+    vec![surface(Fragment::Lit), wire]
+}
+
+struct Picture {
+    name: String,
+    shape: &'static str,
+    layers: Vec<Layer>,
+    samples: vk::SampleCountFlags,
+    format: vk::Format,
+    clear: [f32; 4],
+}
+
+impl Picture {
+    fn lit(shape: &'static str) -> Self {
+        Self {
+            name: format!("lit-{shape}"),
+            shape,
+            layers: vec![surface(Fragment::Lit)],
+            samples: vk::SampleCountFlags::TYPE_1,
+            format: vk::Format::R8G8B8A8_SRGB,
+            clear: PAPER,
+        }
+    }
+
+    /// A shape with all three kinds of patches.
+    fn of_style(name: &str, layers: Vec<Layer>) -> Self {
+        Self { name: format!("style-{name}"), layers, ..Self::lit("creature-mixed") }
+    }
+}
+
+fn pictures() -> Vec<Picture> {
+    let mut pictures: Vec<Picture> = shapes().iter().map(|info| Picture::lit(info.name)).collect();
+    let kinds = [[0.9, 0.5, 0.05, 1.0], [0.25, 0.1, 0.5, 1.0], [0.05, 0.4, 0.1, 1.0]];
+    let faces = Style {
+        geometry: Geometry::ControlFaces,
+        // Behind the edges, which are lines and so not moved.
+        depth_bias: Some(DepthBias { constant: 4.0, slope: 2.0 }),
+        ..Style::default()
+    };
+    let edges = Style { depth: Some(DepthState::LESS_OR_EQUAL), ..Style::cage() };
+    pictures.extend([
+        Picture {
+            format: vk::Format::R8G8B8A8_UNORM,
+            ..Picture::of_style("normals", vec![surface(Fragment::Normals)])
+        },
+        Picture::of_style("patches", vec![Layer { colors: kinds, ..surface(Fragment::Lit) }]),
+        Picture::of_style("flat", vec![Layer { colors: kinds, ..surface(Fragment::Flat) }]),
+        // Opaque lines: the constructions draw patches in different orders, and an edge of two triangles is drawn twice.
+        // Of quads and of triangles.
+        Picture { layers: wire(), name: "wireframe-cube".into(), ..Picture::lit("cube") },
+        Picture { layers: wire(), name: "wireframe-fan".into(), ..Picture::lit("fan") },
+        Picture::of_style("cage", vec![surface(Fragment::Lit), lines(Style::cage())]),
+        Picture::of_style("control-mesh", vec![Layer { style: faces, colors: [CLAY; 3] }, lines(edges)]),
+        Picture { name: "samples-4".into(), samples: vk::SampleCountFlags::TYPE_4, ..Picture::lit("machine-part") },
+        Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
+    ]);
+    pictures
+}
+
+fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_render_pass: bool) -> Vec<u8> {
+    let mesh = shape(picture.shape).expect("built in");
+    let styles = picture.layers.iter().map(|layer| layer.style.clone()).collect();
+    let options = Options { styles, ..Options::default() };
+    let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
+    let desc = OffscreenDesc { samples: picture.samples, color: picture.format, ..OffscreenDesc::new(SIDE, SIDE) };
+    let pass = in_render_pass.then(|| RenderPassTarget::new(headless, EXTENT));
+    let target = match &pass {
+        Some(pass) => pass.target(),
+        None => Target::dynamic(desc.color, desc.depth, desc.samples),
+    };
+    // SAFETY: the render pass outlives the renderer, and every submission is waited for.
+    let mut renderer = unsafe { Renderer::new(headless.context(), &target, &options) }.expect("a renderer");
+    let model_options = ModelOptions { construction, ..ModelOptions::default() };
+    let model = renderer.add_model(&mesh, &model_options).expect("a model");
+    let item = |(style, layer): (usize, &Layer)| DrawItem { style, colors: layer.colors, ..DrawItem::new(model, 6.0) };
+    let items: Vec<_> = picture.layers.iter().enumerate().map(item).collect();
+    let mut record = |cmd: vk::CommandBuffer, moment| match moment {
+        // SAFETY: outside rendering, and inside what the renderer was made for.
+        Moment::Before => unsafe { renderer.cmd_prepare(cmd, 0) },
+        Moment::Inside => unsafe { renderer.cmd_draw(cmd, 0, &view, &items) },
+    };
+    match &pass {
+        Some(pass) => pass.draw(picture.clear, record),
+        None => {
+            let target = Offscreen::new(headless, &desc).expect("a target");
+            headless.try_submit(|cmd| record(cmd, Moment::Before)).expect("prepared");
+            target.draw(headless, picture.clear, |cmd| record(cmd, Moment::Inside)).expect("a picture")
+        }
+    }
+}
+
+#[test]
+fn pictures_are_as_they_were() {
+    let headless = common::headless();
+    if golden::is_pinned(&headless) {
+        let mut wrong = Vec::new();
+        for picture in pictures() {
+            for construction in Construction::ALL {
+                let pixels = draw(&headless, &picture, construction, false);
+                let writes = construction == Construction::TwoStage;
+                wrong.extend(golden::check(&picture.name, construction.name(), [SIDE; 2], pixels, writes).err());
+            }
+        }
+        // In a render pass the picture is the one of dynamic rendering.
+        for shape in ["creature-mixed", "tetrahedron"] {
+            let pixels = draw(&headless, &Picture::lit(shape), Construction::TwoStage, true);
+            wrong.extend(golden::check(&format!("lit-{shape}"), "render-pass", [SIDE; 2], pixels, false).err());
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    }
+    headless.finish_silent();
+}
+
+/// A picture that passes for another one proves nothing. Also: there is a golden for each picture, and no other.
+#[test]
+fn every_golden_fails_against_every_other() {
+    let names: BTreeSet<String> = pictures().into_iter().map(|picture| picture.name).collect();
+    let files = std::fs::read_dir(golden::folder()).expect("tests/goldens");
+    let stems = files.map(|file| file.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned());
+    assert_eq!(stems.collect::<BTreeSet<_>>(), names);
+    let load = |name: &String| (name.clone(), golden::load(&golden::folder().join(name).with_extension("png")));
+    let goldens: Vec<_> = names.iter().map(load).collect();
+    for (i, (name, golden)) in goldens.iter().enumerate() {
+        for (other_name, other) in &goldens[..i] {
+            let differ = golden::pixels_that_differ(golden, other);
+            // Not by the grace of a few pixels, either.
+            assert!(differ > 200, "{name} and {other_name} differ in {differ} pixels only");
+        }
+    }
+}
