@@ -135,12 +135,15 @@ fn check_boundaries(mesh: &ControlMesh) -> usize {
         let (before, after) = (before.expect("closed"), after.expect("closed"));
         let at = |h: u32| mesh.position(topology.mesh_vertex(h));
         let [x, a, b, y] = [at(before), at(h), at(after), at(topology.next(after))];
-        // One face at the vertex, and corners are interpolated: the curve ends there.
-        let end =
-            |left: u32, right: u32, x: DVec3, a: DVec3, b: DVec3| match interpolates && topology.prev(right) == left {
-                true => a,
-                false => (x + 4.0 * a + b) / 6.0,
-            };
+        // The curve ends where corners are interpolated and there is one face, and where fans of faces touch.
+        let touches = |h: u32| {
+            let mut others = half_edges.clone().filter(|&g| topology.mesh_vertex(g) == topology.mesh_vertex(h));
+            others.any(|g| topology.vertex(g) != topology.vertex(h))
+        };
+        let end = |left: u32, right: u32, x: DVec3, a: DVec3, b: DVec3| {
+            let ends = (interpolates && topology.prev(right) == left) || touches(right);
+            if ends { a } else { (x + 4.0 * a + b) / 6.0 }
+        };
         let expected = [end(before, h, x, a, b), (2.0 * a + b) / 3.0, (a + 2.0 * b) / 3.0, end(h, after, a, b, y)];
 
         let face = topology.face(h);

@@ -1,62 +1,16 @@
 //! One step of Catmull-Clark refinement of a whole mesh: any face sizes, boundaries, semi-sharp creases and corners,
 //! holes, both crease methods and both triangle rules (patch_maths A).
 
+use super::face_varying::{refine_linearly, refine_texcoords};
+use super::stencils::{MIN_LEN, Stencils};
 use crate::mesh::{
-    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, MeshData, MeshError, SHARPNESS_INFINITE,
-    TriangleRule,
+    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, MeshData, MeshError, SHARPNESS_INFINITE, TriangleRule,
 };
 use crate::patch::{Blend, Row};
 use crate::topology::Topology;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::HashMap;
-
-/// Weighted sums: output `i` is the sum of `weights[k] * input[indices[k]]` for k in `offsets[i]..offsets[i + 1]`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Stencils {
-    /// Where the terms of each output start, and after the last output their number.
-    pub offsets: Vec<u32>,
-    /// The input of each term.
-    pub indices: Vec<u32>,
-    /// The weight of each term. Those of one output add up to 1.
-    pub weights: Vec<f64>,
-}
-
-impl Stencils {
-    fn new(rows: Vec<Row>) -> Self {
-        let mut stencils = Self { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
-        for row in rows {
-            for &(index, weight) in row.weights() {
-                stencils.indices.push(index);
-                stencils.weights.push(weight);
-            }
-            stencils.offsets.push(stencils.indices.len() as u32);
-        }
-        stencils
-    }
-
-    /// Number of outputs.
-    pub fn len(&self) -> usize {
-        self.offsets.len() - 1
-    }
-
-    /// Whether there are no outputs.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The outputs for these inputs.
-    pub fn apply<T: Blend + Send + Sync>(&self, inputs: &[T]) -> Vec<T> {
-        self.offsets
-            .par_windows(2)
-            .map(|range| {
-                let range = range[0] as usize..range[1] as usize;
-                let terms = self.weights[range.clone()].iter().zip(&self.indices[range]);
-                T::sum(terms.map(|(&weight, &index)| (weight, &inputs[index as usize])))
-            })
-            .collect()
-    }
-}
+use std::collections::{HashMap, HashSet};
 
 /// A refined mesh and where it came from.
 #[derive(Debug, Clone)]
@@ -70,7 +24,10 @@ pub struct Refined {
     pub parents: Vec<u32>,
 }
 
-/// Refines once. Texture coordinates and normals are refined linearly within each face.
+/// Refines once.
+///
+/// Texture coordinates follow the mesh's [`crate::mesh::FaceVaryingRule`]; normals are refined linearly within each
+/// face.
 ///
 /// # Errors
 /// [`MeshError::TooLarge`] if the refined mesh has more corners or vertices than can be addressed.
@@ -89,8 +46,8 @@ pub fn refine(topology: &Topology) -> Result<Refined, MeshError> {
         positions: stencils.apply(&coarse).into_iter().map(Into::into).collect(),
         face_sizes: vec![4; corners],
         face_vertices: (0..corners).flat_map(corner).collect(),
-        texcoords: data.texcoords.as_ref().map(|t| refine_face_varying(topology, t)),
-        normals: data.normals.as_ref().map(|n| refine_face_varying(topology, n)),
+        texcoords: data.texcoords.as_ref().map(|t| refine_texcoords(topology, t)).transpose()?,
+        normals: data.normals.as_ref().map(|n| refine_linearly(topology, n)),
         creases: step.child_creases(),
         corners: step.child_corners(),
         holes: data.holes.iter().flat_map(|&f| mesh.face_corners(f)).map(|h| h as u32).collect(),
@@ -101,23 +58,6 @@ pub fn refine(topology: &Topology) -> Result<Refined, MeshError> {
         face_varying_rule: data.face_varying_rule,
     })?;
     Ok(Refined { mesh: refined, stencils, parents: (0..corners as u32).collect() })
-}
-
-fn refine_face_varying<const N: usize>(topology: &Topology, coarse: &FaceVarying<[f32; N]>) -> FaceVarying<[f32; N]> {
-    let value = |h: u32| coarse.values[coarse.indices[h as usize] as usize];
-    let mean =
-        |values: &[[f32; N]]| std::array::from_fn(|i| values.iter().map(|v| v[i]).sum::<f32>() / values.len() as f32);
-    let mut values = Vec::with_capacity(4 * coarse.indices.len());
-    for face in 0..topology.mesh().face_count() as u32 {
-        let corners = topology.mesh().face_corners(face);
-        let around: Vec<_> = corners.clone().map(|h| value(h as u32)).collect();
-        for h in corners {
-            let h = h as u32;
-            let (here, next, prev) = (value(h), value(topology.next(h)), value(topology.prev(h)));
-            values.extend([here, mean(&[here, next]), mean(&around), mean(&[here, prev])]);
-        }
-    }
-    FaceVarying { indices: (0..values.len() as u32).collect(), values }
 }
 
 /// The rule at a vertex, by what is sharp there.
@@ -242,11 +182,12 @@ impl<'t, 'm> Step<'t, 'm> {
         let topology = self.topology;
         let data = topology.mesh().data();
         let tagged: HashMap<u32, f32> = data.corners.iter().map(|c| (c.vertex, c.sharpness)).collect();
+        let touching = touching_vertices(topology);
         let corners_are_sharp = data.boundary == BoundaryRule::EdgeAndCorner;
         for h in 0..topology.mesh().corner_count() as u32 {
             let vertex = topology.vertex(h);
             let lone = topology.twin(h).is_none() && topology.twin(topology.prev(h)).is_none();
-            if lone && corners_are_sharp {
+            if (lone && corners_are_sharp) || touching.contains(&topology.source(vertex)) {
                 self.vertex_sharpness.insert(vertex, SHARPNESS_INFINITE);
             } else if let Some(&sharpness) = tagged.get(&topology.source(vertex))
                 && sharpness > 0.0
@@ -263,9 +204,11 @@ impl<'t, 'm> Step<'t, 'm> {
             let first = &mut start[topology.vertex(h) as usize];
             *first = (*first).min(h);
         }
-        let vertices = start.into_par_iter().map(|h| self.vertex_row(h));
-        let edges = (0..self.edge_half_edges.len() as u32).into_par_iter().map(|e| self.edge_row(e));
-        let faces = (0..topology.mesh().face_count() as u32).into_par_iter().map(|f| self.face_row(f));
+        let vertices = start.into_par_iter().with_min_len(MIN_LEN).map(|h| self.vertex_row(h));
+        let edges =
+            (0..self.edge_half_edges.len() as u32).into_par_iter().with_min_len(MIN_LEN).map(|e| self.edge_row(e));
+        let faces =
+            (0..topology.mesh().face_count() as u32).into_par_iter().with_min_len(MIN_LEN).map(|f| self.face_row(f));
         vertices.chain(edges).chain(faces).collect()
     }
 
@@ -404,8 +347,10 @@ impl<'t, 'm> Step<'t, 'm> {
     }
 
     fn child_corners(&self) -> Vec<Corner> {
-        let tagged: HashMap<u32, f32> =
+        let mut tagged: HashMap<u32, f32> =
             self.topology.mesh().data().corners.iter().map(|c| (c.vertex, c.sharpness)).collect();
+        // In the refined mesh the fans are apart: from now on a tag keeps them together.
+        tagged.extend(touching_vertices(self.topology).into_iter().map(|v| (v, SHARPNESS_INFINITE)));
         let mut corners: Vec<Corner> = (0..self.topology.vertex_count() as u32)
             .filter(|_| !tagged.is_empty())
             .filter_map(|vertex| {
@@ -416,6 +361,12 @@ impl<'t, 'm> Step<'t, 'm> {
         corners.sort_unstable_by_key(|c| c.vertex);
         corners
     }
+}
+
+/// The mesh vertices in which several fans of faces touch: infinitely sharp.
+pub(super) fn touching_vertices(topology: &Topology) -> HashSet<u32> {
+    let split = topology.mesh().vertex_count() as u32..topology.vertex_count() as u32;
+    split.map(|v| topology.source(v)).collect()
 }
 
 /// Chaikin's rule at one vertex: each semi-sharp edge's child takes a quarter from the mean of the others.

@@ -36,7 +36,9 @@ pub enum TriangleRule {
     Smooth,
 }
 
-/// Where face-varying data is interpolated linearly (OpenSubdiv's six rules).
+/// Where face-varying data is interpolated linearly (OpenSubdiv's six rules): which values stay where they are, apart
+/// from those at vertices that stay themselves. Seams (edges where two faces disagree) and boundaries are otherwise
+/// smooth curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaceVaryingRule {
     /// Smooth everywhere.
@@ -118,7 +120,7 @@ pub struct MeshData {
     pub crease_method: CreaseMethod,
     /// How triangles are subdivided.
     pub triangle_rule: TriangleRule,
-    /// How texture coordinates are to be interpolated. Kept for callers: the crate interpolates them linearly in each face.
+    /// How texture coordinates are refined ([`crate::limit::refine`]). Within a patch they are interpolated linearly.
     pub face_varying_rule: FaceVaryingRule,
 }
 

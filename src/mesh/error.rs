@@ -12,6 +12,8 @@ pub enum MeshError {
     Empty { what: &'static str },
     #[error("vertex {vertex} is at ({}, {}, {}): positions must be finite numbers of at most 3.4e38", position[0], position[1], position[2])]
     NotFinite { vertex: u32, position: [f64; 3] },
+    #[error("vertex {vertex} is at ({}, {}, {}): the limit surface needs coordinates up to {max:e}", position[0], position[1], position[2])]
+    TooFar { vertex: u32, position: [f64; 3], max: f64 },
     #[error("face {face} has {size} vertices: a face needs at least three")]
     FaceTooSmall { face: u32, size: usize },
     #[error("face {face} names vertex {vertex}, but the mesh has {count} vertices (0 to {})", count - 1)]

@@ -21,8 +21,8 @@ pub const SHARP_FROM: f32 = 1.0;
 /// `vertex(next(h))` and has its face on the left.
 ///
 /// A *vertex* here is manifold: a vertex of the mesh where several fans of faces touch in a point is split into one
-/// for each fan ([`Topology::source`] leads back). A [`Ring`] is a sector of a vertex between sharp edges: around
-/// most vertices there is just one.
+/// for each fan ([`Topology::source`] leads back), all of which are corners, as in OpenSubdiv. A [`Ring`] is a sector
+/// of a vertex between sharp edges: around most vertices there is just one.
 ///
 /// # Panics
 /// Methods that take the number of a half-edge, a face or a vertex panic if there is none with that number.

@@ -11,8 +11,9 @@ pub enum RingKind {
     Smooth,
     /// Between two boundary or sharp edges that run smoothly through the vertex.
     Crease,
-    /// The surface passes through the control vertex itself: a tagged corner, three or more sharp edges, or the only
-    /// face at a boundary vertex (under [`crate::mesh::BoundaryRule::EdgeAndCorner`]).
+    /// The surface passes through the control vertex itself: a tagged corner, three or more sharp edges, the only
+    /// face at a boundary vertex (under [`crate::mesh::BoundaryRule::EdgeAndCorner`]), or a vertex in which several
+    /// fans of faces touch, which stay together that way.
     Corner,
 }
 
@@ -56,6 +57,8 @@ impl Ring {
 pub(super) struct RingBuilder<'t, 'm> {
     topology: &'t Topology<'m>,
     sharp_vertices: HashSet<u32>,
+    /// How many faces there are at each mesh vertex.
+    faces_at: Vec<u32>,
     found: Found,
 }
 
@@ -78,7 +81,11 @@ impl<'t, 'm> RingBuilder<'t, 'm> {
             moved: Vec::new(),
             split_sources: Vec::new(),
         };
-        Self { topology, sharp_vertices: topology.sharp_vertices(), found }
+        let mut faces_at = vec![0; topology.mesh.vertex_count()];
+        for &vertex in &topology.mesh.data().face_vertices {
+            faces_at[vertex as usize] += 1;
+        }
+        Self { topology, sharp_vertices: topology.sharp_vertices(), faces_at, found }
     }
 
     pub(super) fn build(mut self) -> Found {
@@ -136,8 +143,9 @@ impl<'t, 'm> RingBuilder<'t, 'm> {
         let cuts = if closed { inner_cuts } else { inner_cuts + 2 };
         let tagged = self.sharp_vertices.contains(&source);
         let lone_corner = !closed && fan.len() == 1 && topology.interpolates_corners();
+        let touches = fan.len() < self.faces_at[source as usize] as usize;
         let kind = match cuts {
-            _ if tagged || lone_corner => RingKind::Corner,
+            _ if tagged || lone_corner || touches => RingKind::Corner,
             0 | 1 => RingKind::Smooth,
             2 => RingKind::Crease,
             _ => RingKind::Corner,

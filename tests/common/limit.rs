@@ -67,7 +67,8 @@ impl Limit {
 pub fn mesh_and_limit(name: &str) -> (ControlMesh, Limit) {
     let limit = parse(&std::fs::read(shared().join("limit").join(name).with_extension("bin")).expect("a .bin file"));
     let path = shared().join("meshes").join(name).with_extension("obj");
-    let mesh = read(&path, &ReadOptions::default()).expect("a mesh");
+    let options = ReadOptions { drop_isolated: true, ..ReadOptions::default() };
+    let mesh = read(&path, &options).expect("a mesh");
     let mesh = ControlMesh::new(MeshData { boundary: limit.boundary, ..mesh.into_data() }).expect("the same mesh");
     (mesh, limit)
 }

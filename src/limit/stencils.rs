@@ -1,0 +1,55 @@
+//! Weighted sums of one step of refinement.
+
+use crate::patch::{Blend, Row};
+use rayon::prelude::*;
+
+/// Rows for one thread at least: handing out fewer takes longer than making them.
+pub(super) const MIN_LEN: usize = 256;
+
+/// Weighted sums: output `i` is the sum of `weights[k] * input[indices[k]]` for k in `offsets[i]..offsets[i + 1]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stencils {
+    /// Where the terms of each output start, and after the last output their number.
+    pub offsets: Vec<u32>,
+    /// The input of each term.
+    pub indices: Vec<u32>,
+    /// The weight of each term. Those of one output add up to 1.
+    pub weights: Vec<f64>,
+}
+
+impl Stencils {
+    pub(super) fn new(rows: Vec<Row>) -> Self {
+        let mut stencils = Self { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
+        for row in rows {
+            for &(index, weight) in row.weights() {
+                stencils.indices.push(index);
+                stencils.weights.push(weight);
+            }
+            stencils.offsets.push(stencils.indices.len() as u32);
+        }
+        stencils
+    }
+
+    /// Number of outputs.
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Whether there are no outputs.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The outputs for these inputs.
+    pub fn apply<T: Blend + Send + Sync>(&self, inputs: &[T]) -> Vec<T> {
+        self.offsets
+            .par_windows(2)
+            .with_min_len(MIN_LEN)
+            .map(|range| {
+                let range = range[0] as usize..range[1] as usize;
+                let terms = self.weights[range.clone()].iter().zip(&self.indices[range]);
+                T::sum(terms.map(|(&weight, &index)| (weight, &inputs[index as usize])))
+            })
+            .collect()
+    }
+}
