@@ -1,4 +1,4 @@
-//! Golden pictures of every built-in shape and every style, with both constructions against the same picture.
+//! Golden pictures of every built-in shape, every style and every scheme, with both constructions against the same picture.
 //!
 //! Compared on the pinned driver only; elsewhere the tests say so and pass. `UPDATE_GOLDENS=1` rewrites the pictures.
 #![cfg(all(feature = "headless", feature = "png"))]
@@ -6,10 +6,13 @@
 mod common;
 
 use ash::vk;
+use ash_subdiv::glam::DVec3;
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
 use ash_subdiv::renderer::{Fragment, Geometry};
-use ash_subdiv::{Construction, DrawItem, ModelOptions, Options, Renderer, Style, Target, View, shape, shapes};
+use ash_subdiv::{
+    Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Scheme, Style, Target, View, shape, shapes,
+};
 use common::golden;
 use common::render_pass::{Moment, RenderPassTarget};
 use std::collections::BTreeSet;
@@ -41,6 +44,7 @@ fn wire() -> Vec<Layer> {
     vec![surface(Fragment::Lit), wire]
 }
 
+#[derive(Clone)]
 struct Picture {
     name: String,
     shape: &'static str,
@@ -48,6 +52,9 @@ struct Picture {
     samples: vk::SampleCountFlags,
     format: vk::Format,
     clear: [f32; 4],
+    scheme: Scheme,
+    /// What the picture shows of the shape: all, or this much around a vertex of the highest valence.
+    around: Option<f64>,
 }
 
 impl Picture {
@@ -59,6 +66,20 @@ impl Picture {
             samples: vk::SampleCountFlags::TYPE_1,
             format: vk::Format::R8G8B8A8_SRGB,
             clear: PAPER,
+            scheme: Scheme::Gregory,
+            around: None,
+        }
+    }
+
+    /// The normals close to an extraordinary vertex, where schemes differ most.
+    fn of_scheme(scheme: Scheme, shape: &'static str) -> Self {
+        Self {
+            name: format!("scheme-{}-{shape}", scheme.name()),
+            layers: vec![surface(Fragment::Normals)],
+            format: vk::Format::R8G8B8A8_UNORM,
+            scheme,
+            around: Some(0.15),
+            ..Self::lit(shape)
         }
     }
 
@@ -93,15 +114,31 @@ fn pictures() -> Vec<Picture> {
         Picture::of_style("control-mesh", vec![Layer { style: faces, colors: [CLAY; 3] }, lines(edges)]),
         Picture { name: "samples-4".into(), samples: vk::SampleCountFlags::TYPE_4, ..Picture::lit("machine-part") },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
+        Picture::of_scheme(Scheme::Acc, "creature"),
+        Picture::of_scheme(Scheme::Pm, "valences"),
+        Picture::of_scheme(Scheme::Pm, "creature-mixed"),
+        Picture::of_scheme(Scheme::CPatch, "creature"),
     ]);
     pictures
+}
+
+/// A vertex of the highest valence there is.
+fn extraordinary_vertex(mesh: &ControlMesh) -> DVec3 {
+    let mut valences = vec![0; mesh.vertex_count()];
+    mesh.data().face_vertices.iter().for_each(|&v| valences[v as usize] += 1);
+    let vertex = (0..valences.len()).max_by_key(|&v| valences[v]).expect("a vertex");
+    mesh.position(vertex as u32)
 }
 
 fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_render_pass: bool) -> Vec<u8> {
     let mesh = shape(picture.shape).expect("built in");
     let styles = picture.layers.iter().map(|layer| layer.style.clone()).collect();
     let options = Options { styles, ..Options::default() };
-    let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
+    let bounds = match picture.around {
+        Some(half) => [-half, half].map(|by| extraordinary_vertex(&mesh) + by),
+        None => mesh.bounds(),
+    };
+    let view = View::framing(bounds, [-0.6, 0.5, 1.0], 1.0);
     let desc = OffscreenDesc { samples: picture.samples, color: picture.format, ..OffscreenDesc::new(SIDE, SIDE) };
     let pass = in_render_pass.then(|| RenderPassTarget::new(headless, EXTENT));
     let target = match &pass {
@@ -110,7 +147,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     };
     // SAFETY: the render pass outlives the renderer, and every submission is waited for.
     let mut renderer = unsafe { Renderer::new(headless.context(), &target, &options) }.expect("a renderer");
-    let model_options = ModelOptions { construction, ..ModelOptions::default() };
+    let model_options = ModelOptions { construction, scheme: picture.scheme, ..ModelOptions::default() };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
     let item = |(style, layer): (usize, &Layer)| DrawItem { style, colors: layer.colors, ..DrawItem::new(model, 6.0) };
     let items: Vec<_> = picture.layers.iter().enumerate().map(item).collect();
@@ -167,4 +204,28 @@ fn every_golden_fails_against_every_other() {
             assert!(differ > 200, "{name} and {other_name} differ in {differ} pixels only");
         }
     }
+}
+
+/// Schemes differ little: a golden of one that another passes for proves nothing. (c-patches are the Pm-patches of quads.)
+#[test]
+fn goldens_of_schemes_fail_with_other_schemes() {
+    let headless = common::headless();
+    if golden::is_pinned(&headless) {
+        for picture in pictures().into_iter().filter(|picture| picture.scheme != Scheme::Gregory) {
+            let golden = golden::load(&golden::folder().join(&picture.name).with_extension("png"));
+            let others: &[_] = match (picture.shape, picture.scheme) {
+                ("creature-mixed", _) => &[Scheme::Gregory],
+                (_, Scheme::Acc) => &[Scheme::Gregory, Scheme::Pm],
+                _ => &[Scheme::Gregory, Scheme::Acc],
+            };
+            for &scheme in others {
+                let name = &picture.name;
+                let pixels = draw(&headless, &Picture { scheme, ..picture.clone() }, Construction::TwoStage, false);
+                let other = image::RgbaImage::from_raw(SIDE, SIDE, pixels).expect("four bytes a pixel");
+                let differ = golden::pixels_that_differ(&golden, &other);
+                assert!(differ > 1000, "{name} and the same picture of {scheme:?} differ in {differ} pixels only");
+            }
+        }
+    }
+    headless.finish_silent();
 }
