@@ -16,7 +16,7 @@ pub struct DrawItem {
     pub transform: [[f32; 4]; 4],
     /// The tessellation factor of every edge and of the inside, from 1 up; clamped to what the device has (64 at least).
     pub factor: f32,
-    /// Index into [`Options::styles`].
+    /// Index into [`Options::styles`](super::Options::styles).
     pub style: usize,
     /// Linear RGBA of regular patches, irregular quads and triangles.
     pub colors: [[f32; 4]; 3],
@@ -47,12 +47,12 @@ impl Renderer {
     /// push constants are overwritten.
     ///
     /// # Errors
-    /// Unknown models, styles and frames, factors below 1 and more views than [`Options::views_per_frame`]. Items before
+    /// Unknown models, styles and frames, factors below 1 and more views than [`Options::views_per_frame`](super::Options::views_per_frame). Items before
     /// the wrong one are recorded.
     ///
     /// # Safety
-    /// `cmd` is being recorded, inside rendering that fits [`Target`], after [`Renderer::cmd_prepare`] of the same
-    /// frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`].
+    /// `cmd` is being recorded, inside rendering that fits [`Target`](super::Target), after [`Renderer::cmd_prepare`] of the same
+    /// frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`](super::Options::set_layouts).
     pub unsafe fn cmd_draw(
         &mut self,
         cmd: vk::CommandBuffer,
