@@ -12,9 +12,14 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Examples:\n  subdiv info --shape creature\n  subdiv info model.obj --construction stencil --json"
-)]
+#[command(after_help = "\
+JSON: vertices, edges, faces, face_sizes{corners: faces}, ngons, holes, boundary_edges, creased_edges,
+sharp_corners, valence{valence: vertices}, bounds[low, high], refine, patches{regular, irregular_quad,
+triangle}, construction, connectivity_types, bytes{table: bytes, total}, notices[text].
+
+Examples:
+  subdiv info --shape creature
+  subdiv info model.obj --construction stencil --json")]
 pub(super) struct InfoArgs {
     #[command(flatten)]
     mesh: MeshArgs,

@@ -63,6 +63,9 @@ enum Command {
     /// List the built-in shapes, or write one as OBJ.
     Shapes(shapes::ShapesArgs),
     /// List the Vulkan devices, what they can do and what they lack.
+    #[command(
+        after_help = "JSON: [{index, name, type, vulkan, driver, driver_info, max_tessellation_level, max_patch_size,\nsamples, max_image_size, max_storage_buffer_range, max_line_width, features, missing}]."
+    )]
     Devices,
 }
 

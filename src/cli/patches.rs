@@ -36,7 +36,12 @@ pub(super) struct PatchesArgs {
 
 const EXAMPLES: &str = "\
 Order of points: a regular patch has 4 x 4 Bezier points, row-major with rows along u.
-Others have p0.., then e0+ e0- e1+ e1-.., then f0+ f0-..: 20 of a quad, 15 of a triangle.
+Others have, by scheme: gregory p0.., then e0+ e0- e1+ e1-.., then f0+ f0-..: 20 of a quad, 15 of a
+triangle; acc 4 x 4 Bezier points, then the vectors t+ t- x+ x- of each corner: 32; pm and c-patch v0..,
+then t0+ t0-.., then b211, b121 and b112 of all sectors: 24 of a quad, 18 of a triangle.
+
+JSON: construction, patches[{face, sub, kind, points[[x, y, z]]}]: face of the input; sub is -1, or the
+corner of the face around which refinement made the patch; kind is regular, irregular_quad or triangle.
 
 Examples:
   subdiv patches --shape cube

@@ -55,6 +55,9 @@ pub(super) struct RenderArgs {
 }
 
 const EXAMPLES: &str = "\
+JSON: file, size[width, height], patches{regular, irregular_quad, triangle}, construction, factor, spacing,
+shading, samples, device.
+
 Examples:
   subdiv render --shape creature -o creature.png
   subdiv render model.obj --shading wireframe --factor 3.5 --spacing odd -o wires.png

@@ -10,7 +10,9 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  subdiv shapes\n  subdiv shapes machine-part --obj machine-part.obj")]
+#[command(
+    after_help = "JSON: [{name, summary, vertices, faces}].\n\nExamples:\n  subdiv shapes\n  subdiv shapes machine-part --obj machine-part.obj"
+)]
 pub(super) struct ShapesArgs {
     /// Only this shape.
     #[arg(requires = "obj")]

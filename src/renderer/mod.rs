@@ -22,6 +22,7 @@
 //!
 //! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
 
+mod draw;
 mod error;
 mod gpu_data;
 mod model;
@@ -31,6 +32,7 @@ mod stages;
 mod tables;
 mod view;
 
+pub use draw::DrawItem;
 pub use error::Error;
 pub use options::{
     ColorEncoding, Construction, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style, Target, check,
@@ -41,50 +43,19 @@ pub use view::View;
 
 pub(crate) use pipelines::Capture;
 
-use crate::gpu::{
-    Buffer, BufferDesc, DeviceContext, Domain, GpuError, MemoryLocation, Owned, VkResultExt, tessellated_vertices,
-};
+use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::mesh::ControlMesh;
 use crate::table::Notice;
-use crate::topology::PatchKind;
 use ash::vk;
-use gpu_data::{DrawConstants, ViewData};
+use gpu_data::ViewData;
 use model::Model;
-use pipelines::{GeometryKey, PipelineKey, Pipelines, STAGES};
+use pipelines::Pipelines;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Names a model of a [`Renderer`]. Never used again after the model is removed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ModelId(u64);
-
-/// One model drawn once.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DrawItem {
-    /// Which.
-    pub model: ModelId,
-    /// Object to world, by columns. Affine.
-    pub transform: [[f32; 4]; 4],
-    /// The tessellation factor of every edge and of the inside, from 1 up; clamped to what the device has (64 at least).
-    pub factor: f32,
-    /// Index into [`Options::styles`].
-    pub style: usize,
-    /// Linear RGBA of regular patches, irregular quads and triangles.
-    pub colors: [[f32; 4]; 3],
-}
-
-impl DrawItem {
-    /// The model where it is, in the first style, in light grey.
-    pub fn new(model: ModelId, factor: f32) -> Self {
-        let transform = glam::Mat4::IDENTITY.to_cols_array_2d();
-        Self { model, transform, factor, style: 0, colors: [[0.7, 0.7, 0.7, 1.0]; 3] }
-    }
-
-    /// All patches in one colour.
-    pub fn color(self, color: [f32; 4]) -> Self {
-        Self { colors: [color; 3], ..self }
-    }
-}
 
 /// Bytes by what they are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -311,44 +282,6 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the draws of one view. Viewport and scissor are the caller's to set. Binds sets 0 and 1, and pipelines;
-    /// push constants are overwritten.
-    ///
-    /// # Errors
-    /// Unknown models, styles and frames, factors below 1 and more views than [`Options::views_per_frame`]. Items before
-    /// the wrong one are recorded.
-    ///
-    /// # Safety
-    /// `cmd` is being recorded, inside rendering that fits [`Target`], after [`Renderer::cmd_prepare`] of the same
-    /// frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`].
-    pub unsafe fn cmd_draw(
-        &mut self,
-        cmd: vk::CommandBuffer,
-        frame_index: u32,
-        view: &View,
-        items: &[DrawItem],
-    ) -> Result<(), Error> {
-        self.check_frame(frame_index)?;
-        let max = self.options.views_per_frame;
-        let drawn = &mut self.views_drawn[frame_index as usize];
-        if *drawn >= max {
-            return Err(Error::TooManyViews { frame: frame_index, max });
-        }
-        let offset = self.view_stride * (u64::from(frame_index) * u64::from(max) + u64::from(*drawn));
-        *drawn += 1;
-        self.views.write(offset, &[view.data()])?;
-        let (device, layout) = (self.context.device(), self.pipelines.layout.raw());
-        let point = vk::PipelineBindPoint::GRAPHICS;
-        // SAFETY: as the caller promises.
-        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 0, &[self.view_set], &[offset as u32]) };
-        let mut bound = Bound::default();
-        for item in items {
-            // SAFETY: as the caller promises.
-            unsafe { self.cmd_draw_item(cmd, item, &mut bound)? };
-        }
-        Ok(())
-    }
-
     /// The layout that the caller's own descriptor sets are bound with.
     pub fn pipeline_layout(&self) -> vk::PipelineLayout {
         self.pipelines.layout.raw()
@@ -361,82 +294,6 @@ impl Renderer {
         usage
     }
 
-    unsafe fn cmd_draw_item(&self, cmd: vk::CommandBuffer, item: &DrawItem, bound: &mut Bound) -> Result<(), Error> {
-        let id = item.model;
-        let model = self.model(id)?;
-        let styles = self.pipelines.styles();
-        let style = styles.get(item.style).ok_or(Error::NoSuchStyle { given: item.style, count: styles.len() })?;
-        if !model.prepared {
-            return Err(Error::NotPrepared { id });
-        }
-        if item.factor.is_nan() || item.factor < 1.0 {
-            return Err(Error::BadFactor { id, factor: item.factor });
-        }
-        let device = self.context.device();
-        let properties = self.context.properties();
-        let factor = item.factor.min(properties.max_tessellation_level as f32);
-        let mut constants = DrawConstants::new(&item.transform, factor);
-        // SAFETY: as the caller of `cmd_draw` promises.
-        unsafe {
-            if bound.set != model.set {
-                bound.set = model.set;
-                let point = vk::PipelineBindPoint::GRAPHICS;
-                let layout = self.pipelines.layout.raw();
-                device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set], &[]);
-            }
-            if style.geometry != Geometry::Surface {
-                constants.colour = item.colors[0];
-                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Control }, bound);
-                self.push(cmd, &constants);
-                if let Some(control) = &model.control {
-                    let (first, count) = match style.geometry {
-                        Geometry::ControlEdges => (0, control.edges),
-                        _ => (control.edges, control.faces),
-                    };
-                    device.cmd_bind_index_buffer(cmd, control.buffer.raw(), 0, vk::IndexType::UINT32);
-                    device.cmd_draw_indexed(cmd, count, 1, first, control.vertex_offset, 0);
-                }
-                return Ok(());
-            }
-            let plan = model.tables.plan();
-            for &stages in &model.stages {
-                let (kind, spacing) = (stages.kind, stages.spacing);
-                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
-                let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
-                let vertices = tessellated_vertices(domain, spacing, factor, properties.max_tessellation_level);
-                let points = stages.input_points();
-                constants.colour = item.colors[kind as usize];
-                constants.first_corner = plan.first_corner(kind);
-                constants.first_patch = plan.range(kind).start as u32;
-                for draw in properties.patch_batch.draws(plan.count(kind), points, vertices) {
-                    if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
-                        constants.patches_per_instance = draw.patches_per_instance;
-                        self.push(cmd, &constants);
-                    }
-                    device.cmd_draw(cmd, draw.vertex_count, draw.instance_count, 0, draw.first_instance);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {
-        // Every pipeline of a model's kinds was made when it was added.
-        if let Some(pipeline) = self.pipelines.get(key)
-            && bound.pipeline != pipeline
-        {
-            bound.pipeline = pipeline;
-            // SAFETY: as the caller of `cmd_draw` promises.
-            unsafe { self.context.device().cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
-        }
-    }
-
-    unsafe fn push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
-        let layout = self.pipelines.layout.raw();
-        // SAFETY: as the caller of `cmd_draw` promises.
-        unsafe { self.context.device().cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(constants)) };
-    }
-
     fn model(&self, id: ModelId) -> Result<&Model, Error> {
         self.models.get(&id).ok_or(Error::NoSuchModel { id })
     }
@@ -445,13 +302,6 @@ impl Renderer {
         let frames = self.options.frames_in_flight;
         if given < frames { Ok(()) } else { Err(Error::NoSuchFrame { given, frames }) }
     }
-}
-
-/// What is bound in a command buffer so far.
-#[derive(Default)]
-struct Bound {
-    pipeline: vk::Pipeline,
-    set: vk::DescriptorSet,
 }
 
 fn view_set(

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// What the tessellation stages do besides drawing: nothing, or write down what they computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(not(feature = "headless"), expect(dead_code, reason = "only `capture` asks for it"))]
+#[cfg_attr(not(feature = "headless"), allow(dead_code, reason = "only `capture` asks for it"))]
 pub(crate) enum Capture {
     #[default]
     Off,
