@@ -30,7 +30,7 @@
 //! | 6 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
 //! | 5 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
 //! | 4 | [`table`] | what the GPU reads | Vulkan |
-//! | 4 | [`limit`] | Catmull-Clark refinement | patch schemes |
+//! | 4 | [`limit`] | Catmull-Clark refinement and its limit surface | patch schemes |
 //! | 3 | [`patch`] | construction and evaluation of patches, generic over the value | Vulkan |
 //! | 2 | [`topology`] | half-edges, one-rings, sharp edges, patch kinds | positions |
 //! | 1 | [`mesh`] | control meshes, the readers (OBJ, glTF), built-in shapes | all above |
@@ -62,7 +62,7 @@
 //! * **Winding**: faces are counter-clockwise seen from outside; normals point outwards.
 //! * **Parameters**: a quad has its corners at (u, v) = (0, 0), (1, 0), (1, 1), (0, 1); a triangle has barycentric
 //!   (u, v, w), one at its corners 0, 1, 2. `gl_TessCoord` is the same.
-//! * **Order of control points**: in [`patch::bicubic`] and [`patch::gregory`].
+//! * **Order of control points**: in [`patch::bicubic`], [`patch::gregory`], [`patch::acc`] and [`patch::pm`].
 //! * **Matrices** are given by columns, as `glam::Mat4::to_cols_array_2d` gives them, and act on column vectors. World
 //!   space is right-handed.
 //! * **Clip space** is Vulkan's: y down, depth from 0 (near) to 1. [`View`]'s constructors make it so.
@@ -73,18 +73,23 @@
 //!
 //! * Regular patches are the limit surface, and every patch has its positions and tangent planes at the corners,
 //!   but for rounding: that of `f64` in [`patch`], that of `f32` on the GPU. Creases and corners of finite sharpness
-//!   are excepted: see [`topology::SHARP_FROM`].
+//!   are excepted: see [`topology::SHARP_FROM`]. So is [`Scheme::Pm`], whose irregular patches have the limit position
+//!   among quads only, and tangent planes of their own.
 //! * Irregular patches lie off the limit surface between their corners. On the two character meshes of Loop et al.
 //!   2009, an independent implementation of the same patches in `f64` measures, as root mean squares over all faces,
 //!   2e-5 to 4e-5 of the diagonal (nearest distance) and half a degree (normal).
-//! * Neighbouring patches share their edge curve and tangent planes along it (G1). The GPU evaluates the curve once
-//!   for each patch, and may round differently: edges are not yet bitwise watertight.
+//! * Neighbouring patches share their edge curve and tangent planes along it (G1; [`Scheme::Acc`]: shading normals).
+//!   The GPU evaluates the curve once for each patch: to the same bits with Gregory patches made by
+//!   [`Construction::TwoStage`], else to rounding. Normals agree to rounding.
 //! * The two constructions on the GPU ([`Construction`]) make the same control points but for rounding.
 //!
 //! # Where the formulas come from
 //!
 //! * Loop, Schaefer, Ni, Castaño, *Approximating Subdivision Surfaces with Gregory Patches for Hardware
 //!   Tessellation*, 2009: the patches, their constructions, and the division of work among the shader stages.
+//! * Loop, Schaefer, *Approximating Catmull-Clark Subdivision Surfaces with Bicubic Patches*, 2008: [`Scheme::Acc`].
+//! * Myles, Ni, Peters, *Fast Parallel Construction of Smooth Surfaces from Meshes with Tri/Quad/Pent Facets*, 2008, and
+//!   Ni, Yeo, Myles, Goel, Peters, *GPU smoothing of quad meshes*, 2008: [`Scheme::Pm`] and [`Scheme::CPatch`].
 //! * Catmull, Clark, *Recursively generated B-spline surfaces on arbitrary topological meshes*, 1978: the surface.
 //! * Halstead, Kass, DeRose, *Efficient, fair interpolation using Catmull-Clark surfaces*, 1993: limit positions
 //!   and tangents at vertices.

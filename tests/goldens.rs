@@ -6,7 +6,7 @@
 mod common;
 
 use ash::vk;
-use ash_subdiv::glam::DVec3;
+use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
 use ash_subdiv::renderer::{Fragment, Geometry};
@@ -54,7 +54,7 @@ struct Picture {
     clear: [f32; 4],
     scheme: Scheme,
     /// What the picture shows of the shape: all, or this much around a vertex of the highest valence.
-    around: Option<f64>,
+    around: Option<f32>,
 }
 
 impl Picture {
@@ -71,14 +71,14 @@ impl Picture {
         }
     }
 
-    /// The normals close to an extraordinary vertex, where schemes differ most.
-    fn of_scheme(scheme: Scheme, shape: &'static str) -> Self {
+    /// Normals, in which schemes differ most.
+    fn of_scheme(scheme: Scheme, shape: &'static str, around: Option<f32>) -> Self {
         Self {
             name: format!("scheme-{}-{shape}", scheme.name()),
             layers: vec![surface(Fragment::Normals)],
             format: vk::Format::R8G8B8A8_UNORM,
             scheme,
-            around: Some(0.15),
+            around,
             ..Self::lit(shape)
         }
     }
@@ -114,10 +114,10 @@ fn pictures() -> Vec<Picture> {
         Picture::of_style("control-mesh", vec![Layer { style: faces, colors: [CLAY; 3] }, lines(edges)]),
         Picture { name: "samples-4".into(), samples: vk::SampleCountFlags::TYPE_4, ..Picture::lit("machine-part") },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
-        Picture::of_scheme(Scheme::Acc, "creature"),
-        Picture::of_scheme(Scheme::Pm, "valences"),
-        Picture::of_scheme(Scheme::Pm, "creature-mixed"),
-        Picture::of_scheme(Scheme::CPatch, "creature"),
+        Picture::of_scheme(Scheme::Acc, "cube", None),
+        Picture::of_scheme(Scheme::Pm, "valences", Some(0.15)),
+        Picture::of_scheme(Scheme::Pm, "creature-mixed", None),
+        Picture::of_scheme(Scheme::CPatch, "creature", Some(0.2)),
     ]);
     pictures
 }
@@ -130,15 +130,21 @@ fn extraordinary_vertex(mesh: &ControlMesh) -> DVec3 {
     mesh.position(vertex as u32)
 }
 
+/// About this much around a point, with nothing cut off in front of it.
+fn close_up(point: Vec3, towards: Vec3, half: f32) -> View {
+    let eye = point + towards * (5.0 * half);
+    View::perspective(eye.into(), point.into(), [0.0, 1.0, 0.0], 0.6, 1.0, [half, 60.0 * half])
+}
+
 fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_render_pass: bool) -> Vec<u8> {
     let mesh = shape(picture.shape).expect("built in");
     let styles = picture.layers.iter().map(|layer| layer.style.clone()).collect();
     let options = Options { styles, ..Options::default() };
-    let bounds = match picture.around {
-        Some(half) => [-half, half].map(|by| extraordinary_vertex(&mesh) + by),
-        None => mesh.bounds(),
+    let towards = [-0.6, 0.5, 1.0];
+    let view = match picture.around {
+        None => View::framing(mesh.bounds(), towards, 1.0),
+        Some(half) => close_up(extraordinary_vertex(&mesh).as_vec3(), Vec3::from(towards).normalize(), half),
     };
-    let view = View::framing(bounds, [-0.6, 0.5, 1.0], 1.0);
     let desc = OffscreenDesc { samples: picture.samples, color: picture.format, ..OffscreenDesc::new(SIDE, SIDE) };
     let pass = in_render_pass.then(|| RenderPassTarget::new(headless, EXTENT));
     let target = match &pass {
