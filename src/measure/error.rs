@@ -88,7 +88,7 @@ pub struct ErrorReport {
 /// before patches are made, samples are those of the refined faces.
 ///
 /// **Nearest distance.** As many points of both surfaces, spread evenly over the area, each against the other surface
-/// as a mesh of triangles (about a million, at least 32 a patch, at most 2048). Chords of such a mesh are off the
+/// as a mesh of triangles (about two million, at least 32 a patch, at most 2048). Chords of such a mesh are off the
 /// surface by an eighth of their length squared over the radius of curvature: no smaller distance is to be trusted, and
 /// that of a scheme that is exact is not zero. Where the normals differ by more than 1.2 rad the point has found the
 /// other side of something thin, and is left out.

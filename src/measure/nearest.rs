@@ -13,7 +13,7 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 const MAX_ANGLE: f64 = 1.2;
 
 /// Triangles of a surface, about.
-const TRIANGLES: f64 = 1e6;
+const TRIANGLES: f64 = 2e6;
 
 /// What [`measure`] found.
 pub(super) struct Nearest {
