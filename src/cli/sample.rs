@@ -172,8 +172,11 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
     write(args, json, |i| named(tables.plan().patches()[i]), tables.origins(), &samples)
 }
 
+/// Parts of a surface, and the samples of each.
+type Sampled = (Vec<FaceOrigin>, Vec<Vec<Sample<DVec3>>>);
+
 /// The limit surface over all faces that it has, `n` samples along each side of each part.
-fn sample_limit(mesh: &ControlMesh, n: u32) -> Result<(Vec<FaceOrigin>, Vec<Vec<Sample<DVec3>>>), CliError> {
+fn sample_limit(mesh: &ControlMesh, n: u32) -> Result<Sampled, CliError> {
     let limit = LimitSurface::new(mesh)?;
     let parameters = grid_parameters(PatchKind::Regular, n);
     let faces = (0..mesh.face_count() as u32).into_par_iter().filter(|&face| limit.has_face(face));
