@@ -28,6 +28,7 @@
 //! |---|---|---|---|
 //! | 7 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
 //! | 6 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
+//! | 5 | `measure` (feature `measure`) | how far schemes are from the limit surface | files, printing |
 //! | 5 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
 //! | 4 | [`table`] | what the GPU reads | Vulkan |
 //! | 4 | [`limit`] | Catmull-Clark refinement and its limit surface | patch schemes |
@@ -110,6 +111,8 @@ pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
 pub mod limit;
+#[cfg(feature = "measure")]
+pub mod measure;
 pub mod mesh;
 pub mod patch;
 pub mod renderer;

@@ -12,6 +12,7 @@
 mod camera;
 mod devices;
 mod error;
+mod errors;
 mod info;
 mod obj;
 mod output;
@@ -45,6 +46,7 @@ Examples:
   subdiv render --shape creature -o creature.png
   subdiv render model.obj --shading patches -o patches.png
   subdiv info model.glb --json
+  subdiv error model.obj
   subdiv sample model.obj --grid 9 --cpu --json > samples.json
 
 Exit codes: 0 done, 1 the work failed, 2 wrong usage.
@@ -60,6 +62,8 @@ enum Command {
     Patches(patches::PatchesArgs),
     /// Positions and normals on a lattice of every patch, as the GPU or the CPU evaluates them.
     Sample(sample::SampleArgs),
+    /// How far the patches of each scheme are from the exact surface, in position and normal. Needs no device.
+    Error(errors::ErrorArgs),
     /// List the built-in shapes, or write one as OBJ.
     Shapes(shapes::ShapesArgs),
     /// List the Vulkan devices, what they can do and what they lack.
@@ -76,6 +80,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Info(args) => info::run(&args, cli.json),
         Command::Patches(args) => patches::run(&args, cli.json),
         Command::Sample(args) => sample::run(&args, cli.json),
+        Command::Error(args) => errors::run(&args, cli.json),
         Command::Shapes(args) => shapes::run(&args, cli.json),
         Command::Devices => devices::run(cli.json),
     });

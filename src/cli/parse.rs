@@ -20,6 +20,25 @@ pub(super) fn scheme() -> impl TypedValueParser<Value = Scheme> {
     named(Scheme::ALL.map(|scheme| (scheme.name(), scheme)))
 }
 
+/// A scheme by its name, or the limit surface as [`LIMIT`].
+pub(super) fn scheme_or_limit() -> impl TypedValueParser<Value = Surface> {
+    let names = Scheme::ALL.map(Scheme::name).into_iter().chain([LIMIT]);
+    PossibleValuesParser::new(names)
+        .map(|given| Scheme::ALL.into_iter().find(|s| s.name() == given).map_or(Surface::Limit, Surface::Patches))
+}
+
+/// What can be sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Surface {
+    /// The patches of a scheme.
+    Patches(Scheme),
+    /// The limit surface itself.
+    Limit,
+}
+
+/// What [`scheme_or_limit`] calls the limit surface.
+pub(super) const LIMIT: &str = "limit";
+
 /// A construction by its name.
 pub(super) fn construction() -> impl TypedValueParser<Value = Construction> {
     named(Construction::ALL.map(|construction| (construction.name(), construction)))

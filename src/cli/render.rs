@@ -134,7 +134,7 @@ impl RenderArgs {
             points.extend(mesh.data().positions.iter().copied().map(DVec3::from));
         }
         if points.is_empty() {
-            points = CpuSurface::new(mesh, self.mesh.scheme, self.mesh.refine)?.control_points(|p| p).concat();
+            points = CpuSurface::new(mesh, self.mesh.scheme, self.mesh.source.refine)?.control_points(|p| p).concat();
         }
         // Where nothing is drawn, such as where all faces are holes.
         if points.is_empty() {

@@ -2,15 +2,18 @@
 
 use super::error::CliError;
 use super::output::{self, Progress};
-use super::parse;
+use super::parse::{self, Surface};
 use super::patches::{by_origin, heading};
-use super::source::{DeviceArgs, MeshArgs, tell_notices};
-use ash_subdiv::Construction;
+use super::source::{DeviceArgs, SourceArgs, tell_notices};
 use ash_subdiv::capture::{Captured, CapturedVertex};
+use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::patch::Sample;
 use ash_subdiv::table::{FaceOrigin, Patch, grid_parameters};
+use ash_subdiv::topology::PatchKind;
+use ash_subdiv::{Construction, ControlMesh, Scheme};
 use clap::Args;
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use std::fmt::Display;
 
@@ -18,7 +21,10 @@ use std::fmt::Display;
 #[command(after_help = EXAMPLES)]
 pub(super) struct SampleArgs {
     #[command(flatten)]
-    mesh: MeshArgs,
+    mesh: SourceArgs,
+    /// Which patches faces become; `limit` is the exact Catmull-Clark surface instead, with --cpu.
+    #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::scheme_or_limit())]
+    scheme: Surface,
     /// Samples along each side of a patch, from 2 up; the GPU has at most its largest factor and one.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(2..=4097))]
     grid: u32,
@@ -36,10 +42,13 @@ const EXAMPLES: &str = "\
 Order of samples: of a quad, u = i/(N-1) and v = j/(N-1) at index j*N+i, with corners 0 to 3 of the face at (0,0),
 (1,0), (1,1) and (0,1). Of a triangle, rows r = 0..N-1 with u = 1-r/(N-1) at corner 0, in each row w = k/(N-1) for
 k = 0..r towards corner 2.
+The limit surface has quads whole (sub -1); of any other face, triangles too, the part around each corner (sub): (0,0)
+is the corner, (1,0) the middle of the edge after it, (1,1) the centre, (0,1) the middle of the edge before it.
 
 Examples:
   subdiv sample --shape torus --grid 3
-  subdiv sample model.obj --grid 17 --cpu --json > samples.json";
+  subdiv sample model.obj --grid 17 --cpu --json > samples.json
+  subdiv sample model.obj --scheme limit --grid 9 --cpu --json > limit.json";
 
 /// A sample as it is written: position and normal.
 trait Lattice {
@@ -115,14 +124,35 @@ fn normals<L: Lattice, S: Serializer>(samples: &&[L], serializer: S) -> Result<S
 }
 
 pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
+    if args.scheme == Surface::Limit {
+        if !args.cpu {
+            return Err(CliError::Usage("--scheme limit: the limit surface is evaluated on the CPU: add --cpu".into()));
+        }
+        if args.mesh.refine > 0 {
+            let message = "--scheme limit: refinement does not change the limit surface: leave out --refine";
+            return Err(CliError::Usage(message.into()));
+        }
+    }
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
+    let scheme = match args.scheme {
+        Surface::Patches(scheme) => scheme,
+        Surface::Limit => {
+            progress.now("sampling");
+            let (origins, samples) = sample_limit(&mesh, args.grid)?;
+            drop(progress);
+            // Sampled as quads are.
+            let kind = |_| (parse::LIMIT, PatchKind::Regular);
+            return write(args, json, kind, &origins, &samples);
+        }
+    };
+    let named = |patch: Patch| (patch.kind.name(), patch.kind);
     if args.cpu {
         progress.now("sampling");
-        let surface = args.mesh.cpu_surface(&mesh, &progress)?;
+        let surface = args.mesh.cpu_surface(&mesh, scheme, &progress)?;
         let samples = surface.grid(&surface.control_points(|p| p), args.grid);
         drop(progress);
-        return write(args, json, surface.plan().patches(), &surface.origins(), &samples);
+        return write(args, json, |i| named(surface.plan().patches()[i]), &surface.origins(), &samples);
     }
     let (tables, samples) = args.device.run(|headless| {
         let max = headless.properties().max_tessellation_level + 1;
@@ -131,7 +161,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
             return Err(CliError::Work(format!("--grid {grid}: {device} evaluates at most {max}; more with --cpu")));
         }
         progress.now("building tables");
-        let options = args.mesh.model_options(args.construction);
+        let options = args.mesh.model_options(scheme, args.construction);
         let captured = Captured::new(headless, &mesh, &options)?;
         tell_notices(captured.tables().notices(), &progress);
         progress.now("sampling");
@@ -139,13 +169,31 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
         Ok((captured.tables().clone(), samples))
     })?;
     drop(progress);
-    write(args, json, tables.plan().patches(), tables.origins(), &samples)
+    write(args, json, |i| named(tables.plan().patches()[i]), tables.origins(), &samples)
+}
+
+/// Parts of a surface, and the samples of each.
+type Sampled = (Vec<FaceOrigin>, Vec<Vec<Sample<DVec3>>>);
+
+/// The limit surface over all faces that it has, `n` samples along each side of each part.
+fn sample_limit(mesh: &ControlMesh, n: u32) -> Result<Sampled, CliError> {
+    let limit = LimitSurface::new(mesh)?;
+    let parameters = grid_parameters(PatchKind::Regular, n);
+    let faces = (0..mesh.face_count() as u32).into_par_iter().filter(|&face| limit.has_face(face));
+    let of_part = |(face, sub): (u32, i32)| {
+        let sample = |&[u, v]: &[f64; 2]| {
+            let sample = limit.evaluate(face, sub, u, v);
+            Sample { position: sample.position, normal: sample.normal }
+        };
+        (FaceOrigin { face, sub: sub.into() }, parameters.iter().map(sample).collect())
+    };
+    Ok(faces.flat_map_iter(|face| limit.subs(face).map(move |sub| (face, sub))).map(of_part).unzip())
 }
 
 fn write<L: Lattice>(
     args: &SampleArgs,
     json: bool,
-    patches: &[Patch],
+    kind: impl Fn(usize) -> (&'static str, PatchKind),
     origins: &[FaceOrigin],
     samples: &[Vec<L>],
 ) -> Result<(), CliError> {
@@ -155,9 +203,9 @@ fn write<L: Lattice>(
     }
     output::with_stdout(|out| {
         for i in by_origin(origins) {
-            writeln!(out, "{}{}", heading(origins[i]), patches[i].kind.name())?;
-            let parameters = grid_parameters(patches[i].kind, args.grid);
-            for ([u, v], sample) in parameters.into_iter().zip(&samples[i]) {
+            let (name, kind) = kind(i);
+            writeln!(out, "{}{name}", heading(origins[i]))?;
+            for ([u, v], sample) in grid_parameters(kind, args.grid).into_iter().zip(&samples[i]) {
                 let [x, y, z] = sample.position();
                 let [a, b, c] = sample.normal();
                 writeln!(out, "  {u:.4} {v:.4}  {x:>13.8}{y:>14.8}{z:>14.8}  {a:>12.8}{b:>13.8}{c:>13.8}")?;

@@ -14,6 +14,16 @@ use std::path::PathBuf;
 /// The mesh, and the surface it is the control mesh of.
 #[derive(Debug, Args)]
 pub(super) struct MeshArgs {
+    #[command(flatten)]
+    pub source: SourceArgs,
+    /// Which patches faces become.
+    #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::scheme())]
+    pub scheme: Scheme,
+}
+
+/// The mesh, whatever becomes of it.
+#[derive(Debug, Args)]
+pub(super) struct SourceArgs {
     /// The control mesh: a file ending in .obj, .gltf or .glb.
     mesh: Option<PathBuf>,
     /// A built-in shape instead of a file: see `subdiv shapes`.
@@ -25,9 +35,6 @@ pub(super) struct MeshArgs {
     /// Which mesh of a glTF scene, by its name or its node's; all of them if not given.
     #[arg(long, value_name = "NAME", conflicts_with = "shape")]
     mesh_name: Option<String>,
-    /// Which patches faces become.
-    #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::scheme())]
-    pub scheme: Scheme,
     /// Steps of Catmull-Clark refinement before patches are made; each makes four times as many faces.
     #[arg(long, value_name = "STEPS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub refine: u32,
@@ -36,8 +43,7 @@ pub(super) struct MeshArgs {
 impl MeshArgs {
     /// How the mesh is to be drawn, with this construction.
     pub(super) fn model_options(&self, construction: Construction) -> ModelOptions {
-        let name = self.shape.clone().unwrap_or_else(|| "mesh".into());
-        ModelOptions { name, scheme: self.scheme, construction, refine: self.refine, ..ModelOptions::default() }
+        self.source.model_options(self.scheme, construction)
     }
 
     /// The patches of the mesh on the CPU; tells the notices about it.
@@ -46,7 +52,36 @@ impl MeshArgs {
         mesh: &'m ControlMesh,
         progress: &Progress,
     ) -> Result<CpuSurface<'m>, CliError> {
-        let surface = CpuSurface::new(mesh, self.scheme, self.refine)?;
+        self.source.cpu_surface(mesh, self.scheme, progress)
+    }
+
+    /// Reads the file, or makes the shape.
+    pub(super) fn load(&self) -> Result<ControlMesh, CliError> {
+        self.source.load()
+    }
+}
+
+impl SourceArgs {
+    /// The mesh as the user named it.
+    pub(super) fn name(&self) -> String {
+        let path = self.mesh.as_ref().map(|path| path.display().to_string());
+        path.or_else(|| self.shape.clone()).unwrap_or_default()
+    }
+
+    /// How the mesh is to be drawn, with this scheme and construction.
+    pub(super) fn model_options(&self, scheme: Scheme, construction: Construction) -> ModelOptions {
+        let name = self.shape.clone().unwrap_or_else(|| "mesh".into());
+        ModelOptions { name, scheme, construction, refine: self.refine, ..ModelOptions::default() }
+    }
+
+    /// The patches of the mesh on the CPU; tells the notices about it.
+    pub(super) fn cpu_surface<'m>(
+        &self,
+        mesh: &'m ControlMesh,
+        scheme: Scheme,
+        progress: &Progress,
+    ) -> Result<CpuSurface<'m>, CliError> {
+        let surface = CpuSurface::new(mesh, scheme, self.refine)?;
         let prepared = surface.prepared();
         tell_notices(&prepared.notices(&Topology::new(&prepared.mesh)), progress);
         Ok(surface)

@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 mod errors;
+mod measures;
 mod pictures;
 
 use serde_json::Value;

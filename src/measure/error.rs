@@ -1,0 +1,288 @@
+//! How far schemes are from the limit surface.
+
+use super::nearest::{self, Nearest};
+use super::sums::Sums;
+use crate::limit::{LimitSample, LimitSurface};
+use crate::mesh::{ControlMesh, MeshError};
+use crate::patch::{Sample, Scheme, Undefined};
+use crate::table::{Patch, PatchPlan, prepare};
+use crate::topology::{PatchKind, Topology};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Patches measured with one limit surface, which remembers what it has refined: about 0.1 MB an irregular face.
+const CHUNK: usize = 4096;
+
+/// How to measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ErrorOptions {
+    /// Steps of refinement before patches are made, at least.
+    pub refine: u32,
+    /// Samples along each side of a quad, and of each of the three parts of a triangle; at least 1.
+    pub samples: u32,
+    /// Samples of each surface for the nearest distance, over the whole mesh; none is measured if 0.
+    pub nearest: u32,
+}
+
+impl Default for ErrorOptions {
+    /// Nothing is refined; 33 by 33 samples a patch, 60 000 for the nearest distance.
+    fn default() -> Self {
+        Self { refine: 0, samples: 33, nearest: 60_000 }
+    }
+}
+
+/// Size of a deviation over many samples. All are zero if there are no samples.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Deviation {
+    /// Root mean square, every sample weighted by the area of the limit surface that it stands for.
+    pub rms: f64,
+    /// Root mean square over the samples as they are.
+    pub rms_per_sample: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+/// How far some faces of a scheme are from the limit surface.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FaceErrors {
+    /// Distance of the points with the same parameters, over the diagonal of the control mesh.
+    pub position: Deviation,
+    /// Distance to the nearest point of the other surface, both ways together, over the diagonal of the control mesh.
+    /// `None` if not asked for.
+    pub nearest: Option<Deviation>,
+    /// Angle between the normals at the same parameters, in radians. Samples where either surface has none are left out.
+    pub normal: Deviation,
+}
+
+/// How far the patches of a scheme are from the limit surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SchemeError {
+    /// Over all faces.
+    pub all: FaceErrors,
+    /// Over irregular quads and triangles; `None` if there are none.
+    pub irregular: Option<FaceErrors>,
+}
+
+/// What [`surface_errors`] found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorReport {
+    /// Length of the diagonal of the control mesh's bounding box: the unit of distances here, in the mesh's own.
+    pub diagonal: f64,
+    /// Area of the limit surface that was measured, in the mesh's own units.
+    pub area: f64,
+    /// How many patches there are.
+    pub patches: usize,
+    /// How many of them are irregular quads or triangles.
+    pub irregular_patches: usize,
+    /// In the order in which they were asked for; those without patches on this mesh say why.
+    pub schemes: Vec<(Scheme, Result<SchemeError, Undefined>)>,
+}
+
+/// Measures how far schemes are from the Catmull-Clark limit surface of a mesh.
+///
+/// **Samples.** Each patch is evaluated at the middles of `samples` by `samples` cells of equal size in u and v. A
+/// triangle has three such lattices, one for each part of the limit surface over it
+/// ([`LimitSurface`]); (u, v) of the part around corner k is taken to be the point of the triangle that is bilinear
+/// between corner k, the middles of its edges and the centre. That is a convention: other ways to lay the parameters of
+/// a triangle over those of the limit surface give other distances, and slightly other angles. Where the mesh is refined
+/// before patches are made, samples are those of the refined faces.
+///
+/// **Nearest distance.** As many points of both surfaces, spread evenly over the area, each against the other surface
+/// as a mesh of triangles (about two million, at least 32 a patch, at most 2048). Chords of such a mesh are off the
+/// surface by an eighth of their length squared over the radius of curvature: no smaller distance is to be trusted, and
+/// that of a scheme that is exact is not zero. Where the normals differ by more than 1.2 rad the point has found the
+/// other side of something thin, and is left out.
+///
+/// The result is the same on any number of threads.
+///
+/// ```
+/// use ash_subdiv::measure::{ErrorOptions, surface_errors};
+/// use ash_subdiv::{Scheme, shape};
+/// let options = ErrorOptions { samples: 5, nearest: 0, ..ErrorOptions::default() };
+/// let report = surface_errors(&shape("torus")?, &[Scheme::Gregory], &options)?;
+/// let error = report.schemes[0].1.as_ref().expect("Gregory patches are defined everywhere");
+/// assert!(error.all.position.max < 1e-12 && error.irregular.is_none());
+/// # Ok::<(), ash_subdiv::MeshError>(())
+/// ```
+///
+/// # Errors
+/// A refined mesh that cannot be addressed; coordinates beyond those of [`LimitSurface::new`].
+///
+/// # Panics
+/// If `options.samples` is 0.
+pub fn surface_errors(
+    mesh: &ControlMesh,
+    schemes: &[Scheme],
+    options: &ErrorOptions,
+) -> Result<ErrorReport, MeshError> {
+    assert!(options.samples > 0, "at least one sample along a side");
+    let [low, high] = mesh.bounds();
+    let diagonal = low.distance(high);
+    let prepared = prepare(mesh, options.refine)?;
+    let topology = Topology::new(&prepared.mesh);
+    let plan = PatchPlan::new(&topology);
+    let surfaces = Surfaces { mesh: &prepared.mesh, topology: &topology, patches: plan.patches() };
+    let checks: Vec<_> = schemes.iter().map(|scheme| (*scheme, scheme.check(&topology, &plan))).collect();
+    let defined: Vec<Scheme> = checks.iter().filter(|(_, check)| check.is_ok()).map(|(scheme, _)| *scheme).collect();
+
+    // All distances are over the diagonal. A mesh without extent is as good as its patches, which are the same point.
+    let scale = if diagonal > 0.0 { diagonal.recip() } else { 0.0 };
+    let measured =
+        surfaces.for_each(|limit, patch| measure_patch(&surfaces, limit, patch, &defined, options.samples))?;
+    let areas: Vec<f64> = measured.iter().map(|patch| patch.area).collect();
+    let near = match options.nearest {
+        0 => None,
+        samples => Some(nearest::measure(&surfaces, &defined, &areas, samples)?),
+    };
+    let errors = |number: usize, only_irregular: bool| {
+        let (mut position, mut normal, mut nearest) = (Sums::default(), Sums::default(), Sums::default());
+        for (i, patch) in plan.patches().iter().enumerate() {
+            if only_irregular && patch.kind == PatchKind::Regular {
+                continue;
+            }
+            position.merge(&measured[i].schemes[number].position);
+            normal.merge(&measured[i].schemes[number].normal);
+            if let Some(near) = &near {
+                nearest.merge(&near.distances[number][i]);
+            }
+        }
+        FaceErrors {
+            position: position.deviation().scaled(scale),
+            nearest: near.as_ref().map(|_: &Nearest| nearest.deviation().scaled(scale)),
+            normal: normal.deviation(),
+        }
+    };
+    let irregular_patches = plan.patches().len() - plan.count(PatchKind::Regular) as usize;
+    let mut number = 0..;
+    let mut of_scheme = || {
+        let number = number.next().unwrap_or(0);
+        let irregular = (irregular_patches > 0).then(|| errors(number, true));
+        SchemeError { all: errors(number, false), irregular }
+    };
+    let schemes = checks.into_iter().map(|(scheme, check)| (scheme, check.map(|()| of_scheme()))).collect();
+    Ok(ErrorReport { diagonal, area: areas.iter().sum(), patches: plan.patches().len(), irregular_patches, schemes })
+}
+
+impl Deviation {
+    fn scaled(self, scale: f64) -> Self {
+        Self { rms: scale * self.rms, rms_per_sample: scale * self.rms_per_sample, max: scale * self.max }
+    }
+}
+
+/// The patches, and the surface they approximate.
+pub(super) struct Surfaces<'s> {
+    pub mesh: &'s ControlMesh,
+    pub topology: &'s Topology<'s>,
+    pub patches: &'s [Patch],
+}
+
+impl Surfaces<'_> {
+    /// Does something for each patch, in parallel.
+    pub(super) fn for_each<R: Send>(
+        &self,
+        work: impl Fn(&LimitSurface, usize) -> R + Sync,
+    ) -> Result<Vec<R>, MeshError> {
+        let mut results = Vec::with_capacity(self.patches.len());
+        for start in (0..self.patches.len()).step_by(CHUNK) {
+            let limit = LimitSurface::new(self.mesh)?;
+            let chunk = start..(start + CHUNK).min(self.patches.len());
+            results.par_extend(chunk.into_par_iter().map(|patch| work(&limit, patch)));
+        }
+        Ok(results)
+    }
+
+    pub(super) fn control_points(&self, scheme: Scheme, patch: usize) -> Vec<DVec3> {
+        let Patch { face, kind } = self.patches[patch];
+        scheme.control_points(self.topology, face, kind, |vertex| self.mesh.position(vertex))
+    }
+
+    /// The patch at parameters of a part of the limit surface.
+    pub(super) fn evaluate(&self, scheme: Scheme, patch: usize, points: &[DVec3], at: Parameters) -> Sample<DVec3> {
+        let [u, v] = at.of_patch();
+        scheme.evaluate(self.patches[patch].kind, points, u, v)
+    }
+
+    pub(super) fn limit(&self, limit: &LimitSurface, patch: usize, at: Parameters) -> LimitSample {
+        limit.evaluate(self.patches[patch].face, at.sub, at.u, at.v)
+    }
+}
+
+/// Where on a face, as [`LimitSurface`] counts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parameters {
+    pub sub: i32,
+    pub u: f64,
+    pub v: f64,
+}
+
+impl Parameters {
+    /// Those of the patch over the face: (u, v) of a quad, the first two barycentric coordinates of a triangle.
+    fn of_patch(self) -> [f64; 2] {
+        let Self { sub, u, v } = self;
+        if sub < 0 {
+            return [u, v];
+        }
+        // Of corner k, of those after and before it; their sum is 1.
+        let centre = u * v / 3.0;
+        let (to_next, to_previous) = (0.5 * u * (1.0 - v) + centre, 0.5 * (1.0 - u) * v + centre);
+        let here = 1.0 - to_next - to_previous;
+        match sub {
+            0 => [here, to_next],
+            1 => [to_previous, here],
+            _ => [to_next, to_previous],
+        }
+    }
+}
+
+/// The parts of a patch, by the `sub` of the limit surface.
+pub(super) fn parts(kind: PatchKind) -> std::ops::Range<i32> {
+    if kind == PatchKind::Triangle { 0..3 } else { -1..0 }
+}
+
+struct PatchErrors {
+    area: f64,
+    /// Of each scheme.
+    schemes: Vec<ParametricSums>,
+}
+
+#[derive(Default)]
+struct ParametricSums {
+    position: Sums,
+    normal: Sums,
+}
+
+fn measure_patch(
+    surfaces: &Surfaces,
+    limit: &LimitSurface,
+    patch: usize,
+    schemes: &[Scheme],
+    samples: u32,
+) -> PatchErrors {
+    let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(samples);
+    let cell = f64::from(samples).powi(-2);
+    let points: Vec<_> = schemes.iter().map(|&scheme| surfaces.control_points(scheme, patch)).collect();
+    let mut errors = PatchErrors { area: 0.0, schemes: Vec::new() };
+    errors.schemes.resize_with(schemes.len(), Default::default);
+    for sub in parts(surfaces.patches[patch].kind) {
+        for (i, j) in (0..samples).flat_map(|j| (0..samples).map(move |i| (i, j))) {
+            let at = Parameters { sub, u: middle(i), v: middle(j) };
+            let truth = surfaces.limit(limit, patch, at);
+            let area = cell * truth.du.cross(truth.dv).length();
+            errors.area += area;
+            for (number, &scheme) in schemes.iter().enumerate() {
+                let sample = surfaces.evaluate(scheme, patch, &points[number], at);
+                let sums = &mut errors.schemes[number];
+                sums.position.add(area, sample.position.distance(truth.position));
+                if let Some(angle) = angle(sample.normal, truth.normal) {
+                    sums.normal.add(area, angle);
+                }
+            }
+        }
+    }
+    errors
+}
+
+/// Between unit vectors, in radians; `None` if one is zero.
+pub(super) fn angle(a: DVec3, b: DVec3) -> Option<f64> {
+    (a != DVec3::ZERO && b != DVec3::ZERO).then(|| a.cross(b).length().atan2(a.dot(b)))
+}

@@ -1,0 +1,8 @@
+//! Measurements: how far the patches of a scheme are from the surface they approximate. Nothing here knows files or
+//! prints.
+
+mod error;
+mod nearest;
+mod sums;
+
+pub use error::{Deviation, ErrorOptions, ErrorReport, FaceErrors, SchemeError, surface_errors};
