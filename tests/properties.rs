@@ -63,8 +63,8 @@ fn normal_gap<P: Point + Blend>(
     (largest, edges)
 }
 
-/// Measured: 2.1e-13 rad in f64. In f32 1.1e-4 rad at the small faces around the eyes of creature-mixed, whose
-/// derivatives are differences of nearly equal points; 5e-5 rad and less on all other meshes.
+/// Measured: 2.1e-13 rad in f64. In f32 6.0e-5 rad on creature, of which the rounding of control points alone makes
+/// 4.5e-5.
 #[test]
 fn smooth_edges_have_one_tangent_plane() {
     let mut smooth = 0;
@@ -74,7 +74,7 @@ fn smooth_edges_have_one_tangent_plane() {
         let (gap_f32, _) = normal_gap(&topology, |p| p.as_vec3(), |n| n.as_dvec3(), |t| t as f32);
         smooth += edges;
         assert!(gap < 1e-10, "{name}: {gap:e} rad between the normals of two patches along an edge, in f64");
-        assert!(gap_f32 < 2e-4, "{name}: {gap_f32:e} rad in f32");
+        assert!(gap_f32 < 1e-4, "{name}: {gap_f32:e} rad in f32");
     }
     assert!(smooth > 12_000, "{smooth} smooth edges");
 }

@@ -14,13 +14,13 @@
 #define face_minus(k) owned[k][4]
 
 // The terms of corner k with coordinate x, and of its edge to the next corner, whose coordinate is y: the derivatives,
-// and of the position what vanishes on the edges.
-void add_corner(float x, float y, float z, vec3 p, vec3 plus, vec3 next_minus, vec3 f_plus, vec3 f_minus,
+// and of the position what vanishes on the edges. Points are given as seen from `origin`: see `evaluate_tensor`.
+void add_corner(float x, float y, float z, vec3 origin, vec3 p, vec3 plus, vec3 next_minus, vec3 f_plus, vec3 f_minus,
                 inout vec3 inner, inout vec3 dx, inout vec3 dy, inout vec3 dz) {
     vec3 edge = x * plus + y * next_minus;
     float scale = 3.0 * x * y * (x + y);
     vec3 face = blend(f_plus, y, f_minus, z);
-    inner += (12.0 * x * x * y * z) * face;
+    inner += (12.0 * x * x * y * z) * (origin + face);
     dx += (3.0 * x * x) * p + (3.0 * y * (2.0 * x + y)) * edge + scale * plus + (24.0 * x * y * z) * face;
     dy += (3.0 * x * (x + 2.0 * y)) * edge + scale * next_minus + (12.0 * x * x * z) * face;
     dz += (12.0 * x * x * y) * face;
@@ -42,10 +42,11 @@ vec3 position_at(float u, float v, float w, vec3 inner) {
 }
 
 Sample evaluate_gregory_triangle(float u, float v, float w) {
+    precise vec3 o = corner(0);
     vec3 inner = vec3(0.0), du = vec3(0.0), dv = vec3(0.0), dw = vec3(0.0);
-    add_corner(u, v, w, corner(0), edge_plus(0), edge_minus(1), face_plus(0), face_minus(0), inner, du, dv, dw);
-    add_corner(v, w, u, corner(1), edge_plus(1), edge_minus(2), face_plus(1), face_minus(1), inner, dv, dw, du);
-    add_corner(w, u, v, corner(2), edge_plus(2), edge_minus(0), face_plus(2), face_minus(2), inner, dw, du, dv);
+    add_corner(u, v, w, o, corner(0) - o, edge_plus(0) - o, edge_minus(1) - o, face_plus(0) - o, face_minus(0) - o, inner, du, dv, dw);
+    add_corner(v, w, u, o, corner(1) - o, edge_plus(1) - o, edge_minus(2) - o, face_plus(1) - o, face_minus(1) - o, inner, dv, dw, du);
+    add_corner(w, u, v, o, corner(2) - o, edge_plus(2) - o, edge_minus(0) - o, face_plus(2) - o, face_minus(2) - o, inner, dw, du, dv);
     vec3 chords = cross(corner(1) - corner(0), corner(2) - corner(0));
     return Sample(position_at(u, v, w, inner), unit_normal(du - dw, dv - dw, chords));
 }

@@ -44,6 +44,9 @@ vec3 unit_normal(vec3 du, vec3 dv, vec3 fallback) {
 }
 
 // A 4 x 4 tensor-product Bezier patch, rows along u.
+//
+// Derivatives are taken of the points as seen from the first one: they are differences of nearly equal numbers where a patch
+// is small and far from the origin. Positions are not: an edge must get the same bits from both of its patches.
 Sample evaluate_tensor(vec3 x00, vec3 x01, vec3 x02, vec3 x03, vec3 x10, vec3 x11, vec3 x12, vec3 x13, vec3 x20,
                        vec3 x21, vec3 x22, vec3 x23, vec3 x30, vec3 x31, vec3 x32, vec3 x33, float u, float v) {
     Basis bu = cubic_basis(u);
@@ -52,14 +55,23 @@ Sample evaluate_tensor(vec3 x00, vec3 x01, vec3 x02, vec3 x03, vec3 x10, vec3 x1
     vec3 c1 = symmetric_sum(bu.value, x01, x11, x21, x31);
     vec3 c2 = symmetric_sum(bu.value, x02, x12, x22, x32);
     vec3 c3 = symmetric_sum(bu.value, x03, x13, x23, x33);
-    vec3 d0 = symmetric_sum(bu.derivative, x00, x10, x20, x30);
-    vec3 d1 = symmetric_sum(bu.derivative, x01, x11, x21, x31);
-    vec3 d2 = symmetric_sum(bu.derivative, x02, x12, x22, x32);
-    vec3 d3 = symmetric_sum(bu.derivative, x03, x13, x23, x33);
+    vec3 position = symmetric_sum(bv.value, c0, c1, c2, c3);
+
+    precise vec3 y01 = x01 - x00, y02 = x02 - x00, y03 = x03 - x00;
+    precise vec3 y10 = x10 - x00, y11 = x11 - x00, y12 = x12 - x00, y13 = x13 - x00;
+    precise vec3 y20 = x20 - x00, y21 = x21 - x00, y22 = x22 - x00, y23 = x23 - x00;
+    precise vec3 y30 = x30 - x00, y31 = x31 - x00, y32 = x32 - x00, y33 = x33 - x00;
+    vec3 d0 = symmetric_sum(bu.derivative, vec3(0.0), y10, y20, y30);
+    vec3 d1 = symmetric_sum(bu.derivative, y01, y11, y21, y31);
+    vec3 d2 = symmetric_sum(bu.derivative, y02, y12, y22, y32);
+    vec3 d3 = symmetric_sum(bu.derivative, y03, y13, y23, y33);
+    vec3 e0 = symmetric_sum(bu.value, vec3(0.0), y10, y20, y30);
+    vec3 e1 = symmetric_sum(bu.value, y01, y11, y21, y31);
+    vec3 e2 = symmetric_sum(bu.value, y02, y12, y22, y32);
+    vec3 e3 = symmetric_sum(bu.value, y03, y13, y23, y33);
     vec3 du = symmetric_sum(bv.value, d0, d1, d2, d3);
-    vec3 dv = symmetric_sum(bv.derivative, c0, c1, c2, c3);
-    vec3 diagonals = cross(x33 - x00, x03 - x30);
-    return Sample(symmetric_sum(bv.value, c0, c1, c2, c3), unit_normal(du, dv, diagonals));
+    vec3 dv = symmetric_sum(bv.derivative, e0, e1, e2, e3);
+    return Sample(position, unit_normal(du, dv, cross(y33, y03 - y30)));
 }
 
 // The face point (a f+ + b f-) / (a + b); at a corner, where both weights vanish, it does not matter.

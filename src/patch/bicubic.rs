@@ -76,16 +76,20 @@ pub(crate) fn cubic<P: Point>(basis: &Basis<P::Scalar>, points: &[P; 4]) -> P {
 
 /// A 4 x 4 tensor-product Bezier patch at (u, v), rows along u.
 ///
+/// Derivatives are taken of the points as seen from the first one: they are differences of nearly equal numbers where a
+/// patch is small and far from the origin. Positions are not: an edge must get the same bits from both of its patches.
+///
 /// GLSL twin: `evaluate_tensor` in `glsl/lib/patch.glsl`.
 pub(crate) fn evaluate_tensor<P: Point>(points: &[[P; 4]; 4], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let (bu, bv) = (Basis::new::<P>(u), Basis::new::<P>(v));
+    let near = points.map(|row| row.map(|x| x - points[0][0]));
     // First along u: the points and u-derivatives of a cubic in v.
-    let column = |j: usize| [points[0][j], points[1][j], points[2][j], points[3][j]];
-    let along_v: [P; 4] = std::array::from_fn(|j| symmetric_sum(&bu.value, &column(j)));
-    let du_along_v: [P; 4] = std::array::from_fn(|j| symmetric_sum(&bu.derivative, &column(j)));
-    let position = symmetric_sum(&bv.value, &along_v);
-    let du = symmetric_sum(&bv.value, &du_along_v);
-    let dv = symmetric_sum(&bv.derivative, &along_v);
-    let diagonals = (points[3][3] - points[0][0]).cross(points[0][3] - points[3][0]);
+    let along = |weights: &[P::Scalar; 4], points: &[[P; 4]; 4]| -> [P; 4] {
+        std::array::from_fn(|j| symmetric_sum(weights, &[points[0][j], points[1][j], points[2][j], points[3][j]]))
+    };
+    let position = symmetric_sum(&bv.value, &along(&bu.value, points));
+    let du = symmetric_sum(&bv.value, &along(&bu.derivative, &near));
+    let dv = symmetric_sum(&bv.derivative, &along(&bu.value, &near));
+    let diagonals = near[3][3].cross(near[0][3] - near[3][0]);
     Sample { position, normal: unit_normal(du, dv, diagonals) }
 }

@@ -106,22 +106,24 @@ pub fn evaluate_gregory_triangle<P: Point>(points: &[P; 15], u: P::Scalar, v: P:
     };
     let edges = (edge_terms(0, 1) + edge_terms(1, 2)) + edge_terms(2, 0);
     let mut inner = P::default();
-    // Partial derivatives by u, v and w as if they were independent.
+    // Partial derivatives by u, v and w as if they were independent, of the points as seen from the first corner: see
+    // `evaluate_tensor`. What that takes off all three alike goes again in their differences.
+    let origin = p[0];
     let mut gradient = [P::default(); 3];
     for k in 0..3 {
         let (n, o) = ((k + 1) % 3, (k + 2) % 3);
         let (x, y, z) = (b[k], b[n], b[o]);
         // Corner k.
-        gradient[k] = gradient[k] + p[k] * (c3 * x * x);
+        gradient[k] = gradient[k] + (p[k] - origin) * (c3 * x * x);
         // The edge from corner k to corner n.
-        let (plus, minus) = (e[2 * k], e[2 * n + 1]);
+        let (plus, minus) = (e[2 * k] - origin, e[2 * n + 1] - origin);
         let edge = plus * x + minus * y;
         let scale = c3 * x * y * (x + y);
         gradient[k] = gradient[k] + edge * (c3 * y * (c2 * x + y)) + plus * scale;
         gradient[n] = gradient[n] + edge * (c3 * x * (x + c2 * y)) + minus * scale;
         // The face point of corner k.
-        let face = blend(f[2 * k], y, f[2 * k + 1], z);
-        inner = inner + face * (c12 * x * x * y * z);
+        let face = blend(f[2 * k] - origin, y, f[2 * k + 1] - origin, z);
+        inner = inner + (origin + face) * (c12 * x * x * y * z);
         gradient[k] = gradient[k] + face * (c24 * x * y * z);
         gradient[n] = gradient[n] + face * (c12 * x * x * z);
         gradient[o] = gradient[o] + face * (c12 * x * x * y);
