@@ -44,9 +44,12 @@ vec3 position_at(float u, float v, float w, vec3 inner) {
 Sample evaluate_gregory_triangle(float u, float v, float w) {
     precise vec3 o = corner(0);
     vec3 inner = vec3(0.0), du = vec3(0.0), dv = vec3(0.0), dw = vec3(0.0);
-    add_corner(u, v, w, o, corner(0) - o, edge_plus(0) - o, edge_minus(1) - o, face_plus(0) - o, face_minus(0) - o, inner, du, dv, dw);
-    add_corner(v, w, u, o, corner(1) - o, edge_plus(1) - o, edge_minus(2) - o, face_plus(1) - o, face_minus(1) - o, inner, dv, dw, du);
-    add_corner(w, u, v, o, corner(2) - o, edge_plus(2) - o, edge_minus(0) - o, face_plus(2) - o, face_minus(2) - o, inner, dw, du, dv);
+    add_corner(u, v, w, o, corner(0) - o, edge_plus(0) - o, edge_minus(1) - o, face_plus(0) - o,
+               face_minus(0) - o, inner, du, dv, dw);
+    add_corner(v, w, u, o, corner(1) - o, edge_plus(1) - o, edge_minus(2) - o, face_plus(1) - o,
+               face_minus(1) - o, inner, dv, dw, du);
+    add_corner(w, u, v, o, corner(2) - o, edge_plus(2) - o, edge_minus(0) - o, face_plus(2) - o,
+               face_minus(2) - o, inner, dw, du, dv);
     vec3 chords = cross(corner(1) - corner(0), corner(2) - corner(0));
     return Sample(position_at(u, v, w, inner), unit_normal(du - dw, dv - dw, chords));
 }

@@ -122,7 +122,7 @@ pub fn surface_errors(
     let topology = Topology::new(&prepared.mesh);
     let plan = PatchPlan::new(&topology);
     let surfaces = Surfaces { mesh: &prepared.mesh, topology: &topology, patches: plan.patches() };
-    let checks: Vec<_> = schemes.iter().map(|scheme| (*scheme, scheme.check(&topology, &plan))).collect();
+    let checks: Vec<_> = schemes.iter().map(|scheme| (*scheme, plan.check(&topology, *scheme))).collect();
     let defined: Vec<Scheme> = checks.iter().filter(|(_, check)| check.is_ok()).map(|(scheme, _)| *scheme).collect();
 
     // All distances are over the diagonal. A mesh without extent is as good as its patches, which are the same point.

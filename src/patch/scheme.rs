@@ -6,7 +6,6 @@
 
 use super::gregory::PatchCorner;
 use super::{Blend, Frame, Point, RingValues, Sample, acc, bicubic, gregory, pm};
-use crate::table::PatchPlan;
 use crate::topology::{PatchKind, RingKind, Topology};
 
 /// A way to approximate the Catmull-Clark surface by patches, one a face.
@@ -30,7 +29,7 @@ pub enum Scheme {
 pub struct Undefined {
     /// The scheme that was asked for.
     pub scheme: Scheme,
-    /// The first such face of the mesh that patches are made of.
+    /// The face, of the mesh that patches are made of.
     pub face: u32,
     /// What the face is, in the plural.
     pub what: &'static str,
@@ -50,26 +49,18 @@ impl Scheme {
         }
     }
 
-    /// Tells whether every face of a plan has a patch of this scheme.
+    /// Tells whether the scheme has a patch for a face.
     ///
     /// # Errors
-    /// [`Undefined`] names the first face that has none.
-    pub fn check(self, topology: &Topology, plan: &PatchPlan) -> Result<(), Undefined> {
-        let mut first: Option<(u32, &'static str)> = None;
-        for patch in plan.patches().iter().filter(|patch| patch.kind != PatchKind::Regular) {
-            let what = match self {
-                Self::Gregory => return Ok(()),
-                Self::Acc | Self::CPatch if patch.kind == PatchKind::Triangle => Some("triangles"),
-                Self::Acc => None,
-                Self::Pm | Self::CPatch => pm_lacks(topology, patch.face),
-            };
-            if let Some(what) = what
-                && first.is_none_or(|(face, _)| patch.face < face)
-            {
-                first = Some((patch.face, what));
-            }
-        }
-        first.map_or(Ok(()), |(face, what)| Err(Undefined { scheme: self, face, what }))
+    /// [`Undefined`] says why it has none.
+    pub fn check(self, topology: &Topology, face: u32, kind: PatchKind) -> Result<(), Undefined> {
+        let what = match (kind, self) {
+            (PatchKind::Regular, _) | (_, Self::Gregory) => None,
+            (PatchKind::Triangle, Self::Acc | Self::CPatch) => Some("triangles"),
+            (_, Self::Acc) => None,
+            (_, Self::Pm | Self::CPatch) => pm_lacks(topology, face),
+        };
+        what.map_or(Ok(()), |what| Err(Undefined { scheme: self, face, what }))
     }
 
     /// How many control points each corner of a patch owns.

@@ -45,7 +45,7 @@ impl ModelTables {
         let topology = Topology::new(&prepared.mesh);
         let mut plan = PatchPlan::new(&topology);
         let scheme = options.scheme;
-        scheme.check(&topology, &plan)?;
+        plan.check(&topology, scheme)?;
         let construction = match options.construction {
             Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan, scheme)),
             Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan, scheme)?),

@@ -34,7 +34,7 @@ impl<'m> CpuSurface<'m> {
         let prepared = prepare(mesh, refine)?;
         let topology = Topology::new(&prepared.mesh);
         let plan = PatchPlan::new(&topology);
-        scheme.check(&topology, &plan)?;
+        plan.check(&topology, scheme)?;
         drop(topology);
         Ok(Self { prepared, plan, scheme })
     }

@@ -1,5 +1,6 @@
 //! Which faces become which patches, in the order in which they are stored and drawn.
 
+use crate::patch::{Scheme, Undefined};
 use crate::topology::{PatchKind, Topology, draws_face};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -48,6 +49,15 @@ impl PatchPlan {
     /// How many patches of a kind there are.
     pub fn count(&self, kind: PatchKind) -> u32 {
         self.counts[kind as usize]
+    }
+
+    /// Tells whether a scheme has a patch for every face.
+    ///
+    /// # Errors
+    /// [`Undefined`] names the first face that has none.
+    pub fn check(&self, topology: &Topology, scheme: Scheme) -> Result<(), Undefined> {
+        let lacking = self.patches.iter().filter_map(|patch| scheme.check(topology, patch.face, patch.kind).err());
+        lacking.min_by_key(|undefined| undefined.face).map_or(Ok(()), Err)
     }
 
     /// Puts the same patches in another order within their kinds.
