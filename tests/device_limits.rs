@@ -1,0 +1,48 @@
+//! What a device cannot hold or make is an error that says so.
+#![cfg(feature = "headless")]
+
+use ash::vk::{Format, SampleCountFlags};
+use ash_subdiv::capture::Captured;
+use ash_subdiv::headless::{Headless, HeadlessOptions};
+use ash_subdiv::{ControlMesh, ModelOptions, Options, Renderer, Target, grid_torus, shape};
+
+#[test]
+fn a_table_that_no_shader_can_see_is_an_error() {
+    let headless = Headless::new(&HeadlessOptions { validation: true, ..HeadlessOptions::default() }).unwrap();
+    let max = headless.properties().max_storage_buffer_range;
+    // A ring of four faces has eight entries of four bytes: a mesh just too large, where one of these can be made at all.
+    let side = (max as f64 / 32.0).sqrt().ceil() as u32 + 1;
+    if max < 1 << 28 {
+        let target = Target::dynamic(Format::R8G8B8A8_UNORM, Format::D32_SFLOAT, SampleCountFlags::TYPE_1);
+        // SAFETY: nothing is recorded.
+        let mut renderer = unsafe { Renderer::new(headless.context(), &target, &Options::default()) }.unwrap();
+        let mesh = ControlMesh::new(grid_torus(side, side)).unwrap();
+        let error = renderer.add_model(&mesh, &ModelOptions::default()).unwrap_err().to_string();
+        let bytes = 32 * u64::from(side) * u64::from(side);
+        assert_eq!(
+            error,
+            format!(
+                "model 0: ring entries take {bytes} bytes, but a shader can see {max} at once on this device: split the mesh"
+            )
+        );
+        // The renderer is as it was before.
+        assert_eq!(renderer.memory_usage().total(), renderer.memory_usage().views);
+        renderer.add_model(&shape("cube").unwrap(), &ModelOptions::default()).unwrap();
+    }
+    headless.finish_silent();
+}
+
+#[test]
+fn a_grid_that_the_tessellator_cannot_make_is_an_error() {
+    let headless = Headless::new(&HeadlessOptions { validation: true, ..HeadlessOptions::default() }).unwrap();
+    let captured = Captured::new(&headless, &shape("cube").unwrap(), &ModelOptions::default()).unwrap();
+    let max = headless.properties().max_tessellation_level + 1;
+    for grid in [1, max + 1] {
+        let error = captured.grid(grid).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            format!("grid {grid}: the tessellator of this device makes from 2 to {max} samples along a side")
+        );
+    }
+    headless.finish_silent();
+}
