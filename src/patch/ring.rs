@@ -97,7 +97,7 @@ pub struct Frame<T> {
     pub b: T,
 }
 
-impl<T: Blend> RingValues<T> {
+impl<T> RingValues<T> {
     /// The ring with the value of `vertex(v)` at mesh vertex `v`.
     pub fn new(topology: &Topology, ring: &Ring, vertex: impl Fn(u32) -> T) -> Self {
         let mut edges = Vec::with_capacity(ring.edges() as usize);
@@ -115,7 +115,9 @@ impl<T: Blend> RingValues<T> {
         let centre = vertex(topology.mesh_vertex(ring.start));
         Self { shape: RingShape::of(topology, ring), centre, edges, diagonals }
     }
+}
 
+impl<T: Blend> RingValues<T> {
     fn edge(&self, j: usize) -> &T {
         &self.edges[j % self.edges.len()]
     }
