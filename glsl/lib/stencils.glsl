@@ -4,9 +4,9 @@
 
 #include "positions.glsl"
 
-layout(set = 1, binding = 1, std430) readonly buffer StencilPatches { uvec2 stencil_patches[]; };
-layout(set = 1, binding = 2, std430) readonly buffer StencilVertices { uint stencil_vertices[]; };
-layout(set = 1, binding = 3, std430) readonly buffer StencilTypes { uint stencil_types[]; };
+layout(set = 1, binding = 5, std430) readonly buffer StencilPatches { uvec2 stencil_patches[]; };
+layout(set = 1, binding = 6, std430) readonly buffer StencilVertices { uint stencil_vertices[]; };
+layout(set = 1, binding = 7, std430) readonly buffer StencilTypes { uint stencil_types[]; };
 
 const uint HEAD_WORDS = 3u;
 const uint ENTRY_WORDS = 1u + OWNED;

@@ -221,6 +221,22 @@ impl<T: Blend> RingValues<T> {
         }
     }
 
+    /// The vector across edge `j` at this vertex, from right to left: `(3/2) (e_{j+1} - e_{j-1})`, with the edge point that an
+    /// open ring lacks beyond its ends mirrored. `w0` and, negated, `w3` of patch_maths B.
+    pub fn across(&self, frame: &Frame<T>, j: usize) -> T {
+        let edges = self.edges.len();
+        let j = j % edges;
+        let edge = |j: usize| self.edge_point(frame, j % edges);
+        let cosine = self.shape.cosine();
+        if self.shape.open && j == 0 {
+            T::sum([(3.0, &edge(1)), (-3.0 * cosine, &edge(0)), (3.0 * cosine - 3.0, &frame.p)])
+        } else if self.shape.open && j == edges - 1 {
+            T::sum([(-3.0, &edge(j - 1)), (3.0 * cosine, &edge(j)), (3.0 - 3.0 * cosine, &frame.p)])
+        } else {
+            T::sum([(1.5, &edge(j + 1)), (-1.5, &edge(j + edges - 1))])
+        }
+    }
+
     /// `r_j`, the transversal of edge j at this vertex, from the face on its right to the face on its left
     /// (Loop et al. 2009, section 3.4; at the ends of an open ring with a mirrored ghost row, section 4.6).
     pub fn transversal(&self, j: usize) -> T {

@@ -107,6 +107,11 @@ impl Scheme {
         kind == PatchKind::Regular || self == Self::Gregory
     }
 
+    /// Whether patches of all kinds share what they have in common along edges to the last bit ([`Scheme::shares_frame`]).
+    pub fn is_watertight(self) -> bool {
+        PatchKind::ALL.into_iter().all(|kind| self.shares_frame(kind))
+    }
+
     /// The control points of the patch of one face, `vertex(v)` being the value at mesh vertex `v`. Orders are those of
     /// [`bicubic`] for regular faces, else of the scheme's own module.
     ///
