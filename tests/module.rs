@@ -282,7 +282,9 @@ fn wrong_use_is_told() {
     for factor in [0.5, f32::NAN] {
         assert_eq!(
             draw(&mut renderer, 0, DrawItem { factor: factor.into(), ..item }),
-            format!("model 0: the tessellation factor {factor} is no number from 1 up")
+            format!(
+                "model 0: Uniform({factor:?}): a tessellation factor is a number from 1 up, pixels and scales are above 0"
+            )
         );
         stage.prepare(&mut renderer, 0);
     }

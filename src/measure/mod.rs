@@ -4,5 +4,7 @@
 mod error;
 mod nearest;
 mod sums;
+#[cfg(feature = "headless")]
+pub mod watertight;
 
 pub use error::{Deviation, ErrorOptions, ErrorReport, FaceErrors, SchemeError, surface_errors};

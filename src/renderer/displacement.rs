@@ -21,6 +21,20 @@ pub struct DisplacementMap {
     pub range: [f32; 2],
 }
 
+#[cfg(feature = "headless")]
+impl From<&crate::headless::Texture> for DisplacementMap {
+    /// Heights if a texel is one number, else vectors.
+    fn from(texture: &crate::headless::Texture) -> Self {
+        Self {
+            view: texture.view(),
+            sampler: texture.sampler(),
+            layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+            vectors: texture.channels() > 1,
+            range: texture.range(),
+        }
+    }
+}
+
 impl DisplacementMap {
     /// How far a point is moved at most.
     fn reach(&self, [scale, bias]: [f32; 2]) -> f32 {

@@ -45,7 +45,8 @@ pub struct Edges {
 }
 
 impl Edges {
-    fn new(topology: &Topology, plan: &PatchPlan) -> Self {
+    /// Of the patches in `plan`, whose faces are those of `topology`.
+    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
         let mesh = topology.mesh();
         let mut vertices = Vec::new();
         let mut of_half_edges = vec![0; mesh.corner_count()];
