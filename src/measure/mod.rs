@@ -1,6 +1,7 @@
 //! Measurements: how far the patches of a scheme are from the surface they approximate. Nothing here knows files or
 //! prints.
 
+mod dense;
 mod error;
 mod nearest;
 mod sums;
