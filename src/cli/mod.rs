@@ -2,7 +2,8 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `camera`, `shading`, `picture` | what `render` needs |
+//! | `camera`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
+//! | `canvas` | pixels to draw and write on |
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
@@ -10,10 +11,13 @@
 //! | `error` | what goes to the user, and the exit code |
 
 mod camera;
+mod canvas;
 mod devices;
 mod error;
+mod error_map;
 mod errors;
 mod info;
+mod legend;
 mod obj;
 mod output;
 mod parse;

@@ -208,7 +208,7 @@ impl Surfaces<'_> {
 }
 
 /// Where on a face, as [`LimitSurface`] counts.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Parameters {
     pub sub: i32,
     pub u: f64,
@@ -231,6 +231,20 @@ impl Parameters {
             1 => [to_previous, here],
             _ => [to_next, to_previous],
         }
+    }
+
+    /// The other way: where the point of a patch is.
+    pub(super) fn of_point(kind: PatchKind, [u, v]: [f64; 2]) -> Self {
+        if kind != PatchKind::Triangle {
+            return Self { sub: -1, u, v };
+        }
+        let corners = [u, v, 1.0 - u - v];
+        let nearest = (1..3).fold(0, |best, k| if corners[k] > corners[best] { k } else { best });
+        let (to_next, to_previous) = (corners[(nearest + 1) % 3], corners[(nearest + 2) % 3]);
+        // With d = u - v = 2 (to_next - to_previous): v^2 + (d - 3) v + 6 to_previous = 0.
+        let d = 2.0 * (to_next - to_previous);
+        let v = (3.0 - d - ((3.0 - d).powi(2) - 24.0 * to_previous).max(0.0).sqrt()) / 2.0;
+        Self { sub: nearest as i32, u: (v + d).clamp(0.0, 1.0), v: v.clamp(0.0, 1.0) }
     }
 }
 
@@ -285,4 +299,19 @@ fn measure_patch(
 /// Between unit vectors, in radians; `None` if one is zero.
 pub(super) fn angle(a: DVec3, b: DVec3) -> Option<f64> {
     (a != DVec3::ZERO && b != DVec3::ZERO).then(|| a.cross(b).length().atan2(a.dot(b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_of_triangles_are_found_in_their_parts() {
+        for (sub, i, j) in (0..3).flat_map(|sub| (0..8).flat_map(move |i| (0..8).map(move |j| (sub, i, j)))) {
+            let at = Parameters { sub, u: f64::from(i) / 8.0, v: f64::from(j) / 8.0 };
+            let back = Parameters::of_point(PatchKind::Triangle, at.of_patch());
+            assert_eq!(back.sub, sub);
+            assert!((back.u - at.u).abs().max((back.v - at.v).abs()) < 1e-12, "{at:?} {back:?}");
+        }
+    }
 }

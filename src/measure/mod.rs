@@ -3,7 +3,9 @@
 
 mod dense;
 mod error;
+mod field;
 mod nearest;
 mod sums;
 
 pub use error::{Deviation, ErrorOptions, ErrorReport, FaceErrors, SchemeError, surface_errors};
+pub use field::{Quantity, error_field};
