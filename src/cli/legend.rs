@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, FONT, drawing_error, load_font};
 use super::error::CliError;
+use super::output::short;
 use super::parse::Colour;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -74,9 +75,9 @@ impl Legend {
         }
         let labels = bar_end + font / 4;
         text(left, labels, HPos::Left, "0".into())?;
-        text((left + right) / 2, labels, HPos::Center, number(self.top / 2.0))?;
+        text((left + right) / 2, labels, HPos::Center, short(self.top / 2.0))?;
         let sign = if self.exceeded { "≥ " } else { "" };
-        text(right, labels, HPos::Right, format!("{sign}{}", number(self.top)))?;
+        text(right, labels, HPos::Right, format!("{sign}{}", short(self.top)))?;
         root.present()
     }
 }
@@ -84,35 +85,4 @@ impl Legend {
 /// Height of a line, in pixels.
 fn font_size([width, height]: [u32; 2]) -> u32 {
     (width.min(height * 2) / 40).clamp(11, 40)
-}
-
-/// At most four digits.
-pub(super) fn number(value: f64) -> String {
-    let text = format!("{value:.3e}");
-    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let digits = digits.trim_end_matches('0').trim_end_matches('.');
-    match exponent.parse() {
-        Ok(-3..=3) => format!("{}", format!("{digits}e{exponent}").parse().unwrap_or(value)),
-        _ => format!("{digits}e{exponent}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_short() {
-        for (value, text) in [
-            (0.0015, "0.0015"),
-            (0.00075, "7.5e-4"),
-            (2.0 / 3.0 * 1e-5, "6.667e-6"),
-            (0.25, "0.25"),
-            (1234.5, "1234"),
-            (0.1 + 0.2, "0.3"),
-            (4e6, "4e6"),
-        ] {
-            assert_eq!(number(value), text);
-        }
-    }
 }

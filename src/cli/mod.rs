@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `camera`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
+//! | `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
@@ -23,6 +24,8 @@ mod output;
 mod parse;
 mod patches;
 mod picture;
+mod plot;
+mod published;
 mod render;
 mod sample;
 mod shading;

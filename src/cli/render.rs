@@ -4,7 +4,7 @@ use super::camera::CameraArgs;
 use super::error::CliError;
 use super::error_map::{ErrorMap, ErrorSet};
 use super::info::Patches;
-use super::legend::{self, Legend};
+use super::legend::Legend;
 use super::output::{self, Progress, write_file};
 use super::parse::{self, Colour};
 use super::picture::unpremultiply;
@@ -153,7 +153,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         let factor = args.factor;
         writeln!(out, "{file}: {width} x {height}, {patches}, factor {factor}, {samples} samples, on {device}")?;
         if let Some(ErrorMap { top, largest, .. }) = map {
-            let [top, largest] = [top, largest].map(legend::number);
+            let [top, largest] = [top, largest].map(output::short);
             writeln!(out, "the scale ends at {top} (--error-max); the largest error is {largest}")?;
         }
         Ok(())

@@ -46,11 +46,16 @@ pub(super) fn lattice(kind: PatchKind, patches: usize, position: impl Fn(Paramet
 impl Dense {
     /// From the [`lattice`] of every patch.
     pub(super) fn new(kinds: &[PatchKind], lattices: &[Vec<DVec3>]) -> Self {
+        Self::with_patches(kinds, lattices, kinds.len())
+    }
+
+    /// As if there were this many patches.
+    fn with_patches(kinds: &[PatchKind], lattices: &[Vec<DVec3>], patches: usize) -> Self {
         let points = lattices.concat();
         let mut blocks = Vec::new();
         let mut start = 0;
         for &kind in kinds {
-            let side = cells(kind, kinds.len());
+            let side = cells(kind, patches);
             let starts = || (0..side).step_by(BLOCK);
             for _ in parts(kind) {
                 for (row, column) in starts().flat_map(|row| starts().map(move |column| (row, column))) {
@@ -131,4 +136,36 @@ fn closest([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
         return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
     }
     a + (vb * ab + vc * ac) / (va + vb + vc)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_triangle_is_the_nearest_of_all() {
+        // Two bent sheets, one over the other, whose sides are no multiple of a block's.
+        let kinds = [PatchKind::IrregularQuad, PatchKind::Triangle];
+        let sheet = |height: f64| {
+            move |at: Parameters| {
+                let (u, v) = (at.u + f64::from(at.sub.max(0)), at.v);
+                DVec3::new(u, v, height + 0.3 * (3.0 * u).sin() * (2.0 * v).cos())
+            }
+        };
+        let patches = 20_000;
+        let lattices = [lattice(kinds[0], patches, sheet(0.0)), lattice(kinds[1], patches, sheet(0.5))];
+        let dense = Dense::with_patches(&kinds, &lattices, patches);
+        let blocks: Vec<_> = dense.tree.iter().flat_map(|block| block.data.triangles(&dense.points)).collect();
+        let cells = |kind| cells(kind, patches).pow(2);
+        assert_eq!((cells(kinds[0]), cells(kinds[1])), (49, 16));
+        assert_eq!(blocks.len(), 2 * (49 + 3 * 16));
+        for i in 0..200 {
+            let [x, y, z] = [0.7548, 0.5698, 0.4302].map(|step| (f64::from(i) * step).fract());
+            let point = DVec3::new(3.0 * x, y, 2.0 * z - 0.5);
+            let all = blocks.iter().map(|&triangle| point.distance(closest(triangle, point)));
+            let (distance, normal) = dense.nearest(point).unwrap();
+            assert_eq!(distance, all.fold(f64::MAX, f64::min));
+            assert!((normal.length() - 1.0).abs() < 1e-12);
+        }
+    }
 }

@@ -74,6 +74,9 @@ pub struct ErrorReport {
     pub patches: usize,
     /// How many of them are irregular quads or triangles.
     pub irregular_patches: usize,
+    /// The nearest distance of the limit surface from itself, over the diagonal of the control mesh: what comes of
+    /// measuring against triangles. `None` if not asked for.
+    pub nearest_floor: Option<Deviation>,
     /// In the order in which they were asked for; those without patches on this mesh say why.
     pub schemes: Vec<(Scheme, Result<SchemeError, Undefined>)>,
 }
@@ -90,8 +93,16 @@ pub struct ErrorReport {
 /// **Nearest distance.** As many points of both surfaces, spread evenly over the area, each against the other surface
 /// as a mesh of triangles (about two million, at least 32 a patch, at most 2048). Chords of such a mesh are off the
 /// surface by an eighth of their length squared over the radius of curvature: no smaller distance is to be trusted, and
-/// that of a scheme that is exact is not zero. Where the normals differ by more than 1.2 rad the point has found the
+/// that of a scheme that is exact is not zero ([`ErrorReport::nearest_floor`]). Where the normals differ by more than 1.2 rad the point has found the
 /// other side of something thin, and is left out.
+///
+/// **Maxima of normals.** Where the limit surface itself folds over in a cusp, its normal swings by up to a half turn
+/// within a few thousandths of u and v, and a patch that swings a little earlier or later differs by as much. That is
+/// what the largest angles on OpenSubdiv's bigguy are (2.7 rad for Gregory patches, 3.0 for Pm, 1.1 for ACC): all at one
+/// spot of one face (number 1050), where the limit surface has `du` within 0.03 rad of `dv`, a 250th of the area element
+/// at the centre of the face, and a normal that turns by 3.0 rad over the face. At 65 by 65 samples a patch 2 of six
+/// million are above 1 rad there (Pm: 9, ACC: 3), and no other face has more than 0.23 rad (ACC: 0.66). The distance
+/// there is nothing special, and no normal is undefined. Root mean squares weighted by area hardly notice such spots.
 ///
 /// The result is the same on any number of threads.
 ///
@@ -160,7 +171,13 @@ pub fn surface_errors(
         SchemeError { all: errors(number, false), irregular }
     };
     let schemes = checks.into_iter().map(|(scheme, check)| (scheme, check.map(|()| of_scheme()))).collect();
-    Ok(ErrorReport { diagonal, area: areas.iter().sum(), patches: plan.patches().len(), irregular_patches, schemes })
+    let nearest_floor = near.as_ref().map(|near| {
+        let mut sums = Sums::default();
+        near.floor.iter().for_each(|patch| sums.merge(patch));
+        sums.deviation().scaled(scale)
+    });
+    let patches = plan.patches().len();
+    Ok(ErrorReport { diagonal, area: areas.iter().sum(), patches, irregular_patches, nearest_floor, schemes })
 }
 
 impl Deviation {

@@ -16,6 +16,8 @@ const MAX_ANGLE: f64 = 1.2;
 pub(super) struct Nearest {
     /// Of each scheme, for each patch, the distances from its points to the limit surface and the other way.
     pub distances: Vec<Vec<Sums>>,
+    /// For each patch, the distances from points of the limit surface to its own triangles.
+    pub floor: Vec<Sums>,
 }
 
 /// A point of a surface, and the area it stands for over the average of the patch.
@@ -54,6 +56,13 @@ pub(super) fn measure(
     })?;
     let (lattices, probes): (Vec<_>, Vec<_>) = limits.into_iter().map(|patch| (patch.lattice, patch.probes)).unzip();
     let limit = Dense::new(&kinds, &lattices);
+    let own = |probes: &Vec<Probe>| {
+        let mut sums = Sums::default();
+        let distances = probes.iter().map(|probe| (probe.weight, distance(&limit, &probe.sample)));
+        distances.for_each(|(weight, distance)| sums.add(weight, distance.unwrap_or(0.0)));
+        sums
+    };
+    let floor = probes.par_iter().map(own).collect();
     let of_scheme = |&scheme: &Scheme| {
         let of_patch = |patch: usize| {
             let points = surfaces.control_points(scheme, patch);
@@ -74,7 +83,7 @@ pub(super) fn measure(
         };
         probes.par_iter().zip(&samples).map(sums).collect()
     };
-    Ok(Nearest { distances: schemes.par_iter().map(of_scheme).collect() })
+    Ok(Nearest { distances: schemes.par_iter().map(of_scheme).collect(), floor })
 }
 
 /// Numbers of samples for each patch, as many as its area is worth.
