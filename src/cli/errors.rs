@@ -48,6 +48,13 @@ nearest:  distance to the nearest point of the other surface, both ways, as a de
 normal:   angle between the normals at the same (u, v), in radians.
 Distances are over the diagonal of the control mesh's bounding box; rms is weighted by area.
 
+JSON: mesh, diagonal, area, samples, nearest_samples, patches, irregular_patches,
+nearest_floor_rms (measured of the exact surface itself), undefined{name: why},
+schemes{name{position_rms, position_max, nearest_rms, nearest_max, normal_rms, normal_max,
+position_rms_per_sample, nearest_rms_per_sample, normal_rms_per_sample, irregular{the same}}};
+with --plot also refinements[{refine, samples, nearest_floor_rms, patches,
+schemes{name{the same but irregular, table_bytes}}}].
+
 Examples:
   subdiv error --shape creature
   subdiv error model.obj --scheme gregory --scheme acc --samples 17 --json
