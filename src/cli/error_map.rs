@@ -162,7 +162,7 @@ mod tests {
         }
         let mut errors: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 1000.0).collect();
         assert_eq!(scale_for(&mut errors, Quantity::Normal), 1.0);
-        errors[..990].fill(0.0);
+        errors[..995].fill(0.0);
         assert_eq!(scale_for(&mut errors[..], Quantity::Position), 1e-6);
         assert_eq!(scale_for(&mut [], Quantity::Position), 1e-6);
     }

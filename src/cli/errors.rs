@@ -145,17 +145,17 @@ pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
     progress.now("measuring");
     let options = ErrorOptions { refine: args.mesh.refine, samples: args.samples, nearest: args.nearest };
     let report = surface_errors(&mesh, &schemes, &options)?;
-    let refinements = match &args.plot {
-        Some(_) => refinements(args, &mesh, &schemes, &options, &report, &progress)?,
-        None => Vec::new(),
-    };
-    drop(progress);
     let undefined = report.schemes.iter().filter_map(|(_, result)| result.as_ref().err());
     if !args.scheme.is_empty()
         && let Some(error) = undefined.clone().next()
     {
         return Err(CliError::Work(error.to_string()));
     }
+    let refinements = match &args.plot {
+        Some(_) => refinements(args, &mesh, &schemes, &options, &report, &progress)?,
+        None => Vec::new(),
+    };
+    drop(progress);
     if let Some(prefix) = &args.plot {
         plot(prefix, args, &schemes, &refinements)?;
     }

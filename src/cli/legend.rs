@@ -38,7 +38,7 @@ impl Legend {
             let message = format!("--size {width}x{height}: pictures with a legend are at least {w}x{h}");
             return Err(CliError::Usage(message));
         }
-        Ok(9 * font_size(size) / 2)
+        Ok(rows(size))
     }
 
     /// Adds the legend below a picture; `size` includes it.
@@ -65,7 +65,7 @@ impl Legend {
         };
         let margin = font;
         let (left, right) = (margin, width - margin);
-        let first_row = height - 9 * font / 2;
+        let first_row = height - rows(size) as i32;
         text(left, first_row + font / 4, HPos::Left, self.title.clone())?;
         let (bar, bar_end) = (first_row + 7 * font / 4, first_row + 11 * font / 4);
         for x in left..right {
@@ -80,6 +80,11 @@ impl Legend {
         text(right, labels, HPos::Right, format!("{sign}{}", short(self.top)))?;
         root.present()
     }
+}
+
+/// How many there are of the legend.
+fn rows(size: [u32; 2]) -> u32 {
+    9 * font_size(size) / 2
 }
 
 /// Height of a line, in pixels.

@@ -43,7 +43,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_enum, default_value_t = Shading::Lit)]
     shading: Shading,
     /// The error at the top of the scale of --shading error-position (over the diagonal of the mesh's bounding box) or
-    /// error-normal (radians); if not given, a round number that 99 % of the surface is below.
+    /// error-normal (radians); if not given, a round number that 99 % of all samples are below.
     #[arg(long, value_name = "ERROR", value_parser = parse::positive)]
     error_max: Option<f32>,
     /// Width and height in pixels.
@@ -98,6 +98,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     if ending.is_none_or(|ending| ending != "png") {
         return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
     }
+    let legend = if args.shading.quantity().is_some() { Legend::height(args.size)? } else { 0 };
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
     let map = args.error_map(&mesh, &progress)?;
@@ -113,7 +114,6 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     }
     let patches = Patches::of(&tables);
     let [width, height] = args.size;
-    let legend = if map.is_some() { Legend::height(args.size)? } else { 0 };
     let size = [width, height - legend];
     let view = args.camera.view(&args.seen_points(&mesh)?, f64::from(size[0]) / f64::from(size[1]))?;
     progress.now("drawing");

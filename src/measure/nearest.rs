@@ -58,8 +58,9 @@ pub(super) fn measure(
     let limit = Dense::new(&kinds, &lattices);
     let own = |probes: &Vec<Probe>| {
         let mut sums = Sums::default();
-        let distances = probes.iter().map(|probe| (probe.weight, distance(&limit, &probe.sample)));
-        distances.for_each(|(weight, distance)| sums.add(weight, distance.unwrap_or(0.0)));
+        for probe in probes {
+            distance(&limit, &probe.sample).into_iter().for_each(|distance| sums.add(probe.weight, distance));
+        }
         sums
     };
     let floor = probes.par_iter().map(own).collect();
