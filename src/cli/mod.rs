@@ -2,7 +2,9 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `camera`, `displacement`, `shading`, `picture` | what `render` needs |
+//! | `camera`, `displacement`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
+//! | `plot`, `published` | what `error` needs |
+//! | `canvas` | pixels to draw and write on |
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
@@ -10,16 +12,21 @@
 //! | `error` | what goes to the user, and the exit code |
 
 mod camera;
+mod canvas;
 mod devices;
 mod displacement;
 mod error;
+mod error_map;
 mod errors;
 mod info;
+mod legend;
 mod obj;
 mod output;
 mod parse;
 mod patches;
 mod picture;
+mod plot;
+mod published;
 mod render;
 mod sample;
 mod shading;
