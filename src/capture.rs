@@ -88,11 +88,10 @@ impl<'h> Captured<'h> {
         )?;
         let patches = self.tables.plan().patches().iter();
         let words: Vec<f32> = words.into_iter().flat_map(|(_, words)| words).collect();
-        let scheme = self.options.scheme;
         let points = patches.zip(words.chunks_exact(CONTROL_POINT_WORDS)).map(|(patch, words)| {
-            let mut points = vec![[0.0; 3]; scheme.points(patch.kind)];
+            let mut points = vec![[0.0; 3]; patch.scheme.points(patch.kind)];
             // The shaders count them corner by corner.
-            let slots = (0..patch.kind.corners()).flat_map(|k| scheme.corner_slots(patch.kind, k));
+            let slots = (0..patch.kind.corners()).flat_map(|k| patch.scheme.corner_slots(patch.kind, k));
             slots.zip(words.chunks_exact(3)).for_each(|(slot, p)| points[slot] = [p[0], p[1], p[2]]);
             points
         });

@@ -127,7 +127,7 @@ pub use mesh::read;
 pub use mesh::{
     ControlMesh, MeshData, MeshError, ObjOptions, ReadOptions, ShapeInfo, grid_torus, replicate, shape, shapes,
 };
-pub use patch::Scheme;
+pub use patch::{Fallback, Scheme};
 pub use renderer::{
     Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
 };

@@ -12,6 +12,7 @@ layout(set = 1, binding = 4, std430) readonly buffer PatchCorners { uvec2 patch_
 const uint TRIANGLE_BIT = 1u << 31;
 const uint OPEN_BIT = 1u << 31;
 const uint CONE_BIT = 1u << 30;
+const uint FALLBACK_BIT = 1u << 29;
 
 struct Ring {
     uint vertex;
@@ -21,13 +22,15 @@ struct Ring {
     uint edges;
     bool open;
     bool cone;
+    bool fallback;
 };
 
 Ring ring_at(uint index) {
     uvec4 header = ring_headers[index];
     bool open = (header.w & OPEN_BIT) != 0u;
-    uint faces = header.w & ~(OPEN_BIT | CONE_BIT);
-    return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u);
+    uint faces = header.w & ~(OPEN_BIT | CONE_BIT | FALLBACK_BIT);
+    return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u,
+                (header.w & FALLBACK_BIT) != 0u);
 }
 
 // cos_k: of the angle between neighbouring edges.

@@ -58,6 +58,8 @@ struct SchemeOut {
     #[serde(flatten)]
     all: ErrorsOut,
     irregular: Option<ErrorsOut>,
+    /// Faces measured with the patches of the fallback.
+    fallen_back: usize,
 }
 
 #[derive(Serialize)]
@@ -100,7 +102,12 @@ pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
         }
     }
     progress.now("measuring");
-    let options = ErrorOptions { refine: args.mesh.refine, samples: args.samples, nearest: args.nearest };
+    let options = ErrorOptions {
+        fallback: args.mesh.fallback(),
+        refine: args.mesh.refine,
+        samples: args.samples,
+        nearest: args.nearest,
+    };
     let report = surface_errors(&mesh, &schemes, &options)?;
     drop(progress);
     let undefined = report.schemes.iter().filter_map(|(_, result)| result.as_ref().err());
@@ -126,7 +133,11 @@ fn measured(report: &ErrorReport) -> impl Iterator<Item = (Scheme, &SchemeError)
 }
 
 fn out(args: &ErrorArgs, report: &ErrorReport) -> ReportOut {
-    let scheme = |error: &SchemeError| SchemeOut { all: error.all.into(), irregular: error.irregular.map(Into::into) };
+    let scheme = |error: &SchemeError| SchemeOut {
+        all: error.all.into(),
+        irregular: error.irregular.map(Into::into),
+        fallen_back: error.fallen_back,
+    };
     let undefined =
         report.schemes.iter().filter_map(|(s, result)| Some((s.name(), result.as_ref().err()?.to_string())));
     ReportOut {
@@ -189,6 +200,14 @@ fn print_table(report: &ErrorReport) -> Result<(), CliError> {
     table.print()?;
     let (patches, irregular) = (report.patches, report.irregular_patches);
     output::with_stdout(|out| {
-        Ok(writeln!(out, "{patches} faces, {irregular} irregular; diagonal {}", report.diagonal)?)
+        writeln!(out, "{patches} faces, {irregular} irregular; diagonal {}", report.diagonal)?;
+        for (scheme, error) in measured(report).filter(|(_, error)| error.fallen_back > 0) {
+            let (name, faces) = (scheme.name(), error.fallen_back);
+            writeln!(
+                out,
+                "{name} has no patches for {faces} of the irregular faces: those of the fallback are measured"
+            )?;
+        }
+        Ok(())
     })
 }

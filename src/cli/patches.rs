@@ -40,8 +40,9 @@ Others have, by scheme: gregory p0.., then e0+ e0- e1+ e1-.., then f0+ f0-..: 20
 triangle; acc 4 x 4 Bezier points, then the vectors t+ t- x+ x- of each corner: 32; pm and c-patch v0..,
 then t0+ t0-.., then b211, b121 and b112 of all sectors: 24 of a quad, 18 of a triangle.
 
-JSON: construction, patches[{face, sub, kind, points[[x, y, z]]}]: face of the input; sub is -1, or the
-corner of the face around which refinement made the patch; kind is regular, irregular_quad or triangle.
+JSON: construction, patches[{face, sub, kind, scheme, points[[x, y, z]]}]: face of the input; sub is -1, or the
+corner of the face around which refinement made the patch; kind is regular, irregular_quad or triangle; scheme is
+the one asked for, or the fallback.
 
 Examples:
   subdiv patches --shape cube
@@ -55,6 +56,7 @@ struct PatchOut<'p, T> {
     /// -1, or the corner of the face around which refinement made this part.
     sub: i64,
     kind: &'static str,
+    scheme: &'static str,
     points: &'p [[T; 3]],
 }
 
@@ -72,6 +74,7 @@ impl<T: Serialize> Serialize for Made<'_, T> {
             face: self.origins[i].face,
             sub: self.origins[i].sub,
             kind: self.patches[i].kind.name(),
+            scheme: self.patches[i].scheme.name(),
             points: &self.points[i],
         }))
     }

@@ -134,7 +134,9 @@ impl RenderArgs {
             points.extend(mesh.data().positions.iter().copied().map(DVec3::from));
         }
         if points.is_empty() {
-            points = CpuSurface::new(mesh, self.mesh.scheme, self.mesh.source.refine)?.control_points(|p| p).concat();
+            let (source, scheme) = (&self.mesh.source, self.mesh.scheme);
+            let surface = CpuSurface::with_fallback(mesh, scheme, source.fallback(), source.refine)?;
+            points = surface.control_points(|p| p).concat();
         }
         // Where nothing is drawn, such as where all faces are holes.
         if points.is_empty() {

@@ -3,7 +3,7 @@
 use super::error::{Parameters, Surfaces, angle, parts};
 use super::sums::Sums;
 use crate::mesh::MeshError;
-use crate::patch::{Sample, Scheme};
+use crate::patch::Sample;
 use crate::topology::PatchKind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -35,16 +35,11 @@ struct LimitPatch {
 }
 
 /// Measures both ways from about `samples` points of each surface. `areas` are those of the patches.
-pub(super) fn measure(
-    surfaces: &Surfaces,
-    schemes: &[Scheme],
-    areas: &[f64],
-    samples: u32,
-) -> Result<Nearest, MeshError> {
-    let side = ((TRIANGLES / 2.0 / surfaces.patches.len().max(1) as f64).sqrt() as u32).clamp(4, 32);
+pub(super) fn measure(surfaces: &Surfaces, areas: &[f64], samples: u32) -> Result<Nearest, MeshError> {
+    let side = ((TRIANGLES / 2.0 / surfaces.faces.len().max(1) as f64).sqrt() as u32).clamp(4, 32);
     let ranges = spread(areas, samples);
     let limits = surfaces.for_each(|limit, patch| {
-        let kind = surfaces.patches[patch].kind;
+        let kind = surfaces.faces[patch].1;
         let facets = facets(kind, side, |at| surfaces.limit(limit, patch, at).position);
         let probe = |number: u32| {
             let at = parameters(kind, number);
@@ -57,14 +52,14 @@ pub(super) fn measure(
     })?;
     let (limit_facets, probes): (Vec<_>, Vec<_>) = limits.into_iter().map(|patch| (patch.facets, patch.probes)).unzip();
     let limit = RTree::bulk_load(limit_facets.into_iter().flatten().collect());
-    let of_scheme = |&scheme: &Scheme| {
+    let of_scheme = |scheme: usize| {
         let of_patch = |patch: usize| {
             let points = surfaces.control_points(scheme, patch);
             let evaluate = |at| surfaces.evaluate(scheme, patch, &points, at);
-            let triangles = facets(surfaces.patches[patch].kind, side, |at| evaluate(at).position);
+            let triangles = facets(surfaces.faces[patch].1, side, |at| evaluate(at).position);
             (triangles, probes[patch].iter().map(|probe| evaluate(probe.at)).collect::<Vec<_>>())
         };
-        let patches = (0..surfaces.patches.len()).into_par_iter().map(of_patch);
+        let patches = (0..surfaces.faces.len()).into_par_iter().map(of_patch);
         let (facets, samples): (Vec<_>, Vec<_>) = patches.unzip();
         let tree = RTree::bulk_load(facets.into_iter().flatten().collect());
         let sums = |(probes, samples): (&Vec<Probe>, &Vec<Sample<DVec3>>)| {
@@ -78,7 +73,7 @@ pub(super) fn measure(
         };
         probes.par_iter().zip(&samples).map(sums).collect()
     };
-    Ok(Nearest { distances: schemes.iter().map(of_scheme).collect() })
+    Ok(Nearest { distances: (0..surfaces.schemes.len()).map(of_scheme).collect() })
 }
 
 /// Numbers of samples for each patch, as many as its area is worth.

@@ -12,6 +12,7 @@
 pub mod acc;
 pub mod bicubic;
 mod blend;
+mod fallback;
 pub mod gregory;
 pub mod pm;
 mod point;
@@ -19,6 +20,7 @@ mod ring;
 mod scheme;
 
 pub use blend::{Blend, Row};
+pub use fallback::{Fallback, FallbackRings};
 pub(crate) use point::scalar;
 pub use point::{Point, Sample};
 pub use ring::{Frame, RingShape, RingValues};

@@ -13,6 +13,9 @@ pub struct RingShape {
     pub open: bool,
     /// For each face of the ring, whether it is a triangle (else a quad).
     pub triangles: Vec<bool>,
+    /// Whether the edges have the curves of Gregory patches, whichever scheme draws the faces: see
+    /// [`Scheme::Gregory`](super::Scheme::Gregory) as a fallback ([`FallbackRings`](super::FallbackRings)).
+    pub fallback: bool,
 }
 
 impl RingShape {
@@ -23,7 +26,7 @@ impl RingShape {
         } else {
             topology.ring_half_edges(ring).map(|h| topology.face_size(h) == 3).collect()
         };
-        Self { kind: ring.kind, open: ring.open, triangles }
+        Self { kind: ring.kind, open: ring.open, triangles, fallback: false }
     }
 
     /// Number of faces.

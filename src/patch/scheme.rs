@@ -5,11 +5,11 @@
 //! this file and of `renderer/stages.rs`. Regular faces are bicubic patches in every scheme.
 
 use super::gregory::PatchCorner;
-use super::{Blend, Frame, Point, RingValues, Sample, acc, bicubic, gregory, pm};
+use super::{Blend, FallbackRings, Frame, Point, RingValues, Sample, acc, bicubic, gregory, pm};
 use crate::topology::{PatchKind, RingKind, Topology};
 
 /// A way to approximate the Catmull-Clark surface by patches, one a face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Scheme {
     /// Gregory patches for irregular faces ([`gregory`]): quads and triangles, boundaries, G1 everywhere.
     #[default]
@@ -25,7 +25,7 @@ pub enum Scheme {
 
 /// A face that a scheme has no patch for.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("face {face}: the scheme {} has no patches for {what}: choose the scheme gregory, which has", scheme.name())]
+#[error("face {face}: the scheme {} has no patches for {what}: choose the scheme gregory, which has, or name it as fallback", scheme.name())]
 pub struct Undefined {
     /// The scheme that was asked for.
     pub scheme: Scheme,
@@ -91,9 +91,10 @@ impl Scheme {
     }
 
     /// What the first stage of the two-stage construction makes of a one-ring. For regular rings it is the same in all
-    /// schemes.
+    /// schemes, and so it is where some of the faces fall back ([`RingShape::fallback`](super::RingShape::fallback)).
     pub fn frame<T: Blend>(self, ring: &RingValues<T>) -> Frame<T> {
         match self {
+            _ if ring.shape.fallback => ring.frame(),
             Self::Gregory => ring.frame(),
             Self::Acc => acc::acc_frame(ring),
             Self::Pm | Self::CPatch => pm::pm_frame(ring),
@@ -104,8 +105,7 @@ impl Scheme {
     /// [`bicubic`] for regular faces, else of the scheme's own module.
     ///
     /// # Panics
-    /// If `kind` is not the face's own ([`Topology::patch_kind`]), a face beside it has more than four corners, or the
-    /// scheme is not defined there ([`Scheme::check`]).
+    /// As [`Scheme::control_points_beside`].
     pub fn control_points<T: Blend>(
         self,
         topology: &Topology,
@@ -113,12 +113,29 @@ impl Scheme {
         kind: PatchKind,
         vertex: impl Fn(u32) -> T,
     ) -> Vec<T> {
+        self.control_points_beside(topology, face, kind, &FallbackRings::default(), vertex)
+    }
+
+    /// As [`Scheme::control_points`], in a mesh some of whose faces fall back.
+    ///
+    /// # Panics
+    /// If `kind` is not the face's own ([`Topology::patch_kind`]), a face beside it has more than four corners, or the
+    /// scheme is not defined there ([`Scheme::check`]).
+    pub fn control_points_beside<T: Blend>(
+        self,
+        topology: &Topology,
+        face: u32,
+        kind: PatchKind,
+        fallback: &FallbackRings,
+        vertex: impl Fn(u32) -> T,
+    ) -> Vec<T> {
         let half_edges = topology.mesh().face_corners(face);
         let rings: Vec<_> = half_edges
             .clone()
             .map(|h| {
                 let place = topology.place(h as u32);
-                let ring = RingValues::new(topology, &topology.rings()[place.ring as usize], &vertex);
+                let mut ring = RingValues::new(topology, &topology.rings()[place.ring as usize], &vertex);
+                ring.shape.fallback = fallback.contains(place.ring);
                 let frame = self.frame(&ring);
                 (ring, frame, place.index as usize)
             })

@@ -118,17 +118,16 @@ impl Renderer {
                 }
                 return Ok(());
             }
-            let plan = model.tables.plan();
-            for &stages in &model.stages {
+            for (&stages, group) in model.stages.iter().zip(model.tables.plan().groups()) {
                 let (kind, spacing) = (stages.kind, stages.spacing);
                 self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
                 let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
                 let vertices = tessellated_vertices(domain, spacing, factor, properties.max_tessellation_level);
                 let points = stages.input_points();
                 constants.colour = item.colors[kind as usize];
-                constants.first_corner = plan.first_corner(kind);
-                constants.first_patch = plan.range(kind).start as u32;
-                for draw in properties.patch_batch.draws(plan.count(kind), points, vertices) {
+                constants.first_corner = group.first_corner as u32;
+                constants.first_patch = group.patches.start as u32;
+                for draw in properties.patch_batch.draws(group.patches.len() as u32, points, vertices) {
                     if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
                         constants.patches_per_instance = draw.patches_per_instance;
                         self.push(cmd, &constants);

@@ -4,7 +4,7 @@ use super::pipelines::{MODEL_BINDINGS, Pipelines};
 use super::stages::PatchStages;
 use super::{Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
-use crate::topology::PatchKind;
+use crate::table::PatchGroup;
 use ash::vk;
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ const ALIGNMENT: u64 = 256;
 pub(super) struct Model {
     pub id: ModelId,
     pub tables: ModelTables,
-    /// How each kind of patch that the model has is drawn.
+    /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
     pub set: vk::DescriptorSet,
     _pool: Owned<vk::DescriptorPool>,
@@ -60,11 +60,7 @@ impl Model {
             (_, false) => &[],
             (Some(texcoords), true) => texcoords,
             (None, true) => {
-                zeros = vec![
-                    [0.0; 2];
-                    tables.plan.first_corner(PatchKind::Triangle) as usize
-                        + 3 * tables.plan.count(PatchKind::Triangle) as usize
-                ];
+                zeros = vec![[0.0; 2]; tables.plan.patches().iter().map(|patch| patch.kind.corners()).sum()];
                 &zeros
             }
         };
@@ -120,11 +116,11 @@ impl Model {
 
         let (pool, set) = descriptor_set(context, pipelines.model_layout.raw(), name)?;
         write_set(context, set, &positions, &table_buffer, &ranges);
-        let ModelOptions { scheme, construction, spacing, .. } = *model_options;
-        let stages = |kind| PatchStages { scheme, kind, construction, spacing };
+        let ModelOptions { construction, spacing, .. } = *model_options;
+        let stages = |g: &PatchGroup| PatchStages { scheme: g.scheme, kind: g.kind, construction, spacing };
         Ok(Self {
             id,
-            stages: PatchKind::ALL.into_iter().filter(|&kind| tables.plan.count(kind) > 0).map(stages).collect(),
+            stages: tables.plan.groups().iter().map(stages).collect(),
             tables,
             set,
             _pool: pool,

@@ -43,23 +43,21 @@ impl ModelTables {
     pub fn new(mesh: &ControlMesh, options: &ModelOptions) -> Result<Self, TableError> {
         let prepared = prepare(mesh, options.refine)?;
         let topology = Topology::new(&prepared.mesh);
-        let mut plan = PatchPlan::new(&topology);
-        let scheme = options.scheme;
-        plan.check(&topology, scheme)?;
+        let mut plan = PatchPlan::new(&topology, options.scheme, options.fallback)?;
         let construction = match options.construction {
-            Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan, scheme)),
-            Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan, scheme)?),
+            Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan)),
+            Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan)?),
         };
         Ok(Self {
             texcoords: plan.texcoords(&topology),
             origins: plan.patches().iter().map(|patch| prepared.origin(patch.face)).collect(),
+            notices: prepared.notices(&topology, &plan),
             plan,
             construction,
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
             patch_vertices: prepared.mesh.vertex_count(),
-            notices: prepared.notices(&topology),
             steps: prepared.steps,
         })
     }

@@ -1,8 +1,8 @@
 //! The CPU twin: every patch of a mesh, constructed and evaluated on the host.
 
-use super::{FaceOrigin, PatchPlan, Prepared, TableError, prepare};
+use super::{FaceOrigin, Notice, PatchPlan, Prepared, TableError, prepare};
 use crate::mesh::ControlMesh;
-use crate::patch::{Blend, Point, Sample, Scheme};
+use crate::patch::{Blend, Fallback, Point, Sample, Scheme};
 use crate::topology::{PatchKind, Topology};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -22,7 +22,6 @@ use rayon::prelude::*;
 pub struct CpuSurface<'m> {
     prepared: Prepared<'m>,
     plan: PatchPlan,
-    scheme: Scheme,
 }
 
 impl<'m> CpuSurface<'m> {
@@ -31,12 +30,22 @@ impl<'m> CpuSurface<'m> {
     /// # Errors
     /// A refined mesh that cannot be addressed; faces that the scheme has no patch for.
     pub fn new(mesh: &'m ControlMesh, scheme: Scheme, refine: u32) -> Result<Self, TableError> {
+        Self::with_fallback(mesh, scheme, Fallback::Refuse, refine)
+    }
+
+    /// As [`CpuSurface::new`], but for what becomes of faces that the scheme has no patch for.
+    ///
+    /// # Errors
+    /// As [`CpuSurface::new`].
+    pub fn with_fallback(
+        mesh: &'m ControlMesh,
+        scheme: Scheme,
+        fallback: Fallback,
+        refine: u32,
+    ) -> Result<Self, TableError> {
         let prepared = prepare(mesh, refine)?;
-        let topology = Topology::new(&prepared.mesh);
-        let plan = PatchPlan::new(&topology);
-        plan.check(&topology, scheme)?;
-        drop(topology);
-        Ok(Self { prepared, plan, scheme })
+        let plan = PatchPlan::new(&Topology::new(&prepared.mesh), scheme, fallback)?;
+        Ok(Self { prepared, plan })
     }
 
     /// The patches, in the order of the tables.
@@ -49,6 +58,11 @@ impl<'m> CpuSurface<'m> {
         &self.prepared
     }
 
+    /// What a user will want to know about how the mesh is drawn.
+    pub fn notices(&self) -> Vec<Notice> {
+        self.prepared.notices(&Topology::new(&self.prepared.mesh), &self.plan)
+    }
+
     /// Where each patch comes from.
     pub fn origins(&self) -> Vec<FaceOrigin> {
         self.plan.patches().iter().map(|patch| self.prepared.origin(patch.face)).collect()
@@ -59,7 +73,7 @@ impl<'m> CpuSurface<'m> {
         let mesh = &*self.prepared.mesh;
         let topology = Topology::new(mesh);
         let of_patch = |patch: &super::Patch| {
-            self.scheme.control_points(&topology, patch.face, patch.kind, |vertex| value(mesh.position(vertex)))
+            patch.control_points(&topology, self.plan.fallback_rings(), |vertex| value(mesh.position(vertex)))
         };
         self.plan.patches().par_iter().map(of_patch).collect()
     }
@@ -75,7 +89,7 @@ impl<'m> CpuSurface<'m> {
         let scalar = crate::patch::scalar::<P>;
         let sample = |(patch, points): (&super::Patch, &Vec<P>)| {
             let parameters = grids[patch.kind as usize].iter();
-            parameters.map(|&[u, v]| self.scheme.evaluate(patch.kind, points, scalar(u), scalar(v))).collect()
+            parameters.map(|&[u, v]| patch.scheme.evaluate(patch.kind, points, scalar(u), scalar(v))).collect()
         };
         patches.map(sample).collect()
     }

@@ -16,7 +16,7 @@ mod stencils;
 
 pub use cpu::{CpuSurface, grid_parameters};
 pub use error::TableError;
-pub use plan::{Patch, PatchPlan};
+pub use plan::{Patch, PatchGroup, PatchPlan};
 pub use prepare::{FaceOrigin, Notice, Prepared, prepare};
 pub use rings::RingTable;
 pub use stencils::StencilTable;

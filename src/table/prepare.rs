@@ -3,6 +3,8 @@
 
 use crate::limit::{Stencils, refine};
 use crate::mesh::{ControlMesh, MeshError, SHARPNESS_INFINITE};
+use crate::patch::Scheme;
+use crate::table::PatchPlan;
 use crate::topology::{SHARP_FROM, Topology};
 use std::borrow::Cow;
 use std::fmt;
@@ -33,6 +35,17 @@ pub enum Notice {
         /// How many vertices that added.
         count: usize,
     },
+    /// Faces that the scheme has no patches for, drawn with those of another.
+    FellBack {
+        /// How many such faces there are, of the prepared mesh.
+        faces: usize,
+        /// The first of them in the caller's mesh.
+        first: u32,
+        /// The scheme asked for.
+        scheme: Scheme,
+        /// The scheme that draws them.
+        fallback: Scheme,
+    },
     /// Creases or corners of finite sharpness that patches cannot follow.
     SemiSharp {
         /// Those drawn infinitely sharp: from [`SHARP_FROM`] up.
@@ -52,6 +65,12 @@ impl fmt::Display for Notice {
             Self::SplitVertices { count } => {
                 write!(f, "{count} vertices were split off where fans of faces touch in a point")
             }
+            Self::FellBack { faces, first, scheme, fallback } => write!(
+                f,
+                "{faces} faces have no {} patches (the first is face {first}): they are drawn with {} patches",
+                scheme.name(),
+                fallback.name()
+            ),
             Self::SemiSharp { sharp, smooth } => write!(
                 f,
                 "{} creases and corners have finite sharpness: {sharp} (from {SHARP_FROM} up) are drawn infinitely sharp, {smooth} smooth; refine the mesh first to come closer",
@@ -81,11 +100,18 @@ impl Prepared<'_> {
         self.origins.get(face as usize).copied().unwrap_or(FaceOrigin { face, sub: -1 })
     }
 
-    /// What a user will want to know; `topology` is that of the prepared mesh.
-    pub fn notices(&self, topology: &Topology) -> Vec<Notice> {
+    /// What a user will want to know; `topology` and `plan` are those of the prepared mesh.
+    pub fn notices(&self, topology: &Topology, plan: &PatchPlan) -> Vec<Notice> {
         let splits = self.split_vertices + topology.split_count();
         let split = (splits > 0).then_some(Notice::SplitVertices { count: splits });
-        self.refined_polygons.clone().into_iter().chain(split).chain(semi_sharp(&self.mesh)).collect()
+        let fell_back = plan.fallen_back().min_by_key(|patch| patch.face).map(|patch| Notice::FellBack {
+            faces: plan.fallen_back().count(),
+            first: self.origin(patch.face).face,
+            scheme: plan.scheme(),
+            fallback: patch.scheme,
+        });
+        let refined = self.refined_polygons.clone();
+        refined.into_iter().chain(split).chain(fell_back).chain(semi_sharp(&self.mesh)).collect()
     }
 }
 

@@ -12,6 +12,8 @@ pub const TRIANGLE_BIT: u32 = 1 << 31;
 pub const OPEN_BIT: u32 = 1 << 31;
 /// Bit of [`RingTable::headers`]`[3]`: edge points go straight at the neighbours ([`RingShape::has_frame`] is false).
 pub const CONE_BIT: u32 = 1 << 30;
+/// Bit of [`RingTable::headers`]`[3]`: [`RingShape::fallback`].
+pub const FALLBACK_BIT: u32 = 1 << 29;
 
 /// One-rings as the shaders read them. GLSL twin: `glsl/lib/rings.glsl`.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -31,20 +33,25 @@ pub struct RingTable {
 
 impl RingTable {
     /// The rings of a mesh of triangles and quads, and the corners of the patches in `plan`.
-    pub fn new(topology: &Topology, plan: &PatchPlan, scheme: Scheme) -> Self {
-        let mut types = RingTypes { scheme, ..RingTypes::default() };
+    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
+        let mut types = RingTypes { scheme: plan.scheme(), ..RingTypes::default() };
         let mut entries = 0;
         let headers: Vec<[u32; 4]> = topology
             .rings()
             .iter()
-            .map(|ring| {
-                let (kind, has_frame) = types.of(topology, ring);
+            .zip(0..)
+            .map(|(ring, number)| {
+                let fallback = plan.fallback_rings().contains(number);
+                let (kind, has_frame) = types.of(topology, ring, fallback);
                 let mut faces = ring.faces;
                 if ring.open {
                     faces |= OPEN_BIT;
                 }
                 if !has_frame {
                     faces |= CONE_BIT;
+                }
+                if fallback {
+                    faces |= FALLBACK_BIT;
                 }
                 let header = [topology.mesh_vertex(ring.start), entries, kind, faces];
                 entries += 2 * ring.faces + u32::from(ring.open);
@@ -100,22 +107,23 @@ struct RingTypes {
     scheme: Scheme,
     words: Vec<f32>,
     count: usize,
-    /// Rings of quads only, by kind, openness and faces: no need to look at their faces one by one.
-    of_quads: HashMap<(RingKind, bool, u32), (u32, bool)>,
+    /// Rings of quads only, by kind, openness, faces and fallback: no need to look at their faces one by one.
+    of_quads: HashMap<(RingKind, bool, u32, bool), (u32, bool)>,
     mixed: HashMap<RingShape, (u32, bool)>,
 }
 
 impl RingTypes {
     /// Where the type of a ring starts, and whether it has a frame.
-    fn of(&mut self, topology: &Topology, ring: &Ring) -> (u32, bool) {
+    fn of(&mut self, topology: &Topology, ring: &Ring, fallback: bool) -> (u32, bool) {
+        let shape = || RingShape { fallback, ..RingShape::of(topology, ring) };
         if !ring.quads {
-            return self.of_shape(RingShape::of(topology, ring));
+            return self.of_shape(shape());
         }
-        let key = (ring.kind, ring.open, ring.faces);
+        let key = (ring.kind, ring.open, ring.faces, fallback);
         if let Some(&found) = self.of_quads.get(&key) {
             return found;
         }
-        let found = self.of_shape(RingShape::of(topology, ring));
+        let found = self.of_shape(shape());
         self.of_quads.insert(key, found);
         found
     }

@@ -2,7 +2,7 @@
 
 use super::{PatchPlan, bytes};
 use crate::mesh::MeshError;
-use crate::patch::{Row, Scheme};
+use crate::patch::{FallbackRings, Row};
 use crate::table::Patch;
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// Patches as weighted sums of the vertices around them. GLSL twin: `glsl/lib/stencils.glsl`.
 ///
-/// Within a kind, patches are sorted by type.
+/// Within a group of the plan, patches are sorted by type.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StencilTable {
     /// For each patch, where its vertices start and where its type starts.
@@ -19,7 +19,7 @@ pub struct StencilTable {
     pub vertices: Vec<u32>,
     /// For each type, in words: for each corner of the patch where its entries start (counted from the start of the
     /// type) and how many there are; then the entries: the number of a vertex in the patch's one-ring and, as f32
-    /// bits, its weights in the control points that the corner owns ([`Scheme::corner_slots`]). Vertices without weight are left out.
+    /// bits, its weights in the control points that the corner owns ([`Scheme::corner_slots`](crate::Scheme::corner_slots)). Vertices without weight are left out.
     pub types: Vec<u32>,
     /// How many types there are.
     pub type_count: usize,
@@ -39,12 +39,12 @@ struct PatchRing {
 }
 
 impl StencilTable {
-    /// Builds the table and sorts the patches of each kind by type: `plan` becomes the order of the table.
+    /// Builds the table and sorts the patches of each group by type: `plan` becomes the order of the table.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the one-rings of all patches together have more vertices than can be addressed. A
     /// vertex of valence n alone takes n * n; the two-stage construction takes n.
-    pub fn new(topology: &Topology, plan: &mut PatchPlan, scheme: Scheme) -> Result<Self, MeshError> {
+    pub fn new(topology: &Topology, plan: &mut PatchPlan) -> Result<Self, MeshError> {
         let (count, max) = (largest_vertex_count(topology, plan), u32::MAX as usize);
         if count > max {
             return Err(MeshError::TooLarge { what: "vertices around its patches (stencil construction)", count, max });
@@ -58,7 +58,7 @@ impl StencilTable {
                 let mut keys: HashMap<Key, (u32, usize)> = HashMap::new();
                 let mut rings = Vec::with_capacity(patches.len());
                 for &patch in patches {
-                    let (vertices, key) = patch_ring(topology, patch);
+                    let (vertices, key) = patch_ring(topology, plan.fallback_rings(), patch);
                     let next = (keys.len() as u32, rings.len());
                     let (kind, _) = *keys.entry(key).or_insert(next);
                     rings.push(PatchRing { patch, vertices, kind });
@@ -77,7 +77,9 @@ impl StencilTable {
                 .into_iter()
                 .map(|(key, (_, example))| {
                     let next = types.len() as u32;
-                    *types.entry(key).or_insert_with(|| (next, table.push_type(topology, scheme, &chunk[example])))
+                    *types
+                        .entry(key)
+                        .or_insert_with(|| (next, table.push_type(topology, plan.fallback_rings(), &chunk[example])))
                 })
                 .collect();
             rings.extend(chunk.into_iter().map(|ring| {
@@ -86,7 +88,7 @@ impl StencilTable {
             }));
         }
         table.type_count = types.len();
-        rings.sort_by_key(|(number, _, ring)| (ring.patch.kind, *number));
+        rings.sort_by_key(|(number, _, ring)| (ring.patch.group(), *number));
         for (_, start, ring) in &rings {
             table.patches.push([table.vertices.len() as u32, *start]);
             table.vertices.extend(&ring.vertices);
@@ -102,16 +104,16 @@ impl StencilTable {
     }
 
     /// Appends the weights for patches connected like `ring`'s. Gives where they start.
-    fn push_type(&mut self, topology: &Topology, scheme: Scheme, ring: &PatchRing) -> u32 {
+    fn push_type(&mut self, topology: &Topology, fallback: &FallbackRings, ring: &PatchRing) -> u32 {
         let local: HashMap<u32, u32> = ring.vertices.iter().zip(0..).map(|(&vertex, i)| (vertex, i)).collect();
         let patch = ring.patch;
-        let rows = scheme.control_points(topology, patch.face, patch.kind, |vertex| Row::unit(local[&vertex]));
+        let rows = patch.control_points(topology, fallback, |vertex| Row::unit(local[&vertex]));
         let corners = patch.kind.corners();
         let start = self.types.len();
         self.types.resize(start + 2 * corners, 0);
-        let mut weights = Vec::with_capacity(scheme.owned(patch.kind));
+        let mut weights = Vec::with_capacity(patch.scheme.owned(patch.kind));
         for k in 0..corners {
-            let owned = scheme.corner_slots(patch.kind, k);
+            let owned = patch.scheme.corner_slots(patch.kind, k);
             let first = self.types.len();
             for vertex in 0..ring.vertices.len() as u32 {
                 weights.clear();
@@ -139,10 +141,10 @@ fn largest_vertex_count(topology: &Topology, plan: &PatchPlan) -> usize {
 
 /// The vertices of a patch's one-ring and its connectivity, from a walk around it that starts at its first corner.
 /// Patches with the same connectivity are of one type.
-fn patch_ring(topology: &Topology, patch: Patch) -> (Vec<u32>, Key) {
+fn patch_ring(topology: &Topology, fallback: &FallbackRings, patch: Patch) -> (Vec<u32>, Key) {
     let half_edges = topology.mesh().face_corners(patch.face);
     let mut walk = Walk { vertices: Vec::with_capacity(16), numbers: HashMap::new(), key: Vec::with_capacity(48) };
-    walk.key.push(patch.kind as u32);
+    walk.key.extend([patch.kind as u32, patch.scheme as u32]);
     for h in half_edges.clone() {
         walk.visit(topology.mesh_vertex(h as u32));
     }
@@ -150,7 +152,8 @@ fn patch_ring(topology: &Topology, patch: Patch) -> (Vec<u32>, Key) {
         let place = topology.place(h as u32);
         let ring = &topology.rings()[place.ring as usize];
         let from = if ring.open { 0 } else { place.index };
-        walk.key.extend([ring.kind as u32 * 2 + u32::from(ring.open), ring.faces, place.index - from]);
+        let rule = [ring.kind as u32, ring.open.into(), fallback.contains(place.ring).into()];
+        walk.key.extend(rule.into_iter().chain([ring.faces, place.index - from]));
         // From the patch itself around a closed ring; along an open one.
         let (mut at, mut faces) = (if ring.open { ring.start } else { h as u32 }, ring.faces);
         loop {
