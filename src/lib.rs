@@ -81,7 +81,9 @@
 //!   2e-5 to 4e-5 of the diagonal (nearest distance) and half a degree (normal).
 //! * Neighbouring patches share their edge curve and tangent planes along it (G1; [`Scheme::Acc`]: shading normals).
 //!   The GPU evaluates the curve once for each patch: to the same bits with Gregory patches made by
-//!   [`Construction::TwoStage`], else to rounding. Normals agree to rounding.
+//!   [`Construction::TwoStage`], else to rounding. Normals agree to rounding. Where faces fall back to Gregory patches
+//!   ([`Fallback`]), they share their edge curves with patches of another scheme, too, but not all tangent planes
+//!   ([`patch::FallbackRings`]).
 //! * The two constructions on the GPU ([`Construction`]) make the same control points but for rounding.
 //!
 //! # Where the formulas come from

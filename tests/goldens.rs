@@ -11,7 +11,8 @@ use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
 use ash_subdiv::renderer::{Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Scheme, Style, Target, View, shape, shapes,
+    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Style, Target, View, shape,
+    shapes,
 };
 use common::golden;
 use common::render_pass::{Moment, RenderPassTarget};
@@ -118,6 +119,8 @@ fn pictures() -> Vec<Picture> {
         Picture::of_scheme(Scheme::Pm, "valences", Some(0.15)),
         Picture::of_scheme(Scheme::Pm, "creature-mixed", None),
         Picture::of_scheme(Scheme::CPatch, "creature", Some(0.2)),
+        // Its triangles fall back to Gregory patches.
+        Picture::of_scheme(Scheme::Acc, "creature-mixed", None),
     ]);
     pictures
 }
@@ -153,7 +156,8 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     };
     // SAFETY: the render pass outlives the renderer, and every submission is waited for.
     let mut renderer = unsafe { Renderer::new(headless.context(), &target, &options) }.expect("a renderer");
-    let model_options = ModelOptions { construction, scheme: picture.scheme, ..ModelOptions::default() };
+    let fallback = Fallback::Gregory;
+    let model_options = ModelOptions { construction, fallback, scheme: picture.scheme, ..ModelOptions::default() };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
     let item = |(style, layer): (usize, &Layer)| DrawItem { style, colors: layer.colors, ..DrawItem::new(model, 6.0) };
     let items: Vec<_> = picture.layers.iter().enumerate().map(item).collect();

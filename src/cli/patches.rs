@@ -138,8 +138,9 @@ fn write<T: Serialize + Display>(args: &PatchesArgs, json: bool, made: Made<T>) 
     }
     output::with_stdout(|out| {
         for i in by_origin(made.origins) {
-            let (origin, kind) = (made.origins[i], made.patches[i].kind);
-            writeln!(out, "{}{}", heading(origin), kind.name())?;
+            let (origin, Patch { kind, scheme, .. }) = (made.origins[i], made.patches[i]);
+            let fallback = if scheme == args.mesh.scheme { "" } else { " of the fallback" };
+            writeln!(out, "{}{}{fallback}", heading(origin), kind.name())?;
             for (number, point) in made.points[i].iter().enumerate() {
                 let [x, y, z] = point.each_ref().map(ToString::to_string);
                 writeln!(out, "  {:<4}{x:>24}{y:>24}{z:>24}", label(kind, number))?;

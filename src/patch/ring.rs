@@ -13,8 +13,8 @@ pub struct RingShape {
     pub open: bool,
     /// For each face of the ring, whether it is a triangle (else a quad).
     pub triangles: Vec<bool>,
-    /// Whether the edges have the curves of Gregory patches, whichever scheme draws the faces: see
-    /// [`Scheme::Gregory`](super::Scheme::Gregory) as a fallback ([`FallbackRings`](super::FallbackRings)).
+    /// Whether the edges have the curves of Gregory patches, whichever scheme draws the faces: one of
+    /// [`FallbackRings`](super::FallbackRings).
     pub fallback: bool,
 }
 

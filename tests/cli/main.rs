@@ -132,8 +132,9 @@ fn notices_go_to_standard_error() {
 
 #[test]
 fn patches_are_the_same_from_all_makers() {
-    for (shape, refine) in [("valences", 0), ("creature-mixed", 0), ("polygons", 0), ("fan", 1)] {
-        let of = |maker| json(&format!("patches --shape {shape} --refine {refine} --construction {maker}"));
+    let cases = [("valences", 0, ""), ("creature-mixed", 0, "--scheme acc --fallback gregory"), ("polygons", 0, "")];
+    for (shape, refine, more) in cases.into_iter().chain([("fan", 1, "")]) {
+        let of = |maker| json(&format!("patches --shape {shape} --refine {refine} {more} --construction {maker}"));
         let (cpu, two_stage, stencil) = (of("cpu"), of("two-stage"), of("stencil"));
         assert_eq!(keys(&cpu), ["construction", "patches"]);
         let patches = cpu["patches"].as_array().unwrap();
@@ -141,17 +142,18 @@ fn patches_are_the_same_from_all_makers() {
             patches.iter().map(|p| (p["face"].as_u64().unwrap(), p["sub"].as_i64().unwrap())).collect();
         assert!(places.is_sorted() && !places.is_empty());
         for (i, patch) in patches.iter().enumerate() {
-            assert_eq!(keys(patch), ["face", "kind", "points", "sub"]);
-            let count = match patch["kind"].as_str().unwrap() {
-                "regular" => 16,
-                "irregular_quad" => 20,
-                "triangle" => 15,
-                other => panic!("{other}"),
+            assert_eq!(keys(patch), ["face", "kind", "points", "scheme", "sub"]);
+            let count = match [&patch["kind"], &patch["scheme"]].map(|name| name.as_str().unwrap()) {
+                ["regular", _] => 16,
+                ["irregular_quad", "gregory"] => 20,
+                ["irregular_quad", "acc"] => 32,
+                ["triangle", "gregory"] => 15,
+                other => panic!("{other:?}"),
             };
             assert_eq!(length(&patch["points"]), count);
             for other in [&two_stage, &stencil] {
                 let other = &other["patches"][i];
-                for key in ["face", "sub", "kind"] {
+                for key in ["face", "sub", "kind", "scheme"] {
                     assert_eq!(patch[key], other[key]);
                 }
                 assert_close(&patch["points"], &other["points"], 1e-5);
@@ -165,7 +167,7 @@ fn patches_are_the_same_from_all_makers() {
 
 #[test]
 fn samples_are_the_same_on_both_sides() {
-    for shape in ["creature-mixed", "cloth"] {
+    for shape in ["creature-mixed --scheme c-patch --fallback gregory", "cloth"] {
         let cpu = json(&format!("sample --shape {shape} --grid 4 --cpu"));
         let gpu = json(&format!("sample --shape {shape} --grid 4 --construction stencil"));
         assert_eq!(keys(&cpu), ["construction", "faces", "grid"]);
@@ -175,8 +177,8 @@ fn samples_are_the_same_on_both_sides() {
         );
         assert_eq!(length(&cpu["faces"]), length(&gpu["faces"]));
         for (a, b) in cpu["faces"].as_array().unwrap().iter().zip(gpu["faces"].as_array().unwrap()) {
-            assert_eq!(keys(a), ["face", "normals", "positions", "sub"]);
-            assert_eq!((&a["face"], &a["sub"]), (&b["face"], &b["sub"]));
+            assert_eq!(keys(a), ["face", "normals", "positions", "scheme", "sub"]);
+            assert_eq!((&a["face"], &a["sub"], &a["scheme"]), (&b["face"], &b["sub"], &b["scheme"]));
             assert!([10, 16].contains(&length(&a["positions"])));
             assert_close(&a["positions"], &b["positions"], 1e-5);
             assert_close(&a["normals"], &b["normals"], 2e-3);
