@@ -120,7 +120,7 @@ fn pictures() -> Vec<Picture> {
         Picture::of_scheme(Scheme::Pm, "creature-mixed", None),
         Picture::of_scheme(Scheme::CPatch, "creature", Some(0.2)),
         // Its triangles fall back to Gregory patches.
-        Picture::of_scheme(Scheme::Acc, "creature-mixed", None),
+        Picture::of_scheme(Scheme::Acc, "creature-mixed", Some(0.15)),
     ]);
     pictures
 }
