@@ -17,7 +17,7 @@ use std::ops::Range;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct CapturedVertex {
-    /// (u, v, 0) of a quad, (u, v, w) of a triangle.
+    /// (u, v, 0) of a quad, (u, v, w) of a triangle or a piece of a pentagon.
     pub coordinate: [f32; 3],
     /// The number of the patch in the order of [`ModelTables::plan`].
     pub patch: u32,
@@ -108,7 +108,7 @@ impl<'h> Captured<'h> {
         if !(2..=max).contains(&n) {
             return Err(Error::BadGrid { given: n, max });
         }
-        let places = |kind| if kind == PatchKind::Triangle { n * (n + 1) / 2 } else { n * n };
+        let places = |kind: PatchKind| if kind.is_triangular() { n * (n + 1) / 2 } else { n * n };
         let bytes = |kind| u64::from(places(kind)) * RECORD_BYTES;
         let captured = self.capture(Capture::Grid, (n - 1) as f32, bytes, |patches| Head {
             first_patch: patches.start,
@@ -133,8 +133,8 @@ impl<'h> Captured<'h> {
     /// [`Error::BadFactor`]; failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn vertices(&self, factor: f32) -> Result<Vec<CapturedVertex>, Error> {
         let max = self.headless.properties().max_tessellation_level;
-        let bytes = |kind| {
-            let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
+        let bytes = |kind: PatchKind| {
+            let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
             // At worst a device shares nothing between the triangles of a patch.
             let shared = if self.headless.properties().patch_batch == crate::gpu::PatchBatch::LAVAPIPE { 1 } else { 6 };
             shared * u64::from(tessellated_vertices(domain, self.options.spacing, factor, max)) * RECORD_BYTES

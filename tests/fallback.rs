@@ -69,7 +69,7 @@ fn only_faces_without_patches_fall_back() {
             let mixed = Mixed::new(&mesh, scheme);
             let topology = Topology::new(mixed.mesh());
             for patch in mixed.surface.plan().patches() {
-                let defined = scheme.check(&topology, patch.face, patch.kind).is_ok();
+                let defined = scheme.check(&topology, patch.face).is_ok();
                 let drawn_by = if defined { scheme } else { Scheme::Gregory };
                 assert_eq!(patch.scheme, drawn_by, "{name}: face {}", patch.face);
             }

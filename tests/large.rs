@@ -16,7 +16,7 @@ fn a_million_faces() {
     for construction in Construction::ALL {
         let tables =
             ModelTables::new(&mesh, &ModelOptions { construction, ..ModelOptions::default() }).expect("tables");
-        assert_eq!(PatchKind::ALL.map(|kind| tables.patch_count(kind)), [FACES, 0, 0]);
+        assert_eq!(PatchKind::ALL.map(|kind| tables.patch_count(kind)), [FACES, 0, 0, 0]);
         assert_eq!(tables.type_count(), 1, "{construction:?}");
         assert!(tables.notices().is_empty());
         assert!(tables.origins().iter().zip(0..).all(|(origin, face)| origin.face == face && origin.sub == -1));

@@ -261,6 +261,7 @@ fn lack(shape: &str, scheme: Scheme) -> Option<(u32, &'static str)> {
     match (shape, scheme) {
         (_, Scheme::Gregory) => None,
         ("creature-mixed" | "tetrahedron" | "fan", Scheme::Acc | Scheme::CPatch) => Some((0, triangles)),
+        ("polygons", Scheme::Pm) => Some((12, "faces of six or more corners")),
         ("fan", Scheme::Pm) => Some((0, boundary)),
         ("machine-part", Scheme::Pm | Scheme::CPatch) => Some((2, boundary)),
         ("cloth", Scheme::Pm | Scheme::CPatch) => Some((6, boundary)),

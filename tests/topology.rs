@@ -180,7 +180,7 @@ fn vertices_where_fans_touch_are_split() {
     assert_eq!([topology.vertex(0), topology.vertex(4)], [0, 9]);
     assert_eq!([topology.source(0), topology.source(9)], [0, 0]);
     assert_eq!(shapes_of(&rings_at(&mesh, 0)), [(RingKind::Corner, 1, true); 2]);
-    assert_eq!(prepare(&mesh, 0).unwrap().notices(&topology), [Notice::SplitVertices { count: 1 }]);
+    assert_eq!(prepare(&mesh, 0).unwrap().notices(&topology, &plan(&mesh)), [Notice::SplitVertices { count: 1 }]);
 }
 
 fn plan(mesh: &ControlMesh) -> PatchPlan {

@@ -1,10 +1,11 @@
 //! The shaders against their CPU twins: control points and evaluated vertices, captured.
 #![cfg(feature = "headless")]
 
+mod common;
+
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::table::{CpuSurface, Patch};
-use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Spacing, shape};
 use ash_subdiv::{Fallback, Scheme};
 use glam::{DVec3, Vec3};
@@ -37,10 +38,11 @@ fn tolerance(mesh: &ControlMesh) -> f64 {
 
 /// Every shape with every scheme; faces without patches fall back.
 fn cases() -> impl Iterator<Item = (&'static str, ControlMesh, Scheme)> {
-    SHAPES.into_iter().flat_map(|name| {
-        let mesh = shape(name).expect("built in");
-        Scheme::ALL.map(|scheme| (name, mesh.clone(), scheme))
-    })
+    let shapes = SHAPES.map(|name| (name, shape(name).expect("built in")));
+    shapes
+        .into_iter()
+        .chain([("pentagons", common::pentagons())])
+        .flat_map(|(name, mesh)| Scheme::ALL.map(|scheme| (name, mesh.clone(), scheme)))
 }
 
 const FALLBACK: Fallback = Fallback::Gregory;
@@ -116,7 +118,9 @@ fn check(name: &str, mesh: &ControlMesh, position: [f32; 3], normal: [f32; 3], t
 #[test]
 fn evaluated_vertices() {
     let headless = headless();
-    for (name, mesh, scheme) in cases().filter(|(name, ..)| ["creature", "creature-mixed", "cloth"].contains(name)) {
+    for (name, mesh, scheme) in
+        cases().filter(|(name, ..)| ["creature", "creature-mixed", "cloth", "pentagons"].contains(name))
+    {
         let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
             for (spacing, factor) in [
@@ -140,9 +144,9 @@ fn evaluated_vertices() {
                     check(name, &mesh, vertex.position, vertex.normal, twin);
                 }
                 for (patch, seen) in tables.plan().patches().iter().zip(seen) {
-                    let domain = match patch.kind {
-                        PatchKind::Triangle => ash_subdiv::gpu::Domain::Triangles,
-                        _ => ash_subdiv::gpu::Domain::Quads,
+                    let domain = match patch.kind.is_triangular() {
+                        true => ash_subdiv::gpu::Domain::Triangles,
+                        false => ash_subdiv::gpu::Domain::Quads,
                     };
                     let count = ash_subdiv::gpu::tessellated_vertices(domain, spacing, factor, 64);
                     assert!(seen >= count, "{name} {spacing:?} {factor}: {seen} vertices of {count}");

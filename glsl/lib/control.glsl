@@ -13,6 +13,9 @@
 #ifdef TRIANGLE
 const uint CORNERS = 3u;
 layout(vertices = 3) out;
+#elif defined(PENTAGON)
+const uint CORNERS = 5u;
+layout(vertices = 5) out;
 #else
 const uint CORNERS = 4u;
 layout(vertices = 4) out;

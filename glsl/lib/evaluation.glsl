@@ -70,7 +70,10 @@ void emit(Sample surface, vec3 at) {
     capture_sample(captured_patch, capture_place, capture_places, at, surface.position, surface.normal);
 #endif
 #ifdef TEXCOORD
-#ifdef TRIANGLE
+#if defined(PENTAGON)
+    vec2 middle = (texcoord[0] + texcoord[1] + texcoord[2] + texcoord[3] + texcoord[4]) / 5.0;
+    out_texcoord = at.x * texcoord[0] + at.y * texcoord[1] + at.z * middle;
+#elif defined(TRIANGLE)
     out_texcoord = at.x * texcoord[0] + at.y * texcoord[1] + at.z * texcoord[2];
 #else
     out_texcoord = mix(mix(texcoord[0], texcoord[1], at.x), mix(texcoord[3], texcoord[2], at.x), at.y);

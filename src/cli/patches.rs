@@ -38,11 +38,12 @@ const EXAMPLES: &str = "\
 Order of points: a regular patch has 4 x 4 Bezier points, row-major with rows along u.
 Others have, by scheme: gregory p0.., then e0+ e0- e1+ e1-.., then f0+ f0-..: 20 of a quad, 15 of a
 triangle; acc 4 x 4 Bezier points, then the vectors t+ t- x+ x- of each corner: 32; pm and c-patch v0..,
-then t0+ t0-.., then b211, b121 and b112 of all sectors: 24 of a quad, 18 of a triangle.
+then t0+ t0-.., then b211, b121 and b112 of all sectors: 24 of a quad, 18 of a triangle, 30 of a pentagon. A pentagon
+is five patches, one a sector, each of which counts the corners from its own edge on.
 
 JSON: construction, patches[{face, sub, kind, scheme, points[[x, y, z]]}]: face of the input; sub is -1, or the
-corner of the face around which refinement made the patch; kind is regular, irregular_quad or triangle; scheme is
-the one asked for, or the fallback.
+corner of the face around which refinement made the patch, or at which the edge of a pentagon's sector starts;
+kind is regular, irregular_quad, triangle or pentagon; scheme is the one asked for, or the fallback.
 
 Examples:
   subdiv patches --shape cube
@@ -53,7 +54,7 @@ Examples:
 struct PatchOut<'p, T> {
     /// The face of the input.
     face: u32,
-    /// -1, or the corner of the face around which refinement made this part.
+    /// As in [`FaceOrigin`].
     sub: i64,
     kind: &'static str,
     scheme: &'static str,

@@ -55,8 +55,8 @@ pub(super) struct RenderArgs {
 }
 
 const EXAMPLES: &str = "\
-JSON: file, size[width, height], patches{regular, irregular_quad, triangle}, construction, factor, spacing,
-shading, samples, device.
+JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, construction, factor,
+spacing, shading, samples, device.
 
 Examples:
   subdiv render --shape creature -o creature.png

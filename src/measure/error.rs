@@ -180,6 +180,7 @@ impl Deviation {
 
 fn drawn_faces(topology: &Topology) -> Vec<(u32, PatchKind)> {
     let faces = (0..).zip(draws_face(topology)).filter(|(_, draws)| *draws);
+    // The prepared mesh has no larger faces than these.
     faces.filter_map(|(face, _)| Some((face, topology.patch_kind(face)?))).collect()
 }
 

@@ -19,7 +19,8 @@ pub struct RingShape {
 }
 
 impl RingShape {
-    /// The shape of a ring of `topology` whose faces are triangles and quads.
+    /// The shape of a ring of `topology` whose faces are triangles and quads, or for Pm-patches pentagons, which then count as
+    /// quads.
     pub fn of(topology: &Topology, ring: &Ring) -> Self {
         let triangles = if ring.quads {
             vec![false; ring.faces as usize]
@@ -109,7 +110,14 @@ impl<T: Blend> RingValues<T> {
         for h in topology.ring_half_edges(ring) {
             let head = topology.next(h);
             edges.push(vertex(topology.mesh_vertex(head)));
-            diagonals.push(vertex(topology.mesh_vertex(topology.next(head))));
+            let opposite = topology.next(head);
+            let mut diagonal = vertex(topology.mesh_vertex(opposite));
+            if topology.face_size(h) == 5 {
+                // The middle of a pentagon's far edge.
+                let other = vertex(topology.mesh_vertex(topology.next(opposite)));
+                diagonal = T::sum([(0.5, &diagonal), (0.5, &other)]);
+            }
+            diagonals.push(diagonal);
             last = h;
         }
         if ring.open {

@@ -4,7 +4,6 @@ use super::gpu_data::DrawConstants;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::{Error, Geometry, ModelId, Renderer, View};
 use crate::gpu::{Domain, tessellated_vertices};
-use crate::topology::PatchKind;
 use ash::vk;
 
 /// One model drawn once.
@@ -18,20 +17,21 @@ pub struct DrawItem {
     pub factor: f32,
     /// Index into [`Options::styles`](super::Options::styles).
     pub style: usize,
-    /// Linear RGBA of regular patches, irregular quads and triangles.
-    pub colors: [[f32; 4]; 3],
+    /// Linear RGBA of regular patches, irregular quads, triangles and pentagons: in the order of
+    /// [`PatchKind::ALL`](crate::topology::PatchKind::ALL).
+    pub colors: [[f32; 4]; 4],
 }
 
 impl DrawItem {
     /// The model where it is, in the first style, in light grey.
     pub fn new(model: ModelId, factor: f32) -> Self {
         let transform = glam::Mat4::IDENTITY.to_cols_array_2d();
-        Self { model, transform, factor, style: 0, colors: [[0.7, 0.7, 0.7, 1.0]; 3] }
+        Self { model, transform, factor, style: 0, colors: [[0.7, 0.7, 0.7, 1.0]; 4] }
     }
 
     /// All patches in one colour.
     pub fn color(self, color: [f32; 4]) -> Self {
-        Self { colors: [color; 3], ..self }
+        Self { colors: [color; 4], ..self }
     }
 }
 
@@ -121,7 +121,7 @@ impl Renderer {
             for (&stages, group) in model.stages.iter().zip(model.tables.plan().groups()) {
                 let (kind, spacing) = (stages.kind, stages.spacing);
                 self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
-                let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
+                let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
                 let vertices = tessellated_vertices(domain, spacing, factor, properties.max_tessellation_level);
                 let points = stages.input_points();
                 constants.colour = item.colors[kind as usize];

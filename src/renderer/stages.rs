@@ -23,6 +23,7 @@ fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
         (_, Scheme::Acc) => ["ACC", "ACC"],
         (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_QUAD"],
         (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_TRIANGLE"],
+        (PatchKind::Pentagon, _) => ["PM", "PM_PENTAGON"],
     }
 }
 
@@ -41,9 +42,11 @@ impl PatchStages {
             Construction::TwoStage => format!("CONSTRUCT_{file}_TESC"),
             Construction::Stencil => format!("CONSTRUCT_STENCIL_TESC_OWNED_{}", self.scheme.owned(self.kind)),
         };
-        if self.kind == PatchKind::Triangle {
-            name += "_TRIANGLE";
-        }
+        name += match self.kind {
+            PatchKind::Triangle => "_TRIANGLE",
+            PatchKind::Pentagon => "_PENTAGON",
+            PatchKind::Regular | PatchKind::IrregularQuad => "",
+        };
         name += match capture {
             Capture::Points => "_CAPTURE_POINTS",
             Capture::Vertices | Capture::Grid => "_CAPTURE",
@@ -86,7 +89,9 @@ mod tests {
     fn every_patch_has_its_shaders() {
         for scheme in Scheme::ALL {
             for kind in PatchKind::ALL {
-                if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle {
+                if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle
+                    || kind == PatchKind::Pentagon && !scheme.has_pentagons()
+                {
                     continue;
                 }
                 for construction in Construction::ALL {

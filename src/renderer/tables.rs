@@ -3,7 +3,7 @@
 use super::{Construction, ModelOptions};
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
-use crate::table::{FaceOrigin, Notice, PatchPlan, RingTable, StencilTable, TableError, bytes, prepare};
+use crate::table::{FaceOrigin, Notice, PatchPlan, RingTable, StencilTable, TableError, bytes, prepare_patches};
 use crate::topology::{PatchKind, Topology};
 use glam::Vec3;
 use std::borrow::Cow;
@@ -41,16 +41,16 @@ impl ModelTables {
     /// # Errors
     /// A refined mesh or a table that cannot be addressed; faces that the scheme has no patch for.
     pub fn new(mesh: &ControlMesh, options: &ModelOptions) -> Result<Self, TableError> {
-        let prepared = prepare(mesh, options.refine)?;
+        let ModelOptions { scheme, fallback, refine, .. } = *options;
+        let (prepared, mut plan) = prepare_patches(mesh, scheme, fallback, refine)?;
         let topology = Topology::new(&prepared.mesh);
-        let mut plan = PatchPlan::new(&topology, options.scheme, options.fallback)?;
         let construction = match options.construction {
             Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan)),
             Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan)?),
         };
         Ok(Self {
             texcoords: plan.texcoords(&topology),
-            origins: plan.patches().iter().map(|patch| prepared.origin(patch.face)).collect(),
+            origins: prepared.origins(&plan),
             notices: prepared.notices(&topology, &plan),
             plan,
             construction,

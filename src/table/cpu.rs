@@ -1,6 +1,6 @@
 //! The CPU twin: every patch of a mesh, constructed and evaluated on the host.
 
-use super::{FaceOrigin, Notice, PatchPlan, Prepared, TableError, prepare};
+use super::{FaceOrigin, Notice, PatchPlan, Prepared, TableError, prepare_patches};
 use crate::mesh::ControlMesh;
 use crate::patch::{Blend, Fallback, Point, Sample, Scheme};
 use crate::topology::{PatchKind, Topology};
@@ -25,7 +25,7 @@ pub struct CpuSurface<'m> {
 }
 
 impl<'m> CpuSurface<'m> {
-    /// Prepares `mesh` as [`prepare`] does, with at least `refine` steps of refinement.
+    /// Prepares `mesh` as [`prepare_patches`] does, with at least `refine` steps of refinement.
     ///
     /// # Errors
     /// A refined mesh that cannot be addressed; faces that the scheme has no patch for.
@@ -43,8 +43,7 @@ impl<'m> CpuSurface<'m> {
         fallback: Fallback,
         refine: u32,
     ) -> Result<Self, TableError> {
-        let prepared = prepare(mesh, refine)?;
-        let plan = PatchPlan::new(&Topology::new(&prepared.mesh), scheme, fallback)?;
+        let (prepared, plan) = prepare_patches(mesh, scheme, fallback, refine)?;
         Ok(Self { prepared, plan })
     }
 
@@ -65,7 +64,7 @@ impl<'m> CpuSurface<'m> {
 
     /// Where each patch comes from.
     pub fn origins(&self) -> Vec<FaceOrigin> {
-        self.plan.patches().iter().map(|patch| self.prepared.origin(patch.face)).collect()
+        self.prepared.origins(&self.plan)
     }
 
     /// The control points of every patch, combined from `value` of each position.
@@ -97,7 +96,7 @@ impl<'m> CpuSurface<'m> {
 
 /// A grid of parameters on a patch, `n` along each side.
 ///
-/// Quads: `n * n` of them, number `j * n + i` at u = i / (n - 1), v = j / (n - 1). Triangles: `n (n + 1) / 2`, in rows
+/// Quads: `n * n` of them, number `j * n + i` at u = i / (n - 1), v = j / (n - 1). Triangles, and pieces of pentagons: `n (n + 1) / 2`, in rows
 /// r = 0..n with u = 1 - r / (n - 1), in each row w = k / (n - 1) for k = 0..=r; given are (u, v).
 ///
 /// # Panics
@@ -105,8 +104,9 @@ impl<'m> CpuSurface<'m> {
 pub fn grid_parameters(kind: PatchKind, n: u32) -> Vec<[f64; 2]> {
     assert!(n >= 2, "a grid has at least two samples along a side");
     let at = |i: u32| f64::from(i) / f64::from(n - 1);
-    match kind {
-        PatchKind::Triangle => (0..n).flat_map(|r| (0..=r).map(move |k| [at(n - 1 - r), at(r - k)])).collect(),
-        _ => (0..n).flat_map(|j| (0..n).map(move |i| [at(i), at(j)])).collect(),
+    if kind.is_triangular() {
+        (0..n).flat_map(|r| (0..=r).map(move |k| [at(n - 1 - r), at(r - k)])).collect()
+    } else {
+        (0..n).flat_map(|j| (0..n).map(move |i| [at(i), at(j)])).collect()
     }
 }

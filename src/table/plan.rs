@@ -5,7 +5,7 @@ use crate::topology::{PatchKind, Topology, draws_face};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A patch and the face of the prepared mesh it covers.
+/// A patch and the face of the prepared mesh that it covers, whole or in part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Patch {
     /// The face of the prepared mesh.
@@ -14,6 +14,9 @@ pub struct Patch {
     pub kind: PatchKind,
     /// The scheme that draws it: the one asked for, or the one fallen back to.
     pub scheme: Scheme,
+    /// The corner of the face that is the patch's first: 0 but for the pieces of a pentagon, of which piece k lies between
+    /// the edge from corner k and the centre of the face.
+    pub first: u32,
 }
 
 impl Patch {
@@ -24,7 +27,14 @@ impl Patch {
         fallback: &FallbackRings,
         vertex: impl Fn(u32) -> T,
     ) -> Vec<T> {
-        self.scheme.control_points_beside(topology, self.face, self.kind, fallback, vertex)
+        self.scheme.control_points_beside(topology, self.kind, self.corners(topology), fallback, vertex)
+    }
+
+    /// The half-edges of its corners, in order.
+    pub(crate) fn corners(self, topology: &Topology) -> impl Iterator<Item = u32> + Clone {
+        let face = topology.mesh().face_corners(self.face);
+        let (start, end) = (face.start as u32, face.end as u32);
+        (start + self.first..end).chain(start..start + self.first)
     }
 
     /// What patches are sorted by.
@@ -46,8 +56,8 @@ pub struct PatchGroup {
     pub first_corner: usize,
 }
 
-/// All patches of a mesh: the regular ones, then irregular quads, then triangles; in each kind by scheme, and then in the
-/// order of their faces.
+/// All patches of a mesh: the regular ones, then irregular quads, triangles, pieces of pentagons; in each kind by scheme, and
+/// then in the order of their faces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PatchPlan {
     patches: Vec<Patch>,
@@ -57,21 +67,26 @@ pub struct PatchPlan {
 }
 
 impl PatchPlan {
-    /// Plans the patches of a mesh of triangles and quads. Holes get none.
+    /// Plans the patches of a mesh. Holes get none.
     ///
     /// # Errors
-    /// [`Undefined`] names the first face that the scheme has no patch for, unless such faces fall back.
+    /// [`Undefined`] names the first face that the scheme has no patch for, unless such faces fall back; then the first that
+    /// there is no patch for at all, which has five or more corners: see [`prepare`](super::prepare()).
     pub fn new(topology: &Topology, scheme: Scheme, fallback: Fallback) -> Result<Self, Undefined> {
-        let of_face = |(face, draws): (usize, bool)| {
-            let (face, kind) = (face as u32, topology.patch_kind(face as u32).filter(|_| draws)?);
-            let drawn_by = scheme.check(topology, face, kind).map(|()| scheme);
-            let patch = |scheme| Patch { face, kind, scheme };
-            Some(drawn_by.or_else(|undefined| fallback.scheme().ok_or(undefined)).map(patch))
+        let of_face = |face: u32| {
+            let (kind, scheme) = match (scheme.check(topology, face), fallback.scheme()) {
+                (Err(_), Some(fallback)) => (fallback.check(topology, face)?, fallback),
+                (kind, _) => (kind?, scheme),
+            };
+            Ok(Patch { face, kind, scheme, first: 0 })
         };
-        let faces = draws_face(topology).into_par_iter().enumerate().map(of_face);
+        let faces = draws_face(topology).into_par_iter().enumerate();
+        let faces = faces.map(|(face, draws)| draws.then(|| of_face(face as u32)));
         // The first error is that of the first face: collected before it is looked for.
         let faces: Vec<Option<Result<Patch, Undefined>>> = faces.collect();
-        let mut patches: Vec<Patch> = faces.into_iter().flatten().collect::<Result<_, _>>()?;
+        let pieces = |patch: Patch| (0..patch.kind.pieces()).map(move |first| Patch { first, ..patch });
+        let faces: Vec<Patch> = faces.into_iter().flatten().collect::<Result<_, _>>()?;
+        let mut patches: Vec<Patch> = faces.into_iter().flat_map(pieces).collect();
         let fallen = patches.iter().filter(|patch| patch.scheme != scheme).map(|patch| patch.face);
         let fallback_rings = FallbackRings::new(topology, fallen);
         patches.sort_by_key(|patch| patch.group());
@@ -128,12 +143,10 @@ impl PatchPlan {
         self.patches = patches;
     }
 
-    /// The half-edges of all patch corners, in order: four each for quads, three for triangles.
+    /// The half-edges of all patch corners, in order.
     pub(crate) fn corners(&self, topology: &Topology) -> Vec<u32> {
-        let face_offsets = topology.mesh().face_offsets();
-        let corners_of = |patch: &Patch| face_offsets[patch.face as usize]..face_offsets[patch.face as usize + 1];
         let mut corners = Vec::with_capacity(4 * self.patches.len());
-        self.patches.iter().for_each(|patch| corners.extend(corners_of(patch)));
+        self.patches.iter().for_each(|patch| corners.extend(patch.corners(topology)));
         corners
     }
 

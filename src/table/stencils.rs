@@ -134,7 +134,9 @@ impl StencilTable {
 fn largest_vertex_count(topology: &Topology, plan: &PatchPlan) -> usize {
     let around = |h: &u32| {
         let ring = &topology.rings()[topology.place(*h).ring as usize];
-        1 + ring.faces as usize + ring.edges() as usize
+        // Pentagons have one vertex more.
+        let others = if ring.quads { ring.faces } else { 2 * ring.faces };
+        1 + others as usize + ring.edges() as usize
     };
     plan.corners(topology).iter().map(around).sum()
 }
@@ -142,25 +144,29 @@ fn largest_vertex_count(topology: &Topology, plan: &PatchPlan) -> usize {
 /// The vertices of a patch's one-ring and its connectivity, from a walk around it that starts at its first corner.
 /// Patches with the same connectivity are of one type.
 fn patch_ring(topology: &Topology, fallback: &FallbackRings, patch: Patch) -> (Vec<u32>, Key) {
-    let half_edges = topology.mesh().face_corners(patch.face);
+    let half_edges = patch.corners(topology);
     let mut walk = Walk { vertices: Vec::with_capacity(16), numbers: HashMap::new(), key: Vec::with_capacity(48) };
     walk.key.extend([patch.kind as u32, patch.scheme as u32]);
     for h in half_edges.clone() {
-        walk.visit(topology.mesh_vertex(h as u32));
+        walk.visit(topology.mesh_vertex(h));
     }
     for h in half_edges {
-        let place = topology.place(h as u32);
+        let place = topology.place(h);
         let ring = &topology.rings()[place.ring as usize];
         let from = if ring.open { 0 } else { place.index };
         let rule = [ring.kind as u32, ring.open.into(), fallback.contains(place.ring).into()];
         walk.key.extend(rule.into_iter().chain([ring.faces, place.index - from]));
         // From the patch itself around a closed ring; along an open one.
-        let (mut at, mut faces) = (if ring.open { ring.start } else { h as u32 }, ring.faces);
+        let (mut at, mut faces) = (if ring.open { ring.start } else { h }, ring.faces);
         loop {
             let head = topology.next(at);
             walk.key.push(topology.face_size(at));
             walk.visit(topology.mesh_vertex(head));
-            walk.visit(topology.mesh_vertex(topology.next(head)));
+            let opposite = topology.next(head);
+            walk.visit(topology.mesh_vertex(opposite));
+            if topology.face_size(at) == 5 {
+                walk.visit(topology.mesh_vertex(topology.next(opposite)));
+            }
             faces -= 1;
             let back = topology.prev(at);
             match topology.twin(back) {

@@ -85,7 +85,7 @@ fn help_and_version_succeed() {
 fn info_counts() {
     let info = json("info --shape cube");
     assert_eq!((&info["vertices"], &info["edges"], &info["faces"]), (&8.into(), &12.into(), &6.into()));
-    assert_eq!(info["patches"], serde_json::json!({ "regular": 0, "irregular_quad": 6, "triangle": 0 }));
+    assert_eq!(info["patches"], serde_json::json!({ "regular": 0, "irregular_quad": 6, "triangle": 0, "pentagon": 0 }));
     assert_eq!(info["valence"], serde_json::json!({ "3": 8 }));
     assert_eq!((&info["boundary_edges"], &info["creased_edges"]), (&0.into(), &0.into()));
     assert_eq!(info["connectivity_types"], 1);
