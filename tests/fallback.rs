@@ -80,7 +80,10 @@ fn only_faces_without_patches_fall_back() {
                 _ => None,
             });
             assert_eq!(told.unwrap_or(0), faces, "{name}");
-            assert!(CpuSurface::new(&mesh, scheme, 0).is_ok() == (faces == 0), "{name} {scheme:?}");
+            // Hexagons are refused or refined, and then none is left.
+            if mixed.surface.prepared().steps.is_empty() {
+                assert!(CpuSurface::new(&mesh, scheme, 0).is_ok() == (faces == 0), "{name} {scheme:?}");
+            }
         }
     }
     assert!(fallen > 1000, "{fallen}");

@@ -1,6 +1,7 @@
 // Second stage of the two-stage construction: the control points of a Gregory patch from the frames of its corners.
 // Each corner owns p, e+, e-, f+, f-. Rust twin: `gregory_points` in src/patch/gregory.rs.
-// variants: TRIANGLE, CAPTURE, TRIANGLE+CAPTURE, CAPTURE_POINTS, TRIANGLE+CAPTURE_POINTS, TEXCOORD, TRIANGLE+TEXCOORD
+// variants: CAPTURE, CAPTURE_POINTS, TEXCOORD, SHARED, SHARED+CAPTURE, SHARED+TEXCOORD
+// variants: TRIANGLE, TRIANGLE+CAPTURE, TRIANGLE+CAPTURE_POINTS, TRIANGLE+TEXCOORD, TRIANGLE+SHARED, TRIANGLE+SHARED+CAPTURE, TRIANGLE+SHARED+TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 5
@@ -32,5 +33,5 @@ void main() {
     // The face lies on the right of its minus edge.
     owned[gl_InvocationID][4] = face_point(p, minus, owned[before][1], cosine, in_limit[before].w,
                                            -transversal(corner.ring, corner.minus, centre));
-    finish_corner(in_patch_number[0]);
+    finish_framed_corner(corner, k);
 }

@@ -102,27 +102,33 @@ vec3 edge_point(Ring ring, uint j, vec3 centre, vec3 p, vec3 a, vec3 b) {
 // c_i, the mean of the vertices of face i; `first` and `second` are the ends of its edges.
 vec3 face_centroid(Ring ring, uint i, vec3 centre, vec3 first, vec3 second) {
     uint entry = ring_entries[ring.entries + 2u * i + 1u];
-    vec3 sum = centre + first + second;
-    return (entry & TRIANGLE_BIT) != 0u ? sum / 3.0 : (sum + vertex_position(entry)) / 4.0;
+    precise vec3 sum = centre + first + second;
+    precise vec3 of_three = sum / 3.0;
+    precise vec3 of_four = (sum + vertex_position(entry & ~TRIANGLE_BIT)) / 4.0;
+    return (entry & TRIANGLE_BIT) != 0u ? of_three : of_four;
 }
 
 // r_j, the transversal of edge j.
 vec3 transversal(Ring ring, uint j, vec3 centre) {
     vec3 here = edge_neighbour(ring, j);
+    precise vec3 r;
     if (ring.open && j == 0u) {
         vec3 next = edge_neighbour(ring, 1u);
         vec3 mean = face_centroid(ring, 0u, centre, here, next);
-        return (next - centre) / 3.0 + (4.0 * mean - 2.0 * (centre + here)) / 3.0;
+        r = (next - centre) / 3.0 + (4.0 * mean - 2.0 * (centre + here)) / 3.0;
+        return r;
     }
     uint before_j = (j == 0u ? ring.edges : j) - 1u;
     vec3 before = edge_neighbour(ring, before_j);
     vec3 mean_before = face_centroid(ring, before_j, centre, before, here);
     if (ring.open && j == ring.faces) {
-        return (centre - before) / 3.0 + (2.0 * (centre + here) - 4.0 * mean_before) / 3.0;
+        r = (centre - before) / 3.0 + (2.0 * (centre + here) - 4.0 * mean_before) / 3.0;
+        return r;
     }
     vec3 next = edge_neighbour(ring, j + 1u);
     vec3 mean = face_centroid(ring, j, centre, here, next);
-    return (next - before) / 6.0 + (2.0 / 3.0) * (mean - mean_before);
+    r = (next - before) / 6.0 + (2.0 / 3.0) * (mean - mean_before);
+    return r;
 }
 
 #endif

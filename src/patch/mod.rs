@@ -12,6 +12,7 @@
 pub mod acc;
 pub mod bicubic;
 mod blend;
+pub mod edge;
 mod fallback;
 pub mod gregory;
 pub mod pm;

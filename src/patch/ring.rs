@@ -86,7 +86,7 @@ pub struct RingValues<T> {
     pub centre: T,
     /// `a_j`, at the other end of edge j.
     pub edges: Vec<T>,
-    /// `d_i`, at the vertex of quad i opposite the centre. Not used for triangles.
+    /// `d_i`, at the vertex of quad i opposite the centre; of a pentagon the middle of the far edge. Not used for triangles.
     pub diagonals: Vec<T>,
 }
 
@@ -101,30 +101,41 @@ pub struct Frame<T> {
     pub b: T,
 }
 
-impl<T: Blend> RingValues<T> {
-    /// The ring with the value of `vertex(v)` at mesh vertex `v`.
-    pub fn new(topology: &Topology, ring: &Ring, vertex: impl Fn(u32) -> T) -> Self {
+impl<T> RingValues<T> {
+    /// The ring with the values of `vertex(h)`, at the vertex from which half-edge `h` starts, and of `opposite(h)` as
+    /// diagonal of the face in which `h` starts from the opposite vertex, or of a pentagon its far edge.
+    pub(crate) fn collect(
+        topology: &Topology,
+        ring: &Ring,
+        vertex: impl Fn(u32) -> T,
+        opposite: impl Fn(u32) -> T,
+    ) -> Self {
         let mut edges = Vec::with_capacity(ring.edges() as usize);
         let mut diagonals = Vec::with_capacity(ring.faces as usize);
         let mut last = ring.start;
         for h in topology.ring_half_edges(ring) {
             let head = topology.next(h);
-            edges.push(vertex(topology.mesh_vertex(head)));
-            let opposite = topology.next(head);
-            let mut diagonal = vertex(topology.mesh_vertex(opposite));
-            if topology.face_size(h) == 5 {
-                // The middle of a pentagon's far edge.
-                let other = vertex(topology.mesh_vertex(topology.next(opposite)));
-                diagonal = T::sum([(0.5, &diagonal), (0.5, &other)]);
-            }
-            diagonals.push(diagonal);
+            edges.push(vertex(head));
+            diagonals.push(opposite(topology.next(head)));
             last = h;
         }
         if ring.open {
-            edges.push(vertex(topology.mesh_vertex(topology.prev(last))));
+            edges.push(vertex(topology.prev(last)));
         }
-        let centre = vertex(topology.mesh_vertex(ring.start));
+        let centre = vertex(ring.start);
         Self { shape: RingShape::of(topology, ring), centre, edges, diagonals }
+    }
+}
+
+impl<T: Blend> RingValues<T> {
+    /// The ring with the value of `vertex(v)` at mesh vertex `v`.
+    pub fn new(topology: &Topology, ring: &Ring, vertex: impl Fn(u32) -> T) -> Self {
+        let at = |h: u32| vertex(topology.mesh_vertex(h));
+        let opposite = |h: u32| match topology.face_size(h) {
+            5 => T::sum([(0.5, &at(h)), (0.5, &at(topology.next(h)))]),
+            _ => at(h),
+        };
+        Self::collect(topology, ring, at, opposite)
     }
 
     fn edge(&self, j: usize) -> &T {
@@ -227,6 +238,22 @@ impl<T: Blend> RingValues<T> {
             T::sum([(1.0, &frame.p), (cos, &frame.a), (sin, &frame.b)])
         } else {
             T::sum([(2.0 / 3.0, &self.centre), (1.0 / 3.0, self.edge(j))])
+        }
+    }
+
+    /// The vector across edge `j` at this vertex, from right to left: `(3/2) (e_{j+1} - e_{j-1})`, with the edge point that an
+    /// open ring lacks beyond its ends mirrored. `w0` and, negated, `w3` of patch_maths B.
+    pub fn across(&self, frame: &Frame<T>, j: usize) -> T {
+        let edges = self.edges.len();
+        let j = j % edges;
+        let edge = |j: usize| self.edge_point(frame, j % edges);
+        let cosine = self.shape.cosine();
+        if self.shape.open && j == 0 {
+            T::sum([(3.0, &edge(1)), (-3.0 * cosine, &edge(0)), (3.0 * cosine - 3.0, &frame.p)])
+        } else if self.shape.open && j == edges - 1 {
+            T::sum([(-3.0, &edge(j - 1)), (3.0 * cosine, &edge(j)), (3.0 - 3.0 * cosine, &frame.p)])
+        } else {
+            T::sum([(1.5, &edge(j + 1)), (-1.5, &edge(j + edges - 1))])
         }
     }
 

@@ -113,6 +113,18 @@ impl Scheme {
         }
     }
 
+    /// Whether the first three control points that a corner of a patch owns are the limit point of its [`Scheme::frame`] and
+    /// the edge points at its plus and its minus edge ([`RingValues::edge_point`]): the boundary is then the same
+    /// on both sides of an edge.
+    pub fn shares_frame(self, kind: PatchKind) -> bool {
+        kind == PatchKind::Regular || self == Self::Gregory
+    }
+
+    /// Whether patches of all kinds share what they have in common along edges to the last bit ([`Scheme::shares_frame`]).
+    pub fn is_watertight(self) -> bool {
+        PatchKind::ALL.into_iter().all(|kind| self.shares_frame(kind))
+    }
+
     /// The control points of the patch of one face, `vertex(v)` being the value at mesh vertex `v`. Orders are those of
     /// [`bicubic`] for regular faces, else of the scheme's own module.
     ///

@@ -12,6 +12,8 @@ pub(super) struct PatchStages {
     pub kind: PatchKind,
     pub construction: Construction,
     pub spacing: Spacing,
+    /// Whether normals are shared.
+    pub shared: bool,
 }
 
 /// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch.
@@ -47,6 +49,9 @@ impl PatchStages {
             PatchKind::Pentagon => "_PENTAGON",
             PatchKind::Regular | PatchKind::IrregularQuad => "",
         };
+        if self.shared && capture != Capture::Points {
+            name += "_SHARED";
+        }
         name += match capture {
             Capture::Points => "_CAPTURE_POINTS",
             Capture::Vertices | Capture::Grid => "_CAPTURE",
@@ -56,15 +61,11 @@ impl PatchStages {
         find(&name)
     }
 
-    pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> Result<&'static [u32], GpuError> {
+    pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> Result<Vec<u32>, GpuError> {
         let [_, file] = files(self.scheme, self.kind);
         let mut name = format!("EVALUATE_{file}_TESE");
-        if capture != Capture::Grid {
-            name += match self.spacing {
-                Spacing::Equal => "",
-                Spacing::FractionalOdd => "_FRACTIONAL_ODD",
-                Spacing::FractionalEven => "_FRACTIONAL_EVEN",
-            };
+        if self.shared && capture != Capture::Points {
+            name += "_SHARED";
         }
         name += match capture {
             Capture::Grid => "_CAPTURE_GRID",
@@ -72,8 +73,32 @@ impl PatchStages {
             Capture::Off if texcoords => "_TEXCOORD",
             Capture::Off | Capture::Points => "",
         };
-        find(&name)
+        let spacing = if capture == Capture::Grid { Spacing::Equal } else { self.spacing };
+        Ok(spaced(find(&name)?, spacing))
     }
+}
+
+/// A tessellation evaluation shader with another spacing: the files all say `equal_spacing`.
+fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
+    // SPIR-V 1.6, 2.3 and 3.6: five words of header; an instruction's first word is its length and its opcode.
+    const HEADER_WORDS: usize = 5;
+    const OP_EXECUTION_MODE: u32 = 16;
+    const SPACING_EQUAL: u32 = 1;
+    let mode = match spacing {
+        Spacing::Equal => SPACING_EQUAL,
+        Spacing::FractionalEven => 2,
+        Spacing::FractionalOdd => 3,
+    };
+    let mut code = code.to_vec();
+    let mut at = HEADER_WORDS;
+    while at < code.len() {
+        let (words, opcode) = ((code[at] >> 16) as usize, code[at] & 0xffff);
+        if opcode == OP_EXECUTION_MODE && code[at + 2] == SPACING_EQUAL {
+            code[at + 2] = mode;
+        }
+        at += words.max(1);
+    }
+    code
 }
 
 fn find(name: &str) -> Result<&'static [u32], GpuError> {
@@ -96,7 +121,7 @@ mod tests {
                 }
                 for construction in Construction::ALL {
                     for spacing in [Spacing::Equal, Spacing::FractionalOdd, Spacing::FractionalEven] {
-                        let stages = PatchStages { scheme, kind, construction, spacing };
+                        let stages = PatchStages { scheme, kind, construction, spacing, shared: false };
                         for (capture, texcoords) in [
                             (Capture::Off, false),
                             (Capture::Off, true),

@@ -178,7 +178,7 @@ impl RingTypes {
 
 impl RingValues<Row> {
     /// A ring whose values are unknowns, numbered as in a table: 0 for the vertex, then `a_0, d_0, a_1, d_1, ..`.
-    fn unknowns(shape: RingShape) -> Self {
+    pub(super) fn unknowns(shape: RingShape) -> Self {
         Self {
             centre: Row::unit(0),
             edges: (0..shape.edges() as u32).map(|j| Row::unit(1 + 2 * j)).collect(),
