@@ -89,7 +89,8 @@ pub struct ErrorReport {
 /// ([`LimitSurface`]); (u, v) of the part around corner k is taken to be the point of the triangle that is bilinear
 /// between corner k, the middles of its edges and the centre. That is a convention: other ways to lay the parameters of
 /// a triangle over those of the limit surface give other distances, and slightly other angles. Where the mesh is refined
-/// before patches are made, samples are those of the refined faces.
+/// before patches are made, samples are those of the refined faces. A mesh with faces of five or more corners is refined
+/// once for every scheme, [`Scheme::Pm`] too, so that all are measured on the same faces.
 ///
 /// **Nearest distance.** As many points of both surfaces, spread evenly over the area, each against the other surface
 /// as a mesh of triangles (about two million, at least 32 a patch, at most 2048). Chords of such a mesh are off the

@@ -165,6 +165,37 @@ fn patches_are_the_same_from_all_makers() {
     }
 }
 
+/// A pentagonal prism: with the scheme pm each of its pentagons is five patches, made and evaluated alike by all.
+#[test]
+fn pentagons_are_five_patches() {
+    let prism = folder("prism").join("prism.obj");
+    let at = |i: usize, y: f64| {
+        let (sin, cos) = (i as f64 * 72f64.to_radians()).sin_cos();
+        format!("v {cos} {y} {}\n", -sin)
+    };
+    let vertices: String = (0..10).map(|i| at(i % 5, (i / 5) as f64)).collect();
+    let sides: String = (1..6).map(|i| format!("f {i} {} {} {}\n", i % 5 + 1, i % 5 + 6, i + 5)).collect();
+    fs::write(&prism, format!("{vertices}f 6 7 8 9 10\nf 5 4 3 2 1\n{sides}")).unwrap();
+    let of = |command: &str| json(&format!("{command} {} --scheme pm", prism.display()));
+    let kinds = serde_json::json!({ "regular": 0, "irregular_quad": 5, "triangle": 0, "pentagon": 10 });
+    assert_eq!(of("info")["patches"], kinds);
+    let (cpu, gpu) = (of("patches --construction cpu"), of("patches --construction stencil"));
+    for (i, (a, b)) in cpu["patches"].as_array().unwrap().iter().zip(gpu["patches"].as_array().unwrap()).enumerate() {
+        let sub = if i < 10 { (i % 5) as i64 } else { -1 };
+        assert_eq!((&a["sub"], length(&a["points"])), (&sub.into(), if i < 10 { 30 } else { 24 }));
+        assert_close(&a["points"], &b["points"], 1e-5);
+    }
+    let (cpu, gpu) = (of("sample --grid 4 --cpu"), of("sample --grid 4"));
+    for (a, b) in cpu["faces"].as_array().unwrap().iter().zip(gpu["faces"].as_array().unwrap()) {
+        assert_close(&a["positions"], &b["positions"], 1e-5);
+    }
+    let text = String::from_utf8(
+        run(&format!("render {} --scheme pm -o {}", prism.display(), prism.with_extension("png").display())).stdout,
+    )
+    .unwrap();
+    assert!(text.contains("15 patches (0 regular, 5 irregular, 0 triangles, 10 of pentagons)"), "{text}");
+}
+
 #[test]
 fn samples_are_the_same_on_both_sides() {
     for shape in ["creature-mixed --scheme c-patch --fallback gregory", "cloth"] {
