@@ -19,8 +19,8 @@ float reach() {
 }
 
 vec4 clip_row(int i) {
-    return vec4(view.view_projection[0][i], view.view_projection[1][i], view.view_projection[2][i],
-                view.view_projection[3][i]);
+    mat4 m = view.measured_view_projection;
+    return vec4(m[0][i], m[1][i], m[2][i], m[3][i]);
 }
 
 #if HULL > 0
@@ -41,7 +41,7 @@ void examine_corner() {
                 beyond &= ~(1u << plane);
             }
         }
-        vec4 clip = view.view_projection * at;
+        vec4 clip = view.measured_view_projection * at;
         vec2 pixels = (0.5 + 0.5 * clip.xy / clip.w) * view.viewport.xy;
         box = vec4(min(box.xy, pixels), max(box.zw, pixels));
         if (!(clip.w > view.viewport.z)) {
@@ -124,7 +124,7 @@ bool faces_away() {
         size = max(max(size, length(p[k] - centre)), max(length(plus[k] - centre), length(minus[k] - centre)));
         size = max(size, length(inner[k] - centre) + radius);
     }
-    vec3 to_eye = view.eye.xyz - centre;
+    vec3 to_eye = view.measured_eye.xyz - centre;
     float spread = size / max(length(to_eye), 1e-20);
     if (sine >= 1.0 || spread >= 1.0) {
         return false;

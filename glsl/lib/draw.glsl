@@ -7,8 +7,11 @@ layout(set = 0, binding = 0, std140) uniform View {
     mat4 view_projection;
     vec4 eye;    // xyz: in world space
     vec4 light;  // xyz: towards the light, in world space, of length one
-    vec4 viewport;  // width and height in pixels, the least distance of what is seen, and what a length of one at a distance
-                    // of one is of half the height
+    // The view that factors and culling go by.
+    mat4 measured_view_projection;
+    vec4 measured_eye;
+    vec4 viewport;  // its width and height in pixels, the least distance of what is seen, and what a length of one at a
+                    // distance of one is of half the height
 } view;
 
 layout(push_constant, std430) uniform Draw {

@@ -33,7 +33,7 @@ uint metric() {
 
 // x, y in pixels and the distance from the eye's plane. What is behind the eye is taken as just before it.
 vec3 to_pixels(vec3 position) {
-    vec4 clip = to_clip(to_world(position));
+    precise vec4 clip = view.measured_view_projection * vec4(to_world(position), 1.0);
     precise float w = max(clip.w, view.viewport.z);
     precise vec3 pixels = vec3(0.5 * view.viewport.xy * (clip.xy / w), w);
     return pixels;

@@ -1,6 +1,7 @@
 //! `subdiv render`: a picture of a mesh.
 
 use super::camera::CameraArgs;
+use super::displacement::{DisplacementArgs, texture};
 use super::error::CliError;
 use super::error_map::{ErrorMap, ErrorSet};
 use super::info::Patches;
@@ -11,16 +12,67 @@ use super::picture::unpremultiply;
 use super::shading::Shading;
 use super::source::{DeviceArgs, MeshArgs, tell_notices};
 use ash::vk;
+use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors};
 use ash_subdiv::gpu::DeviceProperties;
-use ash_subdiv::headless::{Headless, HeadlessError, Offscreen, OffscreenDesc, save_png};
+use ash_subdiv::headless::{Headless, HeadlessError, Offscreen, OffscreenDesc, Texels, save_png};
 use ash_subdiv::measure::Quantity;
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::table::CpuSurface;
-use ash_subdiv::{Construction, ControlMesh, ModelOptions, Options, Renderer, Spacing, Target, View};
-use clap::Args;
+use ash_subdiv::renderer::{Cull, DisplacementId, Factor};
+use ash_subdiv::{Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Spacing, Target, View};
+use clap::{Args, ValueEnum};
 use glam::DVec3;
 use serde::Serialize;
 use std::path::PathBuf;
+
+/// How finely patches are cut, and which are left out.
+#[derive(Debug, Args)]
+struct FactorArgs {
+    /// The tessellation factor of every patch, from 1 to 64.
+    #[arg(long, default_value_t = 8.0, value_parser = parse::factor)]
+    factor: f32,
+    /// Factors such that segments are about this many pixels long, instead of one for all.
+    #[arg(long, value_parser = parse::positive, conflicts_with_all = ["factor", "bend"])]
+    pixels: Option<f32>,
+    /// Factors such that edges stray from their curves by about this many pixels: more where they are bent.
+    #[arg(long, value_name = "PIXELS", value_parser = parse::positive, conflicts_with = "factor")]
+    bend: Option<f32>,
+    /// Leave out patches that are not seen: `back` those that face away, `frustum` those out of the picture, `small` those
+    /// between pixels (with one sample a pixel).
+    #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
+    cull: Vec<CullArg>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum CullArg {
+    Back,
+    Frustum,
+    Small,
+}
+
+impl FactorArgs {
+    fn factor(&self) -> Factor {
+        match (self.pixels, self.bend) {
+            (Some(pixels), _) => Factor::Pixels(pixels),
+            (None, Some(pixels)) => Factor::Curvature(pixels),
+            (None, None) => Factor::Uniform(self.factor),
+        }
+    }
+
+    fn cull(&self) -> Cull {
+        let has = |which| self.cull.contains(&which);
+        Cull { frustum: has(CullArg::Frustum), back: has(CullArg::Back), small: has(CullArg::Small) }
+    }
+
+    /// In words.
+    fn text(&self) -> String {
+        match self.factor() {
+            Factor::Pixels(pixels) => format!("segments of {pixels} pixels"),
+            Factor::Curvature(pixels) => format!("bends within {pixels} pixels"),
+            factor => format!("factor {}", factor.value()),
+        }
+    }
+}
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -33,9 +85,8 @@ pub(super) struct RenderArgs {
     /// How the GPU makes the control points.
     #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::construction())]
     construction: Construction,
-    /// The tessellation factor of every patch, from 1 to 64.
-    #[arg(long, default_value_t = 8.0, value_parser = parse::factor)]
-    factor: f32,
+    #[command(flatten)]
+    factor: FactorArgs,
     /// Where the tessellator puts its vertices along an edge.
     #[arg(long, default_value = "equal", value_parser = parse::spacing())]
     spacing: Spacing,
@@ -57,19 +108,25 @@ pub(super) struct RenderArgs {
     background: Colour,
     #[command(flatten)]
     camera: CameraArgs,
+    #[command(flatten, next_help_heading = "Displacement")]
+    displacement: DisplacementArgs,
     #[command(flatten, next_help_heading = "Device")]
     device: DeviceArgs,
 }
 
 const EXAMPLES: &str = "\
-JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, construction, factor,
-spacing, shading, samples, device, error{top, largest} (null unless an error is shown).
+JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, construction, factor
+(null unless one for all), pixels, bend (null unless given), spacing, shading, samples, device,
+error{top, largest} (null unless an error is shown),
+statistics{patches_drawn, patches_culled, largest_factor, factors_clamped}: factors_clamped tells whether an
+edge asked for more segments than the device has.
 
 Examples:
   subdiv render --shape creature -o creature.png
   subdiv render model.obj --shading wireframe --factor 3.5 --spacing odd -o wires.png
   subdiv render scene.glb --mesh-name Head --background transparent --yaw 40 -o head.png
   subdiv render model.obj --scheme acc --shading error-normal --error-max 0.1 -o errors.png
+  subdiv render --shape creature --displacement scales --displacement-scale 0.01 --pixels 4 -o scales.png
   subdiv render --shape cloth --eye 3,4,5 --target 0,0,0 --fov 25 --size 1920x1080 -o cloth.png";
 
 #[derive(Serialize)]
@@ -78,12 +135,24 @@ struct RenderOut<'a> {
     size: [u32; 2],
     patches: Patches,
     construction: &'static str,
-    factor: f32,
+    factor: Option<f32>,
+    pixels: Option<f32>,
+    bend: Option<f32>,
     spacing: &'static str,
     shading: String,
     samples: u32,
     device: &'a str,
     error: Option<ErrorOut>,
+    statistics: Option<StatisticsOut>,
+}
+
+/// What the control shader made of the factors.
+#[derive(Clone, Copy, Serialize)]
+struct StatisticsOut {
+    patches_drawn: usize,
+    patches_culled: usize,
+    largest_factor: f32,
+    factors_clamped: bool,
 }
 
 #[derive(Serialize)]
@@ -104,6 +173,8 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let map = args.error_map(&mesh, &progress)?;
     progress.now("building tables");
     let mut options = ModelOptions { spacing: args.spacing, ..args.mesh.model_options(args.construction) };
+    let texels = args.displacement.texels()?;
+    options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
     let mut drawn = &mesh;
     if let Some(map) = &map {
         (drawn, options.refine) = (&map.mesh, 0);
@@ -116,12 +187,14 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let [width, height] = args.size;
     let size = [width, height - legend];
     let view = args.camera.view(&args.seen_points(&mesh)?, f64::from(size[0]) / f64::from(size[1]))?;
+    let view = view.sized(size[0], size[1]);
     progress.now("drawing");
-    let (samples, device, mut pixels) = args.device.run(|headless| {
+    let (samples, device, mut pixels, statistics) = args.device.run(|headless| {
         let samples = args.check_limits(headless.properties())?;
-        let picture = Picture { size, samples, view, map: map.as_ref() };
+        let picture = Picture { size, samples, view, map: map.as_ref(), texels: texels.as_ref() };
+        let statistics = args.statistics(headless, &picture, drawn, &options)?;
         let pixels = args.draw(headless, &picture, tables, drawn, &options)?;
-        Ok((samples, headless.properties().name.clone(), pixels))
+        Ok((samples, headless.properties().name.clone(), pixels, statistics))
     })?;
     progress.now("writing the picture");
     if args.background.is_transparent() {
@@ -141,17 +214,20 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
             size: args.size,
             patches,
             construction: args.construction.name(),
-            factor: args.factor,
+            factor: matches!(args.factor.factor(), Factor::Uniform(_)).then_some(args.factor.factor),
+            pixels: args.factor.pixels,
+            bend: args.factor.bend,
             spacing: parse::spacing_name(args.spacing),
             shading: args.shading.name(),
             samples,
             device: &device,
+            statistics,
             error: map.map(|ErrorMap { top, largest, .. }| ErrorOut { top, largest }),
         });
     }
     output::with_stdout(|out| {
-        let factor = args.factor;
-        writeln!(out, "{file}: {width} x {height}, {patches}, factor {factor}, {samples} samples, on {device}")?;
+        let factor = args.factor.text();
+        writeln!(out, "{file}: {width} x {height}, {patches}, {factor}, {samples} samples, on {device}")?;
         if let Some(ErrorMap { top, largest, .. }) = map {
             let [top, largest] = [top, largest].map(output::short);
             writeln!(out, "the scale ends at {top} (--error-max); the largest error is {largest}")?;
@@ -167,6 +243,7 @@ struct Picture<'p> {
     samples: u32,
     view: View,
     map: Option<&'p ErrorMap>,
+    texels: Option<&'p Texels>,
 }
 
 impl RenderArgs {
@@ -184,6 +261,10 @@ impl RenderArgs {
                 }
             };
         };
+        if self.displacement.is_given() {
+            let message = "--displacement: the error of a displaced surface is not known: leave one of both out";
+            return Err(CliError::Usage(message.into()));
+        }
         progress.now("measuring");
         let surface = self.mesh.cpu_surface(mesh, progress)?;
         let [low, high] = mesh.bounds();
@@ -235,6 +316,40 @@ impl RenderArgs {
         }
     }
 
+    /// What the factors of the picture come to; none where the device cannot tell, or nothing was asked for.
+    fn statistics(
+        &self,
+        headless: &Headless,
+        picture: &Picture,
+        mesh: &ControlMesh,
+        options: &ModelOptions,
+    ) -> Result<Option<StatisticsOut>, CliError> {
+        let (factor, cull) = (self.factor.factor(), self.factor.cull());
+        let asked = cull != Cull::NONE || !matches!(factor, Factor::Uniform(_));
+        if !asked || !headless.context().features().vertex_stores {
+            return Ok(None);
+        }
+        let displacement = self.displacement.amount(mesh);
+        let draw = CaptureDraw { view: picture.view, cull, displacement, ..CaptureDraw::new(factor) };
+        let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
+        let captured = match &texture {
+            // SAFETY: the texture is ready to be read, and outlives what is captured.
+            Some(texture) => unsafe { Captured::displaced(headless, mesh, options, texture.into())? },
+            None => Captured::new(headless, mesh, options)?,
+        };
+        let factors = captured.factors(&draw)?;
+        let max = headless.properties().max_tessellation_level as f32;
+        let asked = |f: &CapturedFactors| f.asked.into_iter().fold(0.0, f32::max);
+        let culled = factors.iter().filter(|f| f.culled).count();
+        let largest = factors.iter().filter(|f| !f.culled).map(asked).fold(1.0, f32::max);
+        Ok(Some(StatisticsOut {
+            patches_drawn: factors.len() - culled,
+            patches_culled: culled,
+            largest_factor: largest.min(max),
+            factors_clamped: factors.iter().any(|f| asked(f) > max),
+        }))
+    }
+
     /// Draws the picture: rows from the top, four bytes RGBA a pixel.
     fn draw(
         &self,
@@ -248,6 +363,7 @@ impl RenderArgs {
         let [width, height] = picture.size;
         let desc = OffscreenDesc { samples, color: self.shading.format(), ..OffscreenDesc::new(width, height) };
         let target = Offscreen::new(headless, &desc)?;
+        let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
         let errors = picture.map.map(|map| ErrorSet::new(headless.context(), map)).transpose()?;
         let options = Options {
             styles: self.shading.styles(),
@@ -259,8 +375,17 @@ impl RenderArgs {
         // SAFETY: the layout outlives the renderer, whose shaders fit it; every submission is waited for, so the renderer
         // is dropped when idle.
         let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options)? };
+        if let Some(texture) = &texture {
+            // SAFETY: the texture is ready to be read, and outlives the renderer.
+            unsafe { renderer.add_displacement(texture.into()) };
+        }
         let model = renderer.add_tables(tables, &mesh.positions_f32(), model_options)?;
-        let draws = self.shading.draws(model, self.factor);
+        let item = DrawItem {
+            cull: self.factor.cull(),
+            displacement: self.displacement.amount(mesh),
+            ..DrawItem::new(model, self.factor.factor())
+        };
+        let draws = self.shading.draws(item);
         // SAFETY: the command buffer is being recorded, outside rendering.
         headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
         let record = |cmd| {

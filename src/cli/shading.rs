@@ -5,7 +5,7 @@ use ash::vk;
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::measure::Quantity;
 use ash_subdiv::renderer::{Fragment, Geometry};
-use ash_subdiv::{DrawItem, ModelId, Style};
+use ash_subdiv::{DrawItem, Style};
 use clap::ValueEnum;
 
 /// What the picture shows.
@@ -117,13 +117,10 @@ impl Shading {
         self.layers().into_iter().map(|layer| layer.style).collect()
     }
 
-    /// A draw for each layer, in order.
-    pub(super) fn draws(self, model: ModelId, factor: f32) -> Vec<DrawItem> {
-        let draw = |(style, layer): (usize, Layer)| DrawItem {
-            style,
-            colors: layer.colours.map(Colour::linear),
-            ..DrawItem::new(model, factor)
-        };
+    /// A draw for each layer, in order, else like this one.
+    pub(super) fn draws(self, item: DrawItem) -> Vec<DrawItem> {
+        let draw =
+            |(style, layer): (usize, Layer)| DrawItem { style, colors: layer.colours.map(Colour::linear), ..item };
         self.layers().into_iter().enumerate().map(draw).collect()
     }
 }

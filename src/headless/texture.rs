@@ -58,6 +58,14 @@ impl Texels {
         values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
     }
 
+    /// The same this many times side by side, and that many rows of it.
+    pub fn tiled(&self, times: u32) -> Self {
+        let row = (self.width * self.channels) as usize;
+        let rows = self.values.chunks_exact(row.max(1)).flat_map(|row| row.repeat(times as usize));
+        let values = rows.collect::<Vec<_>>().repeat(times as usize);
+        Self { width: self.width * times, height: self.height * times, channels: self.channels, values }
+    }
+
     /// Half as wide and high, each texel the mean of those it covers.
     fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));

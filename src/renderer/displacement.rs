@@ -55,8 +55,8 @@ impl DisplacementMap {
 pub struct DisplacementId(pub(super) usize);
 
 impl DisplacementId {
-    /// Of the first map that a renderer is told of.
-    pub(crate) const FIRST: Self = Self(0);
+    /// Of the first map that a renderer is told of: for tables that are built before there is a renderer.
+    pub const FIRST: Self = Self(0);
 }
 
 /// The maps that a renderer knows, and one for models without: every descriptor has to be written (lavapipe bug C).

@@ -167,7 +167,7 @@ impl Renderer {
         if !factor.is_valid() {
             return Err(Error::BadFactor { id, factor });
         }
-        if view.viewport.contains(&0.0) && (factor.needs_viewport() || item.cull.small) {
+        if view.measured().viewport.contains(&0.0) && (factor.needs_viewport() || item.cull.small) {
             return Err(Error::NoViewport { id });
         }
         let [scale, bias] = item.displacement;

@@ -13,6 +13,8 @@ pub(super) struct ViewData {
     pub view_projection: [[f32; 4]; 4],
     pub eye: [f32; 4],
     pub light: [f32; 4],
+    pub measured_view_projection: [[f32; 4]; 4],
+    pub measured_eye: [f32; 4],
     pub viewport: [f32; 4],
 }
 
@@ -54,7 +56,7 @@ pub(super) fn half_not_below(x: f32) -> u16 {
     }
 }
 
-const _: () = assert!(size_of::<ViewData>() == 112);
+const _: () = assert!(size_of::<ViewData>() == 192);
 const _: () = assert!(std::mem::offset_of!(DrawConstants, colour) == 96);
 const _: () = assert!(std::mem::offset_of!(DrawConstants, first_corner) == 112);
 // Every Vulkan device has at least 128 bytes of push constants.

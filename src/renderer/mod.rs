@@ -44,7 +44,7 @@ pub use options::{
     requirements,
 };
 pub use tables::{Edges, ModelTables, TableBytes};
-pub use view::View;
+pub use view::{MeasuredFrom, View};
 
 pub(crate) use pipelines::Capture;
 

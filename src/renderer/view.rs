@@ -16,6 +16,20 @@ pub struct View {
     /// Width and height of the viewport in pixels, for factors in pixels ([`Factor`](super::Factor)) and for leaving out
     /// small patches; zero if it is not known.
     pub viewport: [f32; 2],
+    /// What factors and culling go by, if not by this view itself: such as the main view for its shadows, so that both are of
+    /// the same triangles (and then without culling), or a view that another one is to look at.
+    pub measured_from: Option<MeasuredFrom>,
+}
+
+/// A view by which factors and culling go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredFrom {
+    /// As [`View::view_projection`].
+    pub view_projection: [[f32; 4]; 4],
+    /// As [`View::eye`].
+    pub eye: [f32; 3],
+    /// As [`View::viewport`].
+    pub viewport: [f32; 2],
 }
 
 impl View {
@@ -38,7 +52,19 @@ impl View {
             eye: eye.into(),
             light: light.normalize_or(Vec3::Y).into(),
             viewport: [0.0; 2],
+            measured_from: None,
         }
+    }
+
+    /// The same view, with factors and culling as in another.
+    pub fn measured_from(self, other: &View) -> Self {
+        Self { measured_from: Some(other.measured()), ..self }
+    }
+
+    /// What factors and culling go by.
+    pub(super) fn measured(&self) -> MeasuredFrom {
+        let Self { view_projection, eye, viewport, .. } = *self;
+        self.measured_from.unwrap_or(MeasuredFrom { view_projection, eye, viewport })
     }
 
     /// The same view, drawn this many pixels wide and high.
@@ -80,13 +106,15 @@ impl View {
     pub(super) fn data(&self) -> ViewData {
         let [x, y, z] = self.eye;
         let light = Vec3::from(self.light).normalize_or(Vec3::Y);
-        let rows = Mat4::from_cols_array_2d(&self.view_projection).transpose();
+        let MeasuredFrom { view_projection, eye: [eye_x, eye_y, eye_z], viewport: [width, height] } = self.measured();
+        let rows = Mat4::from_cols_array_2d(&view_projection).transpose();
         let up = rows.y_axis.truncate().length();
-        let [width, height] = self.viewport;
         ViewData {
             view_projection: self.view_projection,
             eye: [x, y, z, 1.0],
             light: light.extend(0.0).into(),
+            measured_view_projection: view_projection,
+            measured_eye: [eye_x, eye_y, eye_z, 1.0],
             viewport: [width, height, nearest(rows), up],
         }
     }

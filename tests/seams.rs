@@ -1,0 +1,292 @@
+//! Not one crack: bits of positions and normals where patches meet, under any factors, with displacement, for any order of
+//! faces; and that each of the things that make it so is needed.
+#![cfg(all(feature = "headless", feature = "measure", feature = "png"))]
+
+mod common;
+
+use ash_subdiv::capture::{CaptureDraw, Captured, Which};
+use ash_subdiv::headless::{Headless, Texels, Texture};
+use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
+use ash_subdiv::mesh::FaceVarying;
+use ash_subdiv::renderer::{Cull, Factor};
+use ash_subdiv::{
+    Construction, ControlMesh, MeshData, ModelOptions, ReadOptions, Spacing, View, read, shape, shapes,
+};
+use common::random::{random_creased_mesh, random_mesh};
+use std::path::Path;
+use std::process::Command;
+
+const SIDE: u32 = 200;
+/// Of the bounding box's diagonal.
+const DISPLACEMENT: f32 = 0.05;
+
+fn scales(headless: &Headless) -> Texture {
+    let texels = Texels::open("assets/scales.png", false).expect("the built-in height map");
+    Texture::new(headless, "scales", &texels).expect("a texture")
+}
+
+fn diagonal(mesh: &ControlMesh) -> f32 {
+    let [low, high] = mesh.bounds();
+    (high - low).length() as f32
+}
+
+fn view(mesh: &ControlMesh) -> View {
+    View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0).sized(SIDE, SIDE)
+}
+
+fn with_texcoords(mesh: ControlMesh) -> ControlMesh {
+    if mesh.data().texcoords.is_some() { mesh } else { with_seams_everywhere(&mesh).expect("the same mesh") }
+}
+
+/// Compares a mesh drawn with random factors, and with those that a view asks for; displaced or not. Gives what differs.
+fn tally(headless: &Headless, mesh: &ControlMesh, options: &ModelOptions, texture: Option<&Texture>, seed: u64) -> Tally {
+    let options = ModelOptions { edge_factors: true, shared_normals: true, ..options.clone() };
+    let captured = match texture {
+        // SAFETY: the texture outlives what is captured.
+        Some(texture) => unsafe { Captured::displaced(headless, mesh, &options, texture.into()) },
+        None => Captured::new(headless, mesh, &options),
+    };
+    let captured = captured.expect("a model");
+    let seams = Seams::new(mesh, options.refine, captured.tables()).expect("small");
+    let edges = captured.tables().edges().expect("asked for").vertices.len();
+    let displacement = if texture.is_some() { [DISPLACEMENT * diagonal(mesh), 0.0] } else { [0.0; 2] };
+    let mut sum = Tally::default();
+    for factor in [Factor::Edges(1.0), Factor::Pixels(9.0)] {
+        // As many as make enough vertices of a small mesh.
+        let most = (120_000.0 / edges as f32).clamp(9.0, 60.0);
+        let edge_factors = random_factors(edges, most, seed);
+        let draw = CaptureDraw { view: view(mesh), edge_factors, displacement, ..CaptureDraw::new(factor) };
+        sum.add(compare(&captured, &seams, &draw, true).expect("a capture"));
+    }
+    sum
+}
+
+const SPACINGS: [Spacing; 3] = [Spacing::FractionalOdd, Spacing::FractionalEven, Spacing::Equal];
+
+fn assert_watertight(headless: &Headless, name: &str, mesh: &ControlMesh, texture: &Texture, seed: u64) -> u64 {
+    let mut samples = 0;
+    for (i, construction) in Construction::ALL.into_iter().enumerate() {
+        for displaced in [false, true] {
+            let spacing = SPACINGS[(seed as usize + i) % 3];
+            let options = ModelOptions { construction, spacing, ..ModelOptions::default() };
+            let tally = tally(headless, mesh, &options, displaced.then_some(texture), seed);
+            assert!(tally.is_watertight(), "{name} {construction:?} {spacing:?} displaced {displaced}: {tally:?}");
+            samples += tally.samples;
+        }
+    }
+    samples
+}
+
+#[test]
+fn shapes_are_watertight() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    let mut samples = 0;
+    for (info, seed) in shapes().iter().zip(0..) {
+        let mesh = with_texcoords(shape(info.name).expect("built in"));
+        samples += assert_watertight(&headless, info.name, &mesh, &texture, seed);
+    }
+    for seed in 0..3 {
+        for mesh in [random_mesh(seed), random_creased_mesh(seed)] {
+            samples += assert_watertight(&headless, "random", &with_texcoords(mesh), &texture, seed);
+        }
+    }
+    assert!(samples > 1_000_000, "{samples} pairs");
+    drop(texture);
+    headless.finish_silent();
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared/meshes")]
+fn models_are_watertight() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    let files = std::fs::read_dir(common::shared().join("meshes")).expect("../shared/meshes");
+    let mut files: Vec<_> = files.map(|file| file.expect("readable").path()).collect();
+    files.retain(|file| file.extension().is_some_and(|e| e == "obj") && file.file_stem() != Some("catmark_fan".as_ref()));
+    files.sort();
+    for (file, seed) in files.iter().zip(0..) {
+        let options = ReadOptions { drop_isolated: true, ..ReadOptions::default() };
+        let mesh = with_texcoords(read(file, &options).expect("a mesh"));
+        assert_watertight(&headless, &file.display().to_string(), &mesh, &texture, seed);
+    }
+    drop(texture);
+    headless.finish_silent();
+}
+
+/// The same surface with faces in another order, and every face from another of its corners on.
+fn shuffled(mesh: &ControlMesh, seed: u64) -> ControlMesh {
+    let keys = random_factors(mesh.face_count(), 5.0, seed);
+    let mut order: Vec<usize> = (0..mesh.face_count()).collect();
+    order.sort_by(|&a, &b| keys[a].total_cmp(&keys[b]));
+    let data = mesh.data();
+    let texcoords = data.texcoords.as_ref();
+    let (mut face_sizes, mut face_vertices, mut indices) = (Vec::new(), Vec::new(), Vec::new());
+    for face in order {
+        let corners: Vec<usize> = mesh.face_corners(face as u32).collect();
+        face_sizes.push(corners.len() as u32);
+        for k in 0..corners.len() {
+            let h = corners[(k + keys[face] as usize) % corners.len()];
+            face_vertices.push(data.face_vertices[h]);
+            indices.extend(texcoords.map(|t| t.indices[h]));
+        }
+    }
+    let texcoords = texcoords.map(|t| FaceVarying { values: t.values.clone(), indices });
+    ControlMesh::new(MeshData { face_sizes, face_vertices, texcoords, ..data.clone() }).expect("the same mesh")
+}
+
+#[test]
+fn order_of_faces_and_corners_does_not_matter() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    for (name, seed) in ["creature-mixed", "machine-part", "valences"].into_iter().zip(7..) {
+        let mesh = shuffled(&with_texcoords(shape(name).expect("built in")), seed);
+        assert_watertight(&headless, name, &mesh, &texture, seed);
+    }
+    drop(texture);
+    headless.finish_silent();
+}
+
+#[test]
+fn closed_shapes_have_no_holes_in_pictures() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    for (name, seed) in ["creature", "creature-mixed", "machine-part", "tetrahedron"].into_iter().zip(0..) {
+        let mesh = with_texcoords(shape(name).expect("built in"));
+        assert_eq!(mesh.boundary_edge_count(), 0, "{name} is closed");
+        for (displaced, factor) in [(false, Factor::Edges(1.0)), (true, Factor::Edges(1.0)), (true, Factor::Pixels(5.0))] {
+            let spacing = SPACINGS[seed as usize % 3];
+            let options = ModelOptions { spacing, edge_factors: true, shared_normals: true, ..ModelOptions::default() };
+            let tables = ash_subdiv::renderer::ModelTables::new(&mesh, &options).expect("tables");
+            let edges = tables.edges().expect("asked for").vertices.len();
+            let draw = CaptureDraw {
+                view: view(&mesh),
+                edge_factors: random_factors(edges, 9.0, seed),
+                displacement: [if displaced { DISPLACEMENT * diagonal(&mesh) } else { 0.0 }, 0.0],
+                // What is left out of the picture must not be missed.
+                cull: Cull { frustum: true, small: !displaced, back: false },
+                ..CaptureDraw::new(factor)
+            };
+            let texture = displaced.then_some(&texture);
+            let leaked = leaked_pixels(&headless, &mesh, &options, texture, &draw, SIDE).expect("a picture");
+            assert_eq!(leaked, 0, "{name} displaced {displaced} {factor:?}");
+        }
+    }
+    drop(texture);
+    headless.finish_silent();
+}
+
+/// A shader compiled with one thing left out.
+fn faulty(file: &str, defines: &[&str]) -> Vec<u32> {
+    let compiler = std::env::var("GLSLANG").unwrap_or_else(|_| "glslangValidator".into());
+    let output = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}{}.spv", file.replace('/', "_"), defines.concat()));
+    let status = Command::new(compiler)
+        .args(["-V", "--target-env", "vulkan1.3", "--quiet", "-Iglsl/lib", "-o"])
+        .arg(&output)
+        .args(defines.iter().map(|define| format!("-D{define}")))
+        .arg(format!("glsl/{file}"))
+        .status();
+    assert!(status.expect("glslang runs").success(), "{file} {defines:?}");
+    let bytes = std::fs::read(&output).expect("SPIR-V");
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().expect("four bytes"))).collect()
+}
+
+const EVALUATIONS: [&str; 3] = ["bicubic", "gregory_quad", "gregory_triangle"];
+
+/// What differs when the evaluation shaders are compiled with these macros.
+fn tally_with(headless: &Headless, texture: &Texture, shared_normals: bool, displaced: bool, fault: &str) -> Tally {
+    let mesh = shape("creature-mixed").expect("built in");
+    let options = ModelOptions { shared_normals, edge_factors: true, ..ModelOptions::default() };
+    let (variant, suffix): (&[&str], _) = match (displaced, shared_normals) {
+        (true, _) => (&["DISPLACED", "CAPTURE"], "_DISPLACED_CAPTURE"),
+        (false, true) => (&["SHARED", "CAPTURE"], "_SHARED_CAPTURE"),
+        (false, false) => (&["CAPTURE"], "_CAPTURE"),
+    };
+    let shader = |file: &str| {
+        let name = format!("EVALUATE_{}_TESE{suffix}", file.to_uppercase());
+        (name, faulty(&format!("evaluate/{file}.tese"), &[variant, &[fault]].concat()))
+    };
+    let captured = match displaced {
+        // SAFETY: the texture outlives what is captured.
+        true => unsafe { Captured::displaced(headless, &mesh, &options, texture.into()) },
+        false => Captured::new(headless, &mesh, &options),
+    };
+    let captured = captured.expect("a model").with_shaders(EVALUATIONS.map(shader).into());
+    let seams = Seams::new(&mesh, 0, captured.tables()).expect("small");
+    let displacement = if displaced { [DISPLACEMENT * diagonal(&mesh), 0.0] } else { [0.0; 2] };
+    let draw = CaptureDraw { displacement, ..CaptureDraw::new(7.0) };
+    compare(&captured, &seams, &draw, shared_normals).expect("a capture")
+}
+
+#[test]
+fn every_rule_is_needed() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    // As it is, nothing differs.
+    for (shared_normals, displaced) in [(false, false), (true, false), (true, true)] {
+        let tally = tally_with(&headless, &texture, shared_normals, displaced, "FAULT_NONE");
+        assert!(tally.is_watertight() && tally.samples > 10_000, "{tally:?}");
+    }
+    // An edge evaluated in the order of each face.
+    let own_order = tally_with(&headless, &texture, true, false, "FAULT_OWN_ORDER");
+    assert!(own_order.normal_mismatches > 1000, "{own_order:?}");
+    let displaced = tally_with(&headless, &texture, true, true, "FAULT_OWN_ORDER");
+    assert!(displaced.position_mismatches > 100, "{displaced:?}");
+    // Each face's own normal.
+    let own_normal = tally_with(&headless, &texture, true, false, "FAULT_OWN_NORMAL");
+    assert!(own_normal.normal_mismatches > 1000, "{own_normal:?}");
+    let displaced = tally_with(&headless, &texture, true, true, "FAULT_OWN_NORMAL");
+    assert!(displaced.position_mismatches > 1000, "{displaced:?}");
+    // A compiler that may do sums in any order.
+    let imprecise = tally_with(&headless, &texture, false, false, "precise=");
+    assert!(imprecise.position_mismatches > 100, "{imprecise:?}");
+    drop(texture);
+    headless.finish_silent();
+}
+
+/// Moving a factor through an integer moves no vertex by more than fractional spacing lets it: what the new vertices do, they
+/// do from where their neighbours are.
+#[test]
+fn nothing_pops() {
+    const STEP: f32 = 0.01;
+    let headless = common::headless();
+    let mesh = shape("cube").expect("built in");
+    for spacing in [Spacing::FractionalOdd, Spacing::FractionalEven] {
+        let options = ModelOptions { spacing, ..ModelOptions::default() };
+        let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+        // The points on an edge, in order.
+        let along = |factor: f32| {
+            let vertices = captured.vertices_of(&CaptureDraw::new(factor), Which::OnEdges).expect("a capture");
+            let mut edge: Vec<f32> = vertices
+                .iter()
+                .filter(|v| v.patch == 0 && v.coordinate[1] == 0.0)
+                .map(|v| v.coordinate[0])
+                .collect();
+            edge.sort_by(f32::total_cmp);
+            edge.dedup();
+            edge
+        };
+        let mut before = along(2.5);
+        for i in 1..=300 {
+            let factor = 2.5 + STEP * i as f32;
+            let now = along(factor);
+            // Every vertex comes from one that was there, and goes to one that is: the way is that of the spacing, by which
+            // a segment of length 1/f changes by STEP / f^2 for each of up to f segments before it; twice that for rounding
+            // to 2^-16 and the segments that share what is left.
+            let allowed = 4.0 * STEP / factor + 2.0 / 65536.0;
+            let far = |from: &[f32], to: &[f32]| {
+                let nearest = |x: f32| to.iter().map(|y| (x - y).abs()).fold(f32::INFINITY, f32::min);
+                from.iter().map(|&x| nearest(x)).fold(0.0, f32::max)
+            };
+            let moved = far(&before, &now).max(far(&now, &before));
+            assert!(moved <= allowed, "{spacing:?}: at {factor} a vertex moved by {moved} of the edge, not {allowed}");
+            before = now;
+        }
+        // With equal spacing it does pop: the measure can fail.
+    }
+    let options = ModelOptions { spacing: Spacing::Equal, ..ModelOptions::default() };
+    let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+    let count = |factor| captured.vertices_of(&CaptureDraw::new(factor), Which::OnEdges).expect("a capture").len();
+    assert!(count(3.0) < count(3.01));
+    headless.finish_silent();
+}
