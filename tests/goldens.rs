@@ -8,10 +8,10 @@ mod common;
 use ash::vk;
 use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
-use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
-use ash_subdiv::renderer::{Fragment, Geometry};
+use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
+use ash_subdiv::renderer::{Cull, Factor, Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Style, Target, View, shape,
+    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style, Target, View, shape,
     shapes,
 };
 use common::golden;
@@ -56,6 +56,12 @@ struct Picture {
     scheme: Scheme,
     /// What the picture shows of the shape: all, or this much around a vertex of the highest valence.
     around: Option<f32>,
+    factor: Factor,
+    spacing: Spacing,
+    /// By the built-in height map, this part of the diagonal.
+    displacement: Option<f32>,
+    /// Seen from behind: what is left out when it is seen from the front.
+    culled: bool,
 }
 
 impl Picture {
@@ -69,6 +75,10 @@ impl Picture {
             clear: PAPER,
             scheme: Scheme::Gregory,
             around: None,
+            factor: Factor::Uniform(6.0),
+            spacing: Spacing::Equal,
+            displacement: None,
+            culled: false,
         }
     }
 
@@ -114,6 +124,29 @@ fn pictures() -> Vec<Picture> {
         Picture::of_style("cage", vec![surface(Fragment::Lit), lines(Style::cage())]),
         Picture::of_style("control-mesh", vec![Layer { style: faces, colors: [CLAY; 4] }, lines(edges)]),
         Picture { name: "samples-4".into(), samples: vk::SampleCountFlags::TYPE_4, ..Picture::lit("machine-part") },
+        Picture {
+            name: "displaced-creature".into(),
+            displacement: Some(0.012),
+            factor: Factor::Uniform(12.0),
+            ..Picture::lit("creature")
+        },
+        // Pieces of the atlas end here: the pattern breaks off, the surface does not.
+        Picture {
+            name: "displaced-seams".into(),
+            displacement: Some(0.012),
+            factor: Factor::Uniform(24.0),
+            around: Some(0.08),
+            ..Picture::lit("creature")
+        },
+        Picture {
+            name: "adaptive".into(),
+            layers: wire(),
+            factor: Factor::Curvature(0.15),
+            spacing: Spacing::FractionalOdd,
+            around: Some(0.25),
+            ..Picture::lit("creature-mixed")
+        },
+        Picture { name: "culled".into(), culled: true, ..Picture::lit("creature") },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
         Picture::of_scheme(Scheme::Acc, "cube", None),
         Picture::of_scheme(Scheme::Pm, "valences", Some(0.15)),
@@ -153,6 +186,11 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
         None => View::framing(mesh.bounds(), towards, 1.0),
         Some(half) => close_up(extraordinary_vertex(&mesh).as_vec3(), Vec3::from(towards).normalize(), half),
     };
+    let view = view.sized(SIDE, SIDE);
+    let view = match picture.culled {
+        true => View::framing(mesh.bounds(), [-1.0, 0.3, -0.6], 1.0).measured_from(&view),
+        false => view,
+    };
     let desc = OffscreenDesc { samples: picture.samples, color: picture.format, ..OffscreenDesc::new(SIDE, SIDE) };
     let pass = in_render_pass.then(|| RenderPassTarget::new(headless, EXTENT));
     let target = match &pass {
@@ -164,7 +202,15 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     let fallback = Fallback::Gregory;
     let model_options = ModelOptions { construction, fallback, scheme: picture.scheme, ..ModelOptions::default() };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
-    let item = |(style, layer): (usize, &Layer)| DrawItem { style, colors: layer.colors, ..DrawItem::new(model, 6.0) };
+    let [low, high] = mesh.bounds();
+    let scale = picture.displacement.unwrap_or(0.0) * (high - low).length() as f32;
+    let item = |(style, layer): (usize, &Layer)| DrawItem {
+        style,
+        colors: layer.colors,
+        displacement: [scale, 0.0],
+        cull: if picture.culled { Cull { small: false, ..Cull::ALL } } else { Cull::NONE },
+        ..DrawItem::new(model, factor)
+    };
     let items: Vec<_> = picture.layers.iter().enumerate().map(item).collect();
     let mut record = |cmd: vk::CommandBuffer, moment| match moment {
         // SAFETY: outside rendering, and inside what the renderer was made for.

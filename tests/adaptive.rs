@@ -1,0 +1,274 @@
+//! Factors from the view, patches that are left out, and displacement by known amounts.
+#![cfg(all(feature = "headless", feature = "png"))]
+
+mod common;
+
+use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors, CapturedVertex, Which};
+use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
+use ash_subdiv::renderer::{Cull, Factor};
+use ash_subdiv::{
+    Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Spacing, Style, Target, View, shape,
+};
+use common::edges::edge_points;
+use glam::{DVec3, Mat4, Vec3};
+use std::collections::HashMap;
+
+const SIDE: u32 = 256;
+
+fn view(mesh: &ControlMesh, towards: [f32; 3]) -> View {
+    View::framing(mesh.bounds(), towards, 1.0).sized(SIDE, SIDE)
+}
+
+/// From near by, with much of the mesh out of the picture.
+fn close_view(mesh: &ControlMesh) -> View {
+    let [low, high] = mesh.bounds().map(|corner| corner.as_vec3());
+    let (middle, radius) = ((low + high) / 2.0, (high - low).length() / 2.0);
+    let eye = middle + Vec3::new(0.4, 0.3, 1.0) * (2.0 * radius);
+    let target = middle + 0.5 * (high - middle);
+    View::perspective(eye.into(), target.into(), [0.0, 1.0, 0.0], 0.25, 1.0, [0.1 * radius, 9.0 * radius])
+        .sized(SIDE, SIDE)
+}
+
+/// The length in pixels of a cubic curve, as finely as can be told.
+fn pixels(view: &View, curve: [[f32; 3]; 4], pieces: u32) -> f64 {
+    let project = Mat4::from_cols_array_2d(&view.view_projection).as_dmat4();
+    let at = |i: u32| {
+        let t = f64::from(i) / f64::from(pieces);
+        let s = 1.0 - t;
+        let weights = [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t];
+        let point: DVec3 = curve.iter().zip(weights).map(|(p, w)| Vec3::from(*p).as_dvec3() * w).sum();
+        let clip = project * point.extend(1.0);
+        clip.truncate().truncate() / clip.w * f64::from(SIDE) / 2.0
+    };
+    (0..pieces).map(|i| at(i).distance(at(i + 1))).sum()
+}
+
+#[test]
+fn segments_are_as_long_as_asked() {
+    const ASKED: f64 = 4.0;
+    let headless = common::headless();
+    let mesh = shape("creature-mixed").expect("built in");
+    let view = view(&mesh, [-0.6, 0.5, 1.0]);
+    for construction in Construction::ALL {
+        let options = ModelOptions { construction, ..ModelOptions::default() };
+        let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+        let draw = CaptureDraw { view, ..CaptureDraw::new(Factor::Pixels(ASKED as f32)) };
+        let factors = captured.factors(&draw).expect("a capture");
+        let points = captured.control_points().expect("a capture");
+        for ((patch, points), factors) in captured.tables().plan().patches().iter().zip(&points).zip(&factors) {
+            for k in 0..patch.kind.corners() {
+                let curve = edge_points(patch.kind, points, k);
+                let asked = f64::from(factors.asked[k]) * ASKED;
+                // The formula, and what it is meant to be: foreshortened and bent edges are not starved.
+                assert!((asked - pixels(&view, curve, 4)).abs() < 2e-3 + 1e-4 * asked, "{asked} pixels");
+                let exact = pixels(&view, curve, 200);
+                assert!(asked <= exact + 2e-3 && asked > 0.9 * exact - 0.05, "{asked} pixels of {exact}");
+            }
+            assert!(!factors.culled);
+        }
+    }
+    headless.finish_silent();
+}
+
+#[test]
+fn bent_edges_get_more_than_flat_ones() {
+    let headless = common::headless();
+    let factors = |name: &str, factor: Factor| {
+        let mesh = shape(name).expect("built in");
+        let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
+        let draw = CaptureDraw { view: view(&mesh, [-0.6, 0.5, 1.0]), ..CaptureDraw::new(factor) };
+        captured.factors(&draw).expect("a capture")
+    };
+    let largest = |factors: &[CapturedFactors]| factors.iter().flat_map(|f| f.asked).fold(0.0, f32::max);
+    // A flat sheet needs no segments at all, however large.
+    assert!(largest(&factors("single-quad", Factor::Curvature(0.25))) < 1.0);
+    let coarse = factors("torus", Factor::Curvature(1.0));
+    let fine = factors("torus", Factor::Curvature(0.25));
+    for (coarse, fine) in coarse.iter().zip(&fine) {
+        for (coarse, fine) in coarse.asked.iter().zip(fine.asked) {
+            // A quarter of the error takes twice the segments.
+            assert!((fine / coarse - 2.0).abs() < 1e-3, "{coarse} and {fine}");
+        }
+    }
+    headless.finish_silent();
+}
+
+/// Both patches at an edge ask for the same, to the bit, whatever is left out.
+#[test]
+fn edges_have_one_factor() {
+    let headless = common::headless();
+    let mesh = shape("creature-mixed").expect("built in");
+    let options = ModelOptions { edge_factors: true, ..ModelOptions::default() };
+    let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+    let edges = captured.tables().edges().expect("asked for");
+    for factor in [Factor::Pixels(3.0), Factor::Curvature(0.3)] {
+        for (view, cull) in [(view(&mesh, [1.0, 0.2, 0.3]), Cull::NONE), (close_view(&mesh), Cull::ALL)] {
+            let draw = CaptureDraw { view, cull, ..CaptureDraw::new(factor) };
+            let factors = captured.factors(&draw).expect("a capture");
+            let mut of_edges: HashMap<u32, f32> = HashMap::new();
+            let mut corner = 0;
+            for (patch, factors) in captured.tables().plan().patches().iter().zip(&factors) {
+                for asked in &factors.asked[..patch.kind.corners()] {
+                    let before = *of_edges.entry(edges.of_corners[corner]).or_insert(*asked);
+                    assert_eq!(before.to_bits(), asked.to_bits());
+                    corner += 1;
+                }
+            }
+            let culled = factors.iter().filter(|f| f.culled).count();
+            assert_eq!(culled > factors.len() / 4, cull != Cull::NONE, "{culled} of {}", factors.len());
+        }
+    }
+    headless.finish_silent();
+}
+
+fn picture(headless: &Headless, mesh: &ControlMesh, view: &View, cull: Cull, displaced: Option<&Texture>) -> Vec<u8> {
+    let desc = OffscreenDesc::new(SIDE, SIDE);
+    let target = Offscreen::new(headless, &desc).expect("a target");
+    let style = Style { cull: ash::vk::CullModeFlags::BACK, ..Style::default() };
+    let options = Options { styles: vec![style], ..Options::default() };
+    let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
+    // SAFETY: the texture outlives the renderer, and every submission is waited for.
+    let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options) }.expect("a renderer");
+    // SAFETY: likewise.
+    let displacement = displaced.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
+    let model_options = ModelOptions { displacement, ..ModelOptions::default() };
+    let model = renderer.add_model(mesh, &model_options).expect("a model");
+    let item = DrawItem { cull, displacement: [0.1, 0.0], ..DrawItem::new(model, 6.0) };
+    // SAFETY: outside rendering.
+    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) }).expect("prepared");
+    // SAFETY: inside.
+    target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, 0, view, &[item]) }).expect("a picture")
+}
+
+#[test]
+fn what_is_left_out_is_not_missed() {
+    let headless = common::headless();
+    let texels = Texels::open("assets/scales.png", false).expect("the built-in height map");
+    let texture = Texture::new(&headless, "scales", &texels).expect("a texture");
+    for name in ["creature", "machine-part", "valences"] {
+        let mesh = shape(name).expect("built in");
+        for view in [view(&mesh, [-0.6, 0.5, 1.0]), view(&mesh, [0.2, -1.0, 0.1]), close_view(&mesh)] {
+            for displaced in [None, Some(&texture)] {
+                let whole = picture(&headless, &mesh, &view, Cull::NONE, displaced);
+                let culled = picture(&headless, &mesh, &view, Cull::ALL, displaced);
+                let differ = whole.chunks(4).zip(culled.chunks(4)).filter(|(a, b)| a != b).count();
+                assert_eq!(differ, 0, "{name} displaced {}", displaced.is_some());
+            }
+        }
+        let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
+        let count = |view, cull| {
+            let factors = captured.factors(&CaptureDraw { view, cull, ..CaptureDraw::new(6.0) }).expect("a capture");
+            (factors.iter().filter(|f| f.culled).count(), factors.len())
+        };
+        // Not all that could be left out is, but much.
+        let (back, all) = count(view(&mesh, [-0.6, 0.5, 1.0]), Cull { back: true, ..Cull::NONE });
+        assert!(10 * back > all, "{name}: {back} of {all}");
+        let (outside, all) = count(close_view(&mesh), Cull { frustum: true, ..Cull::NONE });
+        assert!(5 * outside > all, "{name}: {outside} of {all}");
+    }
+    drop(texture);
+    headless.finish_silent();
+}
+
+/// By patch and parameters.
+fn by_place(vertices: Vec<CapturedVertex>) -> HashMap<(u32, [u32; 3]), CapturedVertex> {
+    vertices.into_iter().map(|v| ((v.patch, v.coordinate.map(f32::to_bits)), v)).collect()
+}
+
+#[test]
+fn maps_move_vertices_as_far_as_they_say() {
+    let headless = common::headless();
+    let mesh = shape("creature").expect("built in");
+    let plain = Captured::new(&headless, &mesh, &ModelOptions { shared_normals: true, ..ModelOptions::default() });
+    let plain = by_place(plain.expect("a model").vertices(5.0).expect("a capture"));
+    let flat = |values: &[f32]| Texels { width: 1, height: 1, channels: values.len() as u32, values: values.to_vec() };
+    for (texels, vector) in [(flat(&[0.5]), None), (flat(&[0.1, -0.2, 0.3, 0.0]), Some(Vec3::new(0.1, -0.2, 0.3)))] {
+        let texture = Texture::new(&headless, "flat", &texels).expect("a texture");
+        // SAFETY: the texture outlives what is captured.
+        let captured = unsafe { Captured::displaced(&headless, &mesh, &ModelOptions::default(), (&texture).into()) };
+        let draw = CaptureDraw { displacement: [0.2, 0.01], ..CaptureDraw::new(5.0) };
+        let moved = by_place(captured.expect("a model").vertices_of(&draw, Which::All).expect("a capture"));
+        assert_eq!(moved.len(), plain.len());
+        for (place, moved) in moved {
+            let plain = plain[&place];
+            assert_eq!(plain.normal, moved.normal);
+            let way = match vector {
+                None => Vec3::from(plain.normal) * (0.2 * 0.5 + 0.01),
+                Some(vector) => 0.2 * vector + 0.01,
+            };
+            let expected = Vec3::from(plain.position) + way;
+            assert!(expected.distance(moved.position.into()) < 1e-6, "{plain:?} {moved:?}");
+        }
+    }
+    headless.finish_silent();
+}
+
+#[test]
+fn wrong_use_is_told() {
+    let headless = common::headless();
+    let cube = shape("cube").expect("built in");
+    let texture = Texture::new(&headless, "flat", &Texels { width: 1, height: 1, channels: 1, values: vec![0.5] });
+    let texture = texture.expect("a texture");
+    // SAFETY: the texture outlives what is captured.
+    let displaced = |mesh, options: &ModelOptions| unsafe {
+        Captured::displaced(&headless, mesh, options, (&texture).into()).err().expect("an error").to_string()
+    };
+    assert_eq!(
+        displaced(&cube, &ModelOptions::default()),
+        "the mesh has no texture coordinates, which displacement looks up: give it some (vt in OBJ, TEXCOORD_0 in glTF)"
+    );
+    let acc = ModelOptions { scheme: ash_subdiv::Scheme::Acc, shared_normals: true, ..ModelOptions::default() };
+    assert_eq!(
+        Captured::new(&headless, &cube, &acc).err().expect("an error").to_string(),
+        "the scheme acc has no edges that both patches evaluate alike: for shared normals and displacement choose gregory"
+    );
+    let options = ModelOptions { edge_factors: true, spacing: Spacing::FractionalOdd, ..ModelOptions::default() };
+    let captured = Captured::new(&headless, &cube, &options).expect("a model");
+    let error = |draw: CaptureDraw| captured.factors(&draw).err().expect("an error").to_string();
+    let unsized_view = View { viewport: [0.0; 2], ..view(&cube, [0.0, 0.0, 1.0]) };
+    assert_eq!(
+        error(CaptureDraw { view: unsized_view, ..CaptureDraw::new(Factor::Pixels(2.0)) }),
+        "model 0: factors in pixels and leaving out small patches need the size of the viewport: set View::viewport"
+    );
+    assert_eq!(
+        error(CaptureDraw { edge_factors: vec![1.0; 3], ..CaptureDraw::new(Factor::Edges(1.0)) }),
+        "model 0: 3 factors are given, but its patches have 12 edges"
+    );
+    let mut factors = vec![1.0; 12];
+    factors[7] = f32::NAN;
+    assert_eq!(
+        error(CaptureDraw { edge_factors: factors, ..CaptureDraw::new(Factor::Edges(1.0)) }),
+        "model 0: edge 7: the factor NaN is no number"
+    );
+    let plain = Captured::new(&headless, &cube, &ModelOptions::default()).expect("a model");
+    assert_eq!(
+        plain.factors(&CaptureDraw::new(Factor::Edges(1.0))).err().expect("an error").to_string(),
+        "model 0: its edges have no factors: call set_edge_factors first"
+    );
+    assert_eq!(
+        error(CaptureDraw { displacement: [f32::INFINITY, 0.0], ..CaptureDraw::new(1.0) }),
+        "model 0: displacement by inf and 0 is not by finite numbers"
+    );
+    drop(texture);
+    headless.finish_silent();
+}
+
+/// Near enough an edge asks for more segments than there are; it gets what there is.
+#[test]
+fn factors_are_kept_within_limits() {
+    let headless = common::headless();
+    let mesh = shape("cube").expect("built in");
+    let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
+    let draw = CaptureDraw { view: view(&mesh, [0.3, 0.4, 1.0]), ..CaptureDraw::new(Factor::Pixels(0.25)) };
+    let factors = captured.factors(&draw).expect("a capture");
+    let max = headless.properties().max_tessellation_level as f32;
+    assert!(factors.iter().any(|f| f.asked.iter().any(|&asked| asked > max)));
+    assert!(factors.iter().all(|f| f.inner.iter().all(|&inner| inner <= max)));
+    // The eye inside: what is behind it makes no factor that is no number.
+    let inside = View::perspective([0.1, 0.0, 0.0], [1.0, 0.2, 0.0], [0.0, 1.0, 0.0], 1.0, 1.0, [0.01, 10.0]);
+    let draw = CaptureDraw { view: inside.sized(SIDE, SIDE), ..draw };
+    for factors in captured.factors(&draw).expect("a capture") {
+        assert!(factors.asked.iter().all(|asked| asked.is_finite() && *asked >= 0.0), "{factors:?}");
+    }
+    headless.finish_silent();
+}
