@@ -200,7 +200,15 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     // SAFETY: the render pass outlives the renderer, and every submission is waited for.
     let mut renderer = unsafe { Renderer::new(headless.context(), &target, &options) }.expect("a renderer");
     let fallback = Fallback::Gregory;
-    let model_options = ModelOptions { construction, fallback, scheme: picture.scheme, ..ModelOptions::default() };
+    let texture = picture.displacement.map(|_| {
+        let texels = Texels::open("assets/scales.png", false).expect("the built-in height map");
+        Texture::new(headless, "scales", &texels.tiled(4)).expect("a texture")
+    });
+    // SAFETY: the texture outlives the renderer.
+    let displacement = texture.as_ref().map(|texture| unsafe { renderer.add_displacement(texture.into()) });
+    let Picture { scheme, spacing, factor, .. } = *picture;
+    let model_options =
+        ModelOptions { construction, fallback, scheme, spacing, displacement, ..ModelOptions::default() };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
     let [low, high] = mesh.bounds();
     let scale = picture.displacement.unwrap_or(0.0) * (high - low).length() as f32;
