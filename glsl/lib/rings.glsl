@@ -112,4 +112,12 @@ vec3 transversal(Ring ring, uint j, vec3 centre) {
     return (next - before) / 6.0 + (2.0 / 3.0) * (mean - mean_before);
 }
 
+// r'_j of the scheme gregory-fitted; a and b are the tangent frame. Rust twin: src/patch/fitted.rs.
+vec3 fitted_transversal(Ring ring, uint j, vec3 centre, vec3 a, vec3 b) {
+    // After the ring's cosine, its edges' directions and its frame's weights.
+    uint at = ring.type + 1u + 2u * ring.edges + 3u * (1u + ring.edges + ring.faces) + 2u * j;
+    vec2 direction = edge_direction(ring, j);
+    return ring_types[at] * transversal(ring, j, centre) + ring_types[at + 1u] * (direction.x * b - direction.y * a);
+}
+
 #endif

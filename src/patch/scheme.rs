@@ -4,8 +4,9 @@
 //! (`glsl/construct/NAME.tesc` for the two-stage construction, `glsl/evaluate/NAME.tese`), and its arms in the `match`es of
 //! this file and of `renderer/stages.rs`. Regular faces are bicubic patches in every scheme.
 
+use super::fitted::Fit;
 use super::gregory::PatchCorner;
-use super::{Blend, Frame, Point, RingValues, Sample, acc, bicubic, gregory, pm};
+use super::{Blend, Frame, Point, RingShape, RingValues, Sample, acc, bicubic, fitted, gregory, pm};
 use crate::topology::{PatchKind, RingKind, Topology};
 
 /// A way to approximate the Catmull-Clark surface by patches, one a face.
@@ -14,6 +15,9 @@ pub enum Scheme {
     /// Gregory patches for irregular faces ([`gregory`]): quads and triangles, boundaries, G1 everywhere.
     #[default]
     Gregory,
+    /// Gregory patches that are closer to the limit surface ([`fitted`]): the same points and evaluation, with other tangent
+    /// lengths and transversals.
+    GregoryFitted,
     /// A geometry patch and two tangent patches for irregular faces ([`acc`]): quads only; the shading is smooth, the
     /// surface has a faint kink at the edges of irregular faces.
     Acc,
@@ -37,12 +41,13 @@ pub struct Undefined {
 
 impl Scheme {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Gregory, Self::Acc, Self::Pm, Self::CPatch];
+    pub const ALL: [Self; 5] = [Self::Gregory, Self::GregoryFitted, Self::Acc, Self::Pm, Self::CPatch];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gregory => "gregory",
+            Self::GregoryFitted => "gregory-fitted",
             Self::Acc => "acc",
             Self::Pm => "pm",
             Self::CPatch => "c-patch",
@@ -55,7 +60,7 @@ impl Scheme {
     /// [`Undefined`] says why it has none.
     pub fn check(self, topology: &Topology, face: u32, kind: PatchKind) -> Result<(), Undefined> {
         let what = match (kind, self) {
-            (PatchKind::Regular, _) | (_, Self::Gregory) => None,
+            (PatchKind::Regular, _) | (_, Self::Gregory | Self::GregoryFitted) => None,
             (PatchKind::Triangle, Self::Acc | Self::CPatch) => Some("triangles"),
             (_, Self::Acc) => None,
             (_, Self::Pm | Self::CPatch) => pm_lacks(topology, face),
@@ -67,7 +72,7 @@ impl Scheme {
     pub fn owned(self, kind: PatchKind) -> usize {
         match (kind, self) {
             (PatchKind::Regular, _) => 4,
-            (_, Self::Gregory) => 5,
+            (_, Self::Gregory | Self::GregoryFitted) => 5,
             (_, Self::Acc) => 8,
             (_, Self::Pm | Self::CPatch) => 6,
         }
@@ -84,7 +89,9 @@ impl Scheme {
         let n = kind.corners();
         match (kind, self) {
             (PatchKind::Regular, _) => bicubic::CORNER_SLOTS[k].to_vec(),
-            (_, Self::Gregory) => vec![k, n + 2 * k, n + 2 * k + 1, 3 * n + 2 * k, 3 * n + 2 * k + 1],
+            (_, Self::Gregory | Self::GregoryFitted) => {
+                vec![k, n + 2 * k, n + 2 * k + 1, 3 * n + 2 * k, 3 * n + 2 * k + 1]
+            }
             (_, Self::Acc) => acc::corner_slots(k).to_vec(),
             (_, Self::Pm | Self::CPatch) => pm::corner_slots(n, k).to_vec(),
         }
@@ -95,9 +102,16 @@ impl Scheme {
     pub fn frame<T: Blend>(self, ring: &RingValues<T>) -> Frame<T> {
         match self {
             Self::Gregory => ring.frame(),
+            Self::GregoryFitted => fitted::fitted_frame(ring, &Fit::GREGORY),
             Self::Acc => acc::acc_frame(ring),
             Self::Pm | Self::CPatch => pm::pm_frame(ring),
         }
+    }
+
+    /// What the second stage of the two-stage construction is told of edge `j` of a ring, besides its direction: nothing
+    /// in most schemes.
+    pub(crate) fn edge_weights(self, shape: &RingShape, j: usize) -> Option<[f64; 2]> {
+        (self == Self::GregoryFitted).then(|| Fit::GREGORY.transversal_weights(shape, j))
     }
 
     /// The control points of the patch of one face, `vertex(v)` being the value at mesh vertex `v`. Orders are those of
@@ -128,7 +142,8 @@ impl Scheme {
         let four = || <&[_; 4]>::try_from(corners.as_slice()).expect("the patch is a quad");
         match (kind, self) {
             (PatchKind::Regular, _) => bicubic::bicubic_points(four()).into(),
-            (_, Self::Gregory) => gregory::gregory_points(&corners),
+            (_, Self::Gregory) => gregory::gregory_points(&corners, |corner, j| corner.ring.transversal(j)),
+            (_, Self::GregoryFitted) => fitted::fitted_points(&corners, &Fit::GREGORY),
             (_, Self::Acc) => acc::acc_points(four()),
             (_, Self::Pm | Self::CPatch) => pm::pm_points(&corners),
         }
@@ -142,10 +157,10 @@ impl Scheme {
         const COUNT: &str = "a patch has the control points of its kind";
         match (kind, self) {
             (PatchKind::Regular, _) => bicubic::evaluate_bicubic(points.try_into().expect(COUNT), u, v),
-            (PatchKind::IrregularQuad, Self::Gregory) => {
+            (PatchKind::IrregularQuad, Self::Gregory | Self::GregoryFitted) => {
                 gregory::evaluate_gregory_quad(points.try_into().expect(COUNT), u, v)
             }
-            (PatchKind::Triangle, Self::Gregory) => {
+            (PatchKind::Triangle, Self::Gregory | Self::GregoryFitted) => {
                 gregory::evaluate_gregory_triangle(points.try_into().expect(COUNT), u, v)
             }
             (_, Self::Acc) => acc::evaluate_acc(points.try_into().expect(COUNT), u, v),

@@ -14,15 +14,17 @@ pub(super) struct PatchStages {
     pub spacing: Spacing,
 }
 
-/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch.
+/// Which of `CONSTRUCT_` and of `EVALUATE_` shaders a kind of patch is drawn with.
 fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
     match (kind, scheme) {
-        (PatchKind::Regular, _) => ["REGULAR", "BICUBIC"],
-        (PatchKind::IrregularQuad, Scheme::Gregory) => ["GREGORY", "GREGORY_QUAD"],
-        (PatchKind::Triangle, Scheme::Gregory) => ["GREGORY", "GREGORY_TRIANGLE"],
-        (_, Scheme::Acc) => ["ACC", "ACC"],
-        (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_QUAD"],
-        (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_TRIANGLE"],
+        (PatchKind::Regular, _) => ["REGULAR_TESC", "BICUBIC_TESE"],
+        (PatchKind::IrregularQuad, Scheme::Gregory) => ["GREGORY_TESC", "GREGORY_QUAD_TESE"],
+        (PatchKind::Triangle, Scheme::Gregory) => ["GREGORY_TESC", "GREGORY_TRIANGLE_TESE"],
+        (PatchKind::IrregularQuad, Scheme::GregoryFitted) => ["GREGORY_TESC_FITTED", "GREGORY_QUAD_TESE"],
+        (PatchKind::Triangle, Scheme::GregoryFitted) => ["GREGORY_TESC_FITTED", "GREGORY_TRIANGLE_TESE"],
+        (_, Scheme::Acc) => ["ACC_TESC", "ACC_TESE"],
+        (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM_TESC", "PM_QUAD_TESE"],
+        (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM_TESC", "PM_TRIANGLE_TESE"],
     }
 }
 
@@ -38,7 +40,7 @@ impl PatchStages {
     pub(super) fn control(self, capture: Capture, texcoords: bool) -> Result<&'static [u32], GpuError> {
         let [file, _] = files(self.scheme, self.kind);
         let mut name = match self.construction {
-            Construction::TwoStage => format!("CONSTRUCT_{file}_TESC"),
+            Construction::TwoStage => format!("CONSTRUCT_{file}"),
             Construction::Stencil => format!("CONSTRUCT_STENCIL_TESC_OWNED_{}", self.scheme.owned(self.kind)),
         };
         if self.kind == PatchKind::Triangle {
@@ -55,7 +57,7 @@ impl PatchStages {
 
     pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> Result<&'static [u32], GpuError> {
         let [_, file] = files(self.scheme, self.kind);
-        let mut name = format!("EVALUATE_{file}_TESE");
+        let mut name = format!("EVALUATE_{file}");
         if capture != Capture::Grid {
             name += match self.spacing {
                 Spacing::Equal => "",

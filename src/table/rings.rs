@@ -21,7 +21,10 @@ pub struct RingTable {
     /// Vertices around a ring: `a_0, d_0, a_1, d_1, ..`, and the last edge's `a` where the ring is open.
     pub entries: Vec<u32>,
     /// For each type of ring: `cos_k`; cosine and sine of each edge's direction; then, for the vertex itself and
-    /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame).
+    /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame); then, for
+    /// [`Scheme::GregoryFitted`], two weights for each edge ([`Fit::transversal_weights`]).
+    ///
+    /// [`Fit::transversal_weights`]: crate::patch::fitted::Fit::transversal_weights
     pub types: Vec<f32>,
     /// How many types there are.
     pub type_count: usize,
@@ -132,6 +135,9 @@ impl RingTypes {
         let frame = self.scheme.frame(&RingValues::unknowns(shape.clone()));
         for entry in 0..=(shape.faces() + shape.edges()) as u32 {
             self.words.extend([&frame.p, &frame.a, &frame.b].map(|row| row.weight(entry) as f32));
+        }
+        for weights in (0..shape.edges()).filter_map(|j| self.scheme.edge_weights(&shape, j)) {
+            self.words.extend(weights.map(|x| x as f32));
         }
         self.count += 1;
         let found = (start, shape.has_frame());
