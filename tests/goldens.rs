@@ -114,6 +114,7 @@ fn pictures() -> Vec<Picture> {
         Picture::of_style("control-mesh", vec![Layer { style: faces, colors: [CLAY; 3] }, lines(edges)]),
         Picture { name: "samples-4".into(), samples: vk::SampleCountFlags::TYPE_4, ..Picture::lit("machine-part") },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
+        Picture::of_scheme(Scheme::GregoryFitted, "creature-mixed", Some(0.2)),
         Picture::of_scheme(Scheme::Acc, "cube", None),
         Picture::of_scheme(Scheme::Pm, "valences", Some(0.15)),
         Picture::of_scheme(Scheme::Pm, "creature-mixed", None),

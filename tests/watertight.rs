@@ -56,14 +56,20 @@ fn gap(mesh: &ControlMesh, a: [f32; 3], b: [f32; 3]) -> f32 {
 /// construction sums in the order of each patch, and so is right to rounding only.
 const STENCIL_GAP: f32 = 4.0;
 
+/// The schemes that promise it, made in both ways.
+fn cases() -> impl Iterator<Item = (Construction, Scheme)> {
+    let schemes = [Scheme::Gregory, Scheme::GregoryFitted];
+    schemes.into_iter().flat_map(|scheme| Construction::ALL.map(|construction| (construction, scheme)))
+}
+
 #[test]
 fn control_points_of_shared_edges() {
     let headless = common::headless();
     for (name, mesh) in meshes() {
         let prepared = prepare(&mesh, 0).expect("small");
         let topology = Topology::new(&prepared.mesh);
-        for construction in Construction::ALL {
-            let options = ModelOptions { construction, ..ModelOptions::default() };
+        for (construction, scheme) in cases() {
+            let options = ModelOptions { construction, scheme, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let points = captured.control_points().expect("a capture");
             let patches = captured.tables().plan().patches();
@@ -75,7 +81,7 @@ fn control_points_of_shared_edges() {
                 });
                 b.reverse();
                 for (a, b) in a.into_iter().zip(b) {
-                    let what = || format!("{name} {construction:?} {:?}: {a:?} and {b:?}", edge.sides);
+                    let what = || format!("{name} {scheme:?} {construction:?} {:?}: {a:?} and {b:?}", edge.sides);
                     match construction {
                         Construction::TwoStage => assert_eq!(bits(a), bits(b), "{}", what()),
                         Construction::Stencil => assert!(gap(&mesh, a, b) < STENCIL_GAP, "{}", what()),
@@ -93,11 +99,11 @@ fn evaluated_vertices_of_shared_edges() {
     for (name, mesh) in meshes() {
         let prepared = prepare(&mesh, 0).expect("small");
         let topology = Topology::new(&prepared.mesh);
-        for construction in Construction::ALL {
+        for (construction, scheme) in cases() {
             for (spacing, factor) in
                 [(Spacing::Equal, 7.0), (Spacing::FractionalOdd, 4.3), (Spacing::FractionalEven, 4.3)]
             {
-                let options = ModelOptions { construction, spacing, ..ModelOptions::default() };
+                let options = ModelOptions { construction, scheme, spacing, ..ModelOptions::default() };
                 let captured = Captured::new(&headless, &mesh, &options).expect("a model");
                 let on_edges = on_edges(&captured, factor);
                 for edge in shared_edges(&topology) {
@@ -106,7 +112,9 @@ fn evaluated_vertices_of_shared_edges() {
                     assert_eq!((a.len(), b.len()), (count, count), "{name} {spacing:?}");
                     for (t, a) in a {
                         let b = b[&(65536 - t)];
-                        let what = || format!("{name} {construction:?} {spacing:?} {:?}: {a:?} and {b:?}", edge.sides);
+                        let what = || {
+                            format!("{name} {scheme:?} {construction:?} {spacing:?} {:?}: {a:?} and {b:?}", edge.sides)
+                        };
                         match construction {
                             Construction::TwoStage => assert_eq!(bits(a.position), bits(b.position), "{}", what()),
                             Construction::Stencil => {

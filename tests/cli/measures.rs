@@ -46,7 +46,7 @@ fn error_says_what_is_wrong() {
     fails(
         "error --shape cube --scheme limit",
         2,
-        "invalid value 'limit' for '--scheme <SCHEME>' [possible values: gregory, acc, pm, c-patch]",
+        "invalid value 'limit' for '--scheme <SCHEME>' [possible values: gregory, gregory-fitted, acc, pm, c-patch]",
     );
     fails("error --shape cube --samples 0", 2, "invalid value '0' for '--samples <N>': 0 is not in 1..=1025");
     fails("error --shape cube --csv --json", 2, "the argument '--csv' cannot be used with '--json'");
