@@ -8,8 +8,8 @@
 //! from Gregory's own patches. What the result is worth elsewhere, `subdiv error` tells.
 
 use ash_subdiv::limit::{LimitSurface, refine};
-use ash_subdiv::patch::fitted::{Fit, fitted_frame, fitted_points};
-use ash_subdiv::patch::gregory::PatchCorner;
+use ash_subdiv::patch::fitted::{Fit, fitted_frame, fitted_transversal};
+use ash_subdiv::patch::gregory::{PatchCorner, gregory_points};
 use ash_subdiv::patch::{RingValues, Scheme};
 use ash_subdiv::table::PatchPlan;
 use ash_subdiv::topology::{PatchKind, Topology};
@@ -160,7 +160,7 @@ fn residuals(patch: &Patch, fit: &Fit) -> Vec<(DVec3, f64)> {
     let frames: Vec<_> = patch.corners.iter().map(|(ring, _)| fitted_frame(ring, fit)).collect();
     let corners = patch.corners.iter().zip(&frames);
     let corners: Vec<_> = corners.map(|((ring, index), frame)| PatchCorner { ring, frame, index: *index }).collect();
-    let points = fitted_points(&corners, fit);
+    let points = gregory_points(&corners, |corner, j| fitted_transversal(corner.ring, corner.frame, j, fit));
     let residual = |target: &Target| {
         let [u, v] = target.parameters;
         let sample = Scheme::GregoryFitted.evaluate(patch.kind, &points, u, v);

@@ -46,9 +46,10 @@ fn the_tables_of_a_million_faces() {
 
     let stencils = StencilTable::new(&topology, &mut plan, Scheme::Gregory).expect("addressable");
     assert_eq!((stencils.patches.len(), stencils.largest_ring), (FACES as usize, 16));
-    assert_eq!(stencils.vertices.len(), 16 * FACES as usize);
+    assert_eq!(stencils.vertices.len(), (4 + 16) * FACES as usize);
     for (patch, &[vertices, kind]) in plan.patches().iter().zip(&stencils.patches) {
-        let around = &stencils.vertices[vertices as usize..vertices as usize + 16];
+        let (turns, around) = stencils.vertices[vertices as usize..vertices as usize + 20].split_at(4);
+        assert!(turns.iter().all(|turn| [0, 2, 4, 6].contains(turn)));
         assert_eq!((kind, &around[..4]), (0, mesh.face(patch.face)));
         let mut different = around.to_vec();
         different.sort_unstable();

@@ -2,6 +2,7 @@
 
 mod common;
 
+use ash_subdiv::mesh::{ReadOptions, read};
 use ash_subdiv::patch::{Blend, Point, RingShape, RingValues, Row, Scheme};
 use ash_subdiv::table::prepare;
 use ash_subdiv::topology::{PatchKind, Topology};
@@ -85,6 +86,27 @@ fn smooth_edges_have_one_tangent_plane() {
         }
     }
     assert!(smooth > 24_000, "{smooth} smooth edges");
+}
+
+/// Models from elsewhere, in f64, as far as their faces have normals.
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn smooth_edges_of_models_have_one_tangent_plane() {
+    let mut smooth = 0;
+    for entry in std::fs::read_dir(common::shared().join("meshes")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "obj") {
+            continue;
+        }
+        let mesh = read(&path, &ReadOptions::default()).unwrap();
+        let mesh = prepare(&mesh, 0).unwrap().mesh;
+        let topology = Topology::new(&mesh);
+        let [(gregory, _), (fitted, edges)] = [Scheme::Gregory, Scheme::GregoryFitted]
+            .map(|scheme| normal_gap(scheme, &topology, |p| p, |n| n, |t| t));
+        smooth += edges;
+        println!("{} {gregory:e} {fitted:e} {edges}", path.display());
+    }
+    assert!(smooth > 5000, "{smooth} smooth edges");
 }
 
 /// At every edge, creases included: both sides take the same vertices with the same weights in the same order.

@@ -1,21 +1,16 @@
 // Second stage of the two-stage construction: the control points of a Gregory patch from the frames of its corners.
 // Each corner owns p, e+, e-, f+, f-. Rust twin: `gregory_points` in src/patch/gregory.rs.
-// variants: FITTED, FITTED+TRIANGLE, FITTED+CAPTURE, FITTED+TRIANGLE+CAPTURE, FITTED+CAPTURE_POINTS
-// variants: FITTED+TRIANGLE+CAPTURE_POINTS, FITTED+TEXCOORD, FITTED+TRIANGLE+TEXCOORD
-// variants: TRIANGLE, CAPTURE, TRIANGLE+CAPTURE, CAPTURE_POINTS, TRIANGLE+CAPTURE_POINTS, TEXCOORD, TRIANGLE+TEXCOORD
+// variants: CAPTURE, CAPTURE_POINTS, TEXCOORD, SHARED, SHARED+CAPTURE, SHARED+TEXCOORD
+// variants: TRIANGLE, TRIANGLE+CAPTURE, TRIANGLE+CAPTURE_POINTS, TRIANGLE+TEXCOORD, TRIANGLE+SHARED, TRIANGLE+SHARED+CAPTURE, TRIANGLE+SHARED+TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 5
 #include "control.glsl"
 #include "frames.glsl"
 
-// r_j of corner k, this invocation's, at its ring edge j.
+// The transversal of corner k, this invocation's, at its ring edge j.
 vec3 corner_transversal(Corner corner, uint k, uint j) {
-#ifdef FITTED
-    return fitted_transversal(corner.ring, j, in_centre[k], in_tangent_a[k], in_tangent_b[k]);
-#else
-    return transversal(corner.ring, j, in_centre[k]);
-#endif
+    return scheme_transversal(corner.ring, j, in_centre[k], in_tangent_a[k], in_tangent_b[k]);
 }
 
 // f+ or f-: `near` and `far` are the edge points, `side` the transversal as seen from this face.
@@ -42,5 +37,5 @@ void main() {
     // The face lies on the right of its minus edge.
     owned[gl_InvocationID][4] = face_point(p, minus, owned[before][1], cosine, in_limit[before].w,
                                            -corner_transversal(corner, k, corner.minus));
-    finish_corner(in_patch_number[0]);
+    finish_framed_corner(corner, k);
 }

@@ -1,5 +1,5 @@
 // An ACC patch: the normal is that of the two tangent patches. Rust twin: `evaluate_acc` in src/patch/acc.rs.
-// variants: FRACTIONAL_ODD, FRACTIONAL_EVEN, TEXCOORD, FRACTIONAL_ODD+TEXCOORD, FRACTIONAL_EVEN+TEXCOORD, CAPTURE, FRACTIONAL_ODD+CAPTURE, FRACTIONAL_EVEN+CAPTURE, CAPTURE_GRID
+// variants: TEXCOORD, CAPTURE, CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 8

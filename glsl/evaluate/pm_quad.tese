@@ -1,5 +1,5 @@
 // A Pm-patch of a quad: a c-patch. Rust twin: `evaluate_pm_quad` in src/patch/pm.rs.
-// variants: FRACTIONAL_ODD, FRACTIONAL_EVEN, TEXCOORD, FRACTIONAL_ODD+TEXCOORD, FRACTIONAL_EVEN+TEXCOORD, CAPTURE, FRACTIONAL_ODD+CAPTURE, FRACTIONAL_EVEN+CAPTURE, CAPTURE_GRID
+// variants: TEXCOORD, CAPTURE, CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 6

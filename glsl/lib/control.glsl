@@ -20,7 +20,7 @@ layout(vertices = 4) out;
 
 layout(location = 0) out vec3 owned[][OWNED];
 #ifdef TEXCOORD
-layout(set = 1, binding = 5, std430) readonly buffer Texcoords { vec2 texcoords[]; };
+layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
 layout(location = 8) out vec2 texcoord[];
 #endif
 #ifdef CAPTURE

@@ -6,23 +6,20 @@
 #include "draw.glsl"
 #include "patch.glsl"
 
-#if defined(FRACTIONAL_ODD)
-#define SPACING fractional_odd_spacing
-#elif defined(FRACTIONAL_EVEN)
-#define SPACING fractional_even_spacing
-#else
-#define SPACING equal_spacing
-#endif
+// The renderer puts other spacings in the place of this one (`spaced` in src/renderer/stages.rs).
 // Clockwise in the parameter domain, whose v points down in Vulkan: counter-clockwise seen from outside.
 // A captured grid of a triangle is laid over a quad domain: the tessellator's own triangles are no grid.
 #if defined(TRIANGLE) && !defined(CAPTURE_GRID)
-layout(triangles, SPACING, cw) in;
+layout(triangles, equal_spacing, cw) in;
 #else
-layout(quads, SPACING, cw) in;
+layout(quads, equal_spacing, cw) in;
 #endif
 
 // The control points that each corner owns.
 layout(location = 0) in vec3 owned[][OWNED];
+#ifdef SHARED
+#include "edges.glsl"
+#endif
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
@@ -63,6 +60,10 @@ vec3 parameter() {
 }
 
 void emit(Sample surface, vec3 at) {
+#ifdef SHARED
+    SharedSample shared_surface = share(surface, at);
+    surface = Sample(shared_surface.position, shared_surface.normal);
+#endif
 #ifdef CAPTURE
     capture_sample(captured_patch, 0u, 0u, at, surface.position, surface.normal);
 #endif

@@ -31,16 +31,30 @@ vec3 symmetric_sum(vec4 weights, vec3 x0, vec3 x1, vec3 x2, vec3 x3) {
     return sum;
 }
 
+// Products whose rounding no driver may change: `cross` and `dot` may be made of fused operations.
+vec3 exact_cross(vec3 a, vec3 b) {
+    precise vec3 product = a.yzx * b.zxy - a.zxy * b.yzx;
+    return product;
+}
+
+float exact_dot(vec3 a, vec3 b) {
+    precise float product = (a.x * b.x + a.y * b.y) + a.z * b.z;
+    return product;
+}
+
+// A vector made one long, unless it is zero.
+vec3 unit(vec3 x) {
+    float squared = exact_dot(x, x);
+    precise vec3 scaled = x * inversesqrt(squared);
+    return squared > 0.0 ? scaled : x;
+}
+
 // The unit vector along `du x dv`; where the derivatives are parallel, along `fallback`.
 vec3 unit_normal(vec3 du, vec3 dv, vec3 fallback) {
-    vec3 normal = cross(du, dv);
-    float squared = dot(normal, normal);
+    vec3 normal = exact_cross(du, dv);
     // Within 1e-5 rad of each other: what is left of the cross product is rounding.
-    if (squared <= 1e-10 * (dot(du, du) * dot(dv, dv))) {
-        normal = fallback;
-        squared = dot(normal, normal);
-    }
-    return squared > 0.0 ? normal * inversesqrt(squared) : normal;
+    bool parallel = exact_dot(normal, normal) <= 1e-10 * (exact_dot(du, du) * exact_dot(dv, dv));
+    return unit(parallel ? fallback : normal);
 }
 
 // A 4 x 4 tensor-product Bezier patch, rows along u.

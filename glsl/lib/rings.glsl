@@ -12,6 +12,7 @@ layout(set = 1, binding = 4, std430) readonly buffer PatchCorners { uvec2 patch_
 const uint TRIANGLE_BIT = 1u << 31;
 const uint OPEN_BIT = 1u << 31;
 const uint CONE_BIT = 1u << 30;
+const uint FITTED_BIT = 1u << 29;
 
 struct Ring {
     uint vertex;
@@ -21,13 +22,15 @@ struct Ring {
     uint edges;
     bool open;
     bool cone;
+    bool fitted;
 };
 
 Ring ring_at(uint index) {
     uvec4 header = ring_headers[index];
     bool open = (header.w & OPEN_BIT) != 0u;
-    uint faces = header.w & ~(OPEN_BIT | CONE_BIT);
-    return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u);
+    uint faces = header.w & ~(OPEN_BIT | CONE_BIT | FITTED_BIT);
+    return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u,
+                (header.w & FITTED_BIT) != 0u);
 }
 
 // cos_k: of the angle between neighbouring edges.
@@ -89,35 +92,46 @@ vec3 edge_point(Ring ring, uint j, vec3 centre, vec3 p, vec3 a, vec3 b) {
 // c_i, the mean of the vertices of face i; `first` and `second` are the ends of its edges.
 vec3 face_centroid(Ring ring, uint i, vec3 centre, vec3 first, vec3 second) {
     uint entry = ring_entries[ring.entries + 2u * i + 1u];
-    vec3 sum = centre + first + second;
-    return (entry & TRIANGLE_BIT) != 0u ? sum / 3.0 : (sum + vertex_position(entry)) / 4.0;
+    precise vec3 sum = centre + first + second;
+    precise vec3 of_three = sum / 3.0;
+    precise vec3 of_four = (sum + vertex_position(entry & ~TRIANGLE_BIT)) / 4.0;
+    return (entry & TRIANGLE_BIT) != 0u ? of_three : of_four;
 }
 
 // r_j, the transversal of edge j.
 vec3 transversal(Ring ring, uint j, vec3 centre) {
     vec3 here = edge_neighbour(ring, j);
+    precise vec3 r;
     if (ring.open && j == 0u) {
         vec3 next = edge_neighbour(ring, 1u);
         vec3 mean = face_centroid(ring, 0u, centre, here, next);
-        return (next - centre) / 3.0 + (4.0 * mean - 2.0 * (centre + here)) / 3.0;
+        r = (next - centre) / 3.0 + (4.0 * mean - 2.0 * (centre + here)) / 3.0;
+        return r;
     }
     uint before_j = (j == 0u ? ring.edges : j) - 1u;
     vec3 before = edge_neighbour(ring, before_j);
     vec3 mean_before = face_centroid(ring, before_j, centre, before, here);
     if (ring.open && j == ring.faces) {
-        return (centre - before) / 3.0 + (2.0 * (centre + here) - 4.0 * mean_before) / 3.0;
+        r = (centre - before) / 3.0 + (2.0 * (centre + here) - 4.0 * mean_before) / 3.0;
+        return r;
     }
     vec3 next = edge_neighbour(ring, j + 1u);
     vec3 mean = face_centroid(ring, j, centre, here, next);
-    return (next - before) / 6.0 + (2.0 / 3.0) * (mean - mean_before);
+    r = (next - before) / 6.0 + (2.0 / 3.0) * (mean - mean_before);
+    return r;
 }
 
-// r'_j of the scheme gregory-fitted; a and b are the tangent frame. Rust twin: src/patch/fitted.rs.
-vec3 fitted_transversal(Ring ring, uint j, vec3 centre, vec3 a, vec3 b) {
-    // After the ring's cosine, its edges' directions and its frame's weights.
-    uint at = ring.type + 1u + 2u * ring.edges + 3u * (1u + ring.edges + ring.faces) + 2u * j;
-    vec2 direction = edge_direction(ring, j);
-    return ring_types[at] * transversal(ring, j, centre) + ring_types[at + 1u] * (direction.x * b - direction.y * a);
+// The transversal of edge j as the scheme has it; a and b are the tangent frame. Rust twin: `Scheme::transversal` in
+// src/patch/scheme.rs.
+vec3 scheme_transversal(Ring ring, uint j, vec3 centre, vec3 a, vec3 b) {
+    precise vec3 r = transversal(ring, j, centre);
+    if (ring.fitted) {
+        // After the ring's cosine, its edges' directions and its frame's weights.
+        uint at = ring.type + 1u + 2u * ring.edges + 3u * (1u + ring.edges + ring.faces) + 2u * j;
+        vec2 direction = edge_direction(ring, j);
+        r = ring_types[at] * r + ring_types[at + 1u] * (direction.x * b - direction.y * a);
+    }
+    return r;
 }
 
 #endif

@@ -4,27 +4,37 @@
 
 #include "positions.glsl"
 
-layout(set = 1, binding = 1, std430) readonly buffer StencilPatches { uvec2 stencil_patches[]; };
-layout(set = 1, binding = 2, std430) readonly buffer StencilVertices { uint stencil_vertices[]; };
-layout(set = 1, binding = 3, std430) readonly buffer StencilTypes { uint stencil_types[]; };
+layout(set = 1, binding = 5, std430) readonly buffer StencilPatches { uvec2 stencil_patches[]; };
+layout(set = 1, binding = 6, std430) readonly buffer StencilVertices { uint stencil_vertices[]; };
+layout(set = 1, binding = 7, std430) readonly buffer StencilTypes { uint stencil_types[]; };
 
+const uint HEAD_WORDS = 3u;
 const uint ENTRY_WORDS = 1u + OWNED;
 
-// The control points that a corner of a patch owns.
+// The control points that a corner of a patch owns. Those that faces around the corner share come out with the same bits
+// for all of them: the sums go around the corner's ring from where it starts.
 void stencil_points(uint patch_index, uint corner, out vec3 points[OWNED]) {
     uvec2 place = stencil_patches[patch_index];
-    uint head = place.y + 2u * corner;
-    uint at = place.y + stencil_types[head];
-    uint end = at + ENTRY_WORDS * stencil_types[head + 1u];
+    uint head = place.y + HEAD_WORDS * corner;
+    uint first = place.y + stencil_types[head];
+    uint count = stencil_types[head + 1u];
+    uint turning = stencil_types[head + 2u];
+    uint turn = stencil_vertices[place.x + corner];
+    precise vec3 sums[OWNED];
     for (uint i = 0u; i < OWNED; ++i) {
-        points[i] = vec3(0.0);
+        sums[i] = vec3(0.0);
     }
-    for (; at < end; at += ENTRY_WORDS) {
-        vec3 x = vertex_position(stencil_vertices[place.x + stencil_types[at]]);
-        for (uint i = 0u; i < OWNED; ++i) {
-            points[i] += uintBitsToFloat(stencil_types[at + 1u + i]) * x;
+    for (uint i = 0u; i < count; ++i) {
+        uint turned = i + turn - 1u;
+        turned = 1u + (turned < turning ? turned : turned - turning);
+        uint at = first + ENTRY_WORDS * (i >= 1u && i <= turning ? turned : i);
+        vec3 x = vertex_position(stencil_vertices[place.x + CORNERS + stencil_types[at]]);
+        for (uint k = 0u; k < OWNED; ++k) {
+            precise vec3 term = uintBitsToFloat(stencil_types[at + 1u + k]) * x;
+            sums[k] += term;
         }
     }
+    points = sums;
 }
 
 #endif

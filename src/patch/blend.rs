@@ -51,6 +51,12 @@ impl Row {
         Self { weights: vec![(index, 1.0)] }
     }
 
+    /// Unknowns, each at most once, and their weights.
+    pub fn new(mut weights: Vec<(u32, f64)>) -> Self {
+        weights.sort_unstable_by_key(|w| w.0);
+        Self { weights }
+    }
+
     /// Index and weight of each unknown, by ascending index.
     pub fn weights(&self) -> &[(u32, f64)] {
         &self.weights

@@ -25,7 +25,6 @@
 //!
 //! [`gregory`]: super::gregory
 
-use super::gregory::{PatchCorner, gregory_points};
 use super::{Blend, Frame, RingShape, RingValues};
 use crate::topology::RingKind;
 
@@ -80,18 +79,12 @@ pub fn fitted_frame<T: Blend>(ring: &RingValues<T>, fit: &Fit) -> Frame<T> {
     Frame { p, a: T::sum([(factor, &a)]), b: T::sum([(factor, &b)]) }
 }
 
-/// `r'_j`, for corners whose frames are [`fitted_frame`]s.
+/// `r'_j` of a ring whose frame is its [`fitted_frame`].
 ///
-/// GLSL twin: `fitted_transversal` in `glsl/lib/rings.glsl`.
-pub fn fitted_transversal<T: Blend>(corner: &PatchCorner<T>, j: usize, fit: &Fit) -> T {
-    let (shape, r) = (&corner.ring.shape, corner.ring.transversal(j));
-    let [along, across] = fit.transversal_weights(shape, j);
-    let [cos, sin] = shape.edge_direction(j);
-    T::sum([(along, &r), (across * cos, &corner.frame.b), (-across * sin, &corner.frame.a)])
-}
-
-/// The control points of the patch with these corners, whose frames are [`fitted_frame`]s, in the order of
-/// [`gregory_points`].
-pub fn fitted_points<T: Blend>(corners: &[PatchCorner<T>], fit: &Fit) -> Vec<T> {
-    gregory_points(corners, |corner, j| fitted_transversal(corner, j, fit))
+/// GLSL twin: `scheme_transversal` in `glsl/lib/rings.glsl`.
+pub fn fitted_transversal<T: Blend>(ring: &RingValues<T>, frame: &Frame<T>, j: usize, fit: &Fit) -> T {
+    let r = ring.transversal(j);
+    let [along, across] = fit.transversal_weights(&ring.shape, j);
+    let [cos, sin] = ring.shape.edge_direction(j);
+    T::sum([(along, &r), (across * cos, &frame.b), (-across * sin, &frame.a)])
 }

@@ -12,6 +12,7 @@
 pub mod acc;
 pub mod bicubic;
 mod blend;
+pub mod edge;
 pub mod fitted;
 pub mod gregory;
 pub mod pm;

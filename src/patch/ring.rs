@@ -97,7 +97,7 @@ pub struct Frame<T> {
     pub b: T,
 }
 
-impl<T: Blend> RingValues<T> {
+impl<T> RingValues<T> {
     /// The ring with the value of `vertex(v)` at mesh vertex `v`.
     pub fn new(topology: &Topology, ring: &Ring, vertex: impl Fn(u32) -> T) -> Self {
         let mut edges = Vec::with_capacity(ring.edges() as usize);
@@ -115,7 +115,9 @@ impl<T: Blend> RingValues<T> {
         let centre = vertex(topology.mesh_vertex(ring.start));
         Self { shape: RingShape::of(topology, ring), centre, edges, diagonals }
     }
+}
 
+impl<T: Blend> RingValues<T> {
     fn edge(&self, j: usize) -> &T {
         &self.edges[j % self.edges.len()]
     }
@@ -216,6 +218,22 @@ impl<T: Blend> RingValues<T> {
             T::sum([(1.0, &frame.p), (cos, &frame.a), (sin, &frame.b)])
         } else {
             T::sum([(2.0 / 3.0, &self.centre), (1.0 / 3.0, self.edge(j))])
+        }
+    }
+
+    /// The vector across edge `j` at this vertex, from right to left: `(3/2) (e_{j+1} - e_{j-1})`, with the edge point that an
+    /// open ring lacks beyond its ends mirrored. `w0` and, negated, `w3` of patch_maths B.
+    pub fn across(&self, frame: &Frame<T>, j: usize) -> T {
+        let edges = self.edges.len();
+        let j = j % edges;
+        let edge = |j: usize| self.edge_point(frame, j % edges);
+        let cosine = self.shape.cosine();
+        if self.shape.open && j == 0 {
+            T::sum([(3.0, &edge(1)), (-3.0 * cosine, &edge(0)), (3.0 * cosine - 3.0, &frame.p)])
+        } else if self.shape.open && j == edges - 1 {
+            T::sum([(-3.0, &edge(j - 1)), (3.0 * cosine, &edge(j)), (3.0 - 3.0 * cosine, &frame.p)])
+        } else {
+            T::sum([(1.5, &edge(j + 1)), (-1.5, &edge(j + edges - 1))])
         }
     }
 

@@ -108,10 +108,33 @@ impl Scheme {
         }
     }
 
-    /// What the second stage of the two-stage construction is told of edge `j` of a ring, besides its direction: nothing
-    /// in most schemes.
-    pub(crate) fn edge_weights(self, shape: &RingShape, j: usize) -> Option<[f64; 2]> {
-        (self == Self::GregoryFitted).then(|| Fit::GREGORY.transversal_weights(shape, j))
+    /// The transversal of edge `j` of a ring whose frame is [`Scheme::frame`]: the scheme's own choice of
+    /// [`RingValues::transversal`].
+    pub fn transversal<T: Blend>(self, ring: &RingValues<T>, frame: &Frame<T>, j: usize) -> T {
+        match self {
+            Self::GregoryFitted => fitted::fitted_transversal(ring, frame, j, &Fit::GREGORY),
+            _ => ring.transversal(j),
+        }
+    }
+
+    /// The weights in it of [`RingValues::transversal`] and of the frame's tangent at a right angle to edge `j`.
+    pub(crate) fn transversal_weights(self, shape: &RingShape, j: usize) -> [f64; 2] {
+        match self {
+            Self::GregoryFitted => Fit::GREGORY.transversal_weights(shape, j),
+            _ => [1.0, 0.0],
+        }
+    }
+
+    /// Whether the first three control points that a corner of a patch owns are the limit point of its [`Scheme::frame`] and
+    /// the edge points at its plus and its minus edge ([`RingValues::edge_point`]): the boundary is then the same
+    /// on both sides of an edge.
+    pub fn shares_frame(self, kind: PatchKind) -> bool {
+        kind == PatchKind::Regular || matches!(self, Self::Gregory | Self::GregoryFitted)
+    }
+
+    /// Whether patches of all kinds share what they have in common along edges to the last bit ([`Scheme::shares_frame`]).
+    pub fn is_watertight(self) -> bool {
+        PatchKind::ALL.into_iter().all(|kind| self.shares_frame(kind))
     }
 
     /// The control points of the patch of one face, `vertex(v)` being the value at mesh vertex `v`. Orders are those of
@@ -142,8 +165,9 @@ impl Scheme {
         let four = || <&[_; 4]>::try_from(corners.as_slice()).expect("the patch is a quad");
         match (kind, self) {
             (PatchKind::Regular, _) => bicubic::bicubic_points(four()).into(),
-            (_, Self::Gregory) => gregory::gregory_points(&corners, |corner, j| corner.ring.transversal(j)),
-            (_, Self::GregoryFitted) => fitted::fitted_points(&corners, &Fit::GREGORY),
+            (_, Self::Gregory | Self::GregoryFitted) => {
+                gregory::gregory_points(&corners, |corner, j| self.transversal(corner.ring, corner.frame, j))
+            }
             (_, Self::Acc) => acc::acc_points(four()),
             (_, Self::Pm | Self::CPatch) => pm::pm_points(&corners),
         }

@@ -68,8 +68,10 @@ impl Model {
                 &zeros
             }
         };
-        let mut arrays: Vec<(&'static str, &[u8])> = tables.bindings().into();
-        arrays.push(("texture coordinates", bytemuck::cast_slice(texcoords)));
+        let arrays = tables.bindings().map(|(name, array)| match name {
+            "texcoords" => (name, bytemuck::cast_slice(texcoords)),
+            _ => (name, array),
+        });
 
         let mut offset = 0;
         let mut ranges = Vec::with_capacity(arrays.len());
@@ -121,7 +123,8 @@ impl Model {
         let (pool, set) = descriptor_set(context, pipelines.model_layout.raw(), name)?;
         write_set(context, set, &positions, &table_buffer, &ranges);
         let ModelOptions { scheme, construction, spacing, .. } = *model_options;
-        let stages = |kind| PatchStages { scheme, kind, construction, spacing };
+        let shared = tables.shares_normals();
+        let stages = |kind| PatchStages { scheme, kind, construction, spacing, shared };
         Ok(Self {
             id,
             stages: PatchKind::ALL.into_iter().filter(|&kind| tables.plan.count(kind) > 0).map(stages).collect(),

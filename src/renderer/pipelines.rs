@@ -60,8 +60,8 @@ pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
-/// Storage buffers of a model: positions, four tables of the construction, texture coordinates.
-pub(super) const MODEL_BINDINGS: usize = 6;
+/// Storage buffers of a model: positions, then [`ModelTables::bindings`](super::ModelTables).
+pub(super) const MODEL_BINDINGS: usize = 10;
 
 impl Pipelines {
     pub(super) fn new(
@@ -134,10 +134,11 @@ impl Pipelines {
                     Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
                     Construction::Stencil => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
                 };
+                let evaluation = patch.evaluation(self.capture, self.texcoords)?;
                 let stages = [
                     vertex,
                     Shader::tess_control(patch.control(self.capture, self.texcoords)?),
-                    Shader::tess_evaluation(patch.evaluation(self.capture, self.texcoords)?),
+                    Shader::tess_evaluation(&evaluation),
                     fragment(style, &encode),
                 ];
                 self.create(&name, style, &stages, patch.input_points())?

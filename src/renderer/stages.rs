@@ -12,19 +12,19 @@ pub(super) struct PatchStages {
     pub kind: PatchKind,
     pub construction: Construction,
     pub spacing: Spacing,
+    /// Whether normals are shared.
+    pub shared: bool,
 }
 
-/// Which of `CONSTRUCT_` and of `EVALUATE_` shaders a kind of patch is drawn with.
+/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch.
 fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
     match (kind, scheme) {
-        (PatchKind::Regular, _) => ["REGULAR_TESC", "BICUBIC_TESE"],
-        (PatchKind::IrregularQuad, Scheme::Gregory) => ["GREGORY_TESC", "GREGORY_QUAD_TESE"],
-        (PatchKind::Triangle, Scheme::Gregory) => ["GREGORY_TESC", "GREGORY_TRIANGLE_TESE"],
-        (PatchKind::IrregularQuad, Scheme::GregoryFitted) => ["GREGORY_TESC_FITTED", "GREGORY_QUAD_TESE"],
-        (PatchKind::Triangle, Scheme::GregoryFitted) => ["GREGORY_TESC_FITTED", "GREGORY_TRIANGLE_TESE"],
-        (_, Scheme::Acc) => ["ACC_TESC", "ACC_TESE"],
-        (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM_TESC", "PM_QUAD_TESE"],
-        (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM_TESC", "PM_TRIANGLE_TESE"],
+        (PatchKind::Regular, _) => ["REGULAR", "BICUBIC"],
+        (PatchKind::IrregularQuad, Scheme::Gregory | Scheme::GregoryFitted) => ["GREGORY", "GREGORY_QUAD"],
+        (PatchKind::Triangle, Scheme::Gregory | Scheme::GregoryFitted) => ["GREGORY", "GREGORY_TRIANGLE"],
+        (_, Scheme::Acc) => ["ACC", "ACC"],
+        (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_QUAD"],
+        (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_TRIANGLE"],
     }
 }
 
@@ -40,11 +40,14 @@ impl PatchStages {
     pub(super) fn control(self, capture: Capture, texcoords: bool) -> Result<&'static [u32], GpuError> {
         let [file, _] = files(self.scheme, self.kind);
         let mut name = match self.construction {
-            Construction::TwoStage => format!("CONSTRUCT_{file}"),
+            Construction::TwoStage => format!("CONSTRUCT_{file}_TESC"),
             Construction::Stencil => format!("CONSTRUCT_STENCIL_TESC_OWNED_{}", self.scheme.owned(self.kind)),
         };
         if self.kind == PatchKind::Triangle {
             name += "_TRIANGLE";
+        }
+        if self.shared && capture != Capture::Points {
+            name += "_SHARED";
         }
         name += match capture {
             Capture::Points => "_CAPTURE_POINTS",
@@ -55,15 +58,11 @@ impl PatchStages {
         find(&name)
     }
 
-    pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> Result<&'static [u32], GpuError> {
+    pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> Result<Vec<u32>, GpuError> {
         let [_, file] = files(self.scheme, self.kind);
-        let mut name = format!("EVALUATE_{file}");
-        if capture != Capture::Grid {
-            name += match self.spacing {
-                Spacing::Equal => "",
-                Spacing::FractionalOdd => "_FRACTIONAL_ODD",
-                Spacing::FractionalEven => "_FRACTIONAL_EVEN",
-            };
+        let mut name = format!("EVALUATE_{file}_TESE");
+        if self.shared && capture != Capture::Points {
+            name += "_SHARED";
         }
         name += match capture {
             Capture::Grid => "_CAPTURE_GRID",
@@ -71,8 +70,32 @@ impl PatchStages {
             Capture::Off if texcoords => "_TEXCOORD",
             Capture::Off | Capture::Points => "",
         };
-        find(&name)
+        let spacing = if capture == Capture::Grid { Spacing::Equal } else { self.spacing };
+        Ok(spaced(find(&name)?, spacing))
     }
+}
+
+/// A tessellation evaluation shader with another spacing: the files all say `equal_spacing`.
+fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
+    // SPIR-V 1.6, 2.3 and 3.6: five words of header; an instruction's first word is its length and its opcode.
+    const HEADER_WORDS: usize = 5;
+    const OP_EXECUTION_MODE: u32 = 16;
+    const SPACING_EQUAL: u32 = 1;
+    let mode = match spacing {
+        Spacing::Equal => SPACING_EQUAL,
+        Spacing::FractionalEven => 2,
+        Spacing::FractionalOdd => 3,
+    };
+    let mut code = code.to_vec();
+    let mut at = HEADER_WORDS;
+    while at < code.len() {
+        let (words, opcode) = ((code[at] >> 16) as usize, code[at] & 0xffff);
+        if opcode == OP_EXECUTION_MODE && code[at + 2] == SPACING_EQUAL {
+            code[at + 2] = mode;
+        }
+        at += words.max(1);
+    }
+    code
 }
 
 fn find(name: &str) -> Result<&'static [u32], GpuError> {

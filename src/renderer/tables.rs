@@ -3,7 +3,7 @@
 use super::{Construction, ModelOptions};
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
-use crate::table::{FaceOrigin, Notice, PatchPlan, RingTable, StencilTable, TableError, bytes, prepare};
+use crate::table::{FaceOrigin, Notice, PatchPlan, RingTable, SharedTable, StencilTable, TableError, bytes, prepare};
 use crate::topology::{PatchKind, Topology};
 use glam::Vec3;
 use std::borrow::Cow;
@@ -12,7 +12,12 @@ use std::borrow::Cow;
 #[derive(Debug, Clone)]
 pub struct ModelTables {
     pub(super) plan: PatchPlan,
-    pub(super) construction: ConstructionTable,
+    /// Of the two-stage construction, and wherever normals are shared.
+    rings: Option<RingTable>,
+    /// Of the stencil construction.
+    stencils: Option<StencilTable>,
+    /// Where normals are shared.
+    shared: Option<SharedTable>,
     pub(super) texcoords: Option<Vec<[f32; 2]>>,
     /// Pairs of control vertices: the edges of the caller's mesh.
     pub(super) control_edges: Vec<u32>,
@@ -26,12 +31,6 @@ pub struct ModelTables {
     notices: Vec<Notice>,
 }
 
-#[derive(Debug, Clone)]
-pub(super) enum ConstructionTable {
-    TwoStage(RingTable),
-    Stencil(StencilTable),
-}
-
 /// Bytes of a table by its name.
 pub type TableBytes = (&'static str, u64);
 
@@ -39,22 +38,31 @@ impl ModelTables {
     /// Prepares a mesh and builds its tables.
     ///
     /// # Errors
-    /// A refined mesh or a table that cannot be addressed; faces that the scheme has no patch for.
+    /// A refined mesh or a table that cannot be addressed; faces that the scheme has no patch for; shared normals of a
+    /// scheme whose patches share no edges.
     pub fn new(mesh: &ControlMesh, options: &ModelOptions) -> Result<Self, TableError> {
         let prepared = prepare(mesh, options.refine)?;
         let topology = Topology::new(&prepared.mesh);
         let mut plan = PatchPlan::new(&topology);
         let scheme = options.scheme;
         plan.check(&topology, scheme)?;
-        let construction = match options.construction {
-            Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan, scheme)),
-            Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan, scheme)?),
+        // The stencil table puts the patches in its own order, so it comes first.
+        let stencils = match options.construction {
+            Construction::TwoStage => None,
+            Construction::Stencil => Some(StencilTable::new(&topology, &mut plan, scheme)?),
         };
+        let shared = options.shared_normals.then(|| SharedTable::new(&topology, &plan));
+        if shared.is_some() && !scheme.is_watertight() {
+            return Err(TableError::NothingShared { scheme });
+        }
+        let rings = (stencils.is_none() || shared.is_some()).then(|| RingTable::new(&topology, &plan, scheme));
         Ok(Self {
             texcoords: plan.texcoords(&topology),
             origins: plan.patches().iter().map(|patch| prepared.origin(patch.face)).collect(),
             plan,
-            construction,
+            rings,
+            stencils,
+            shared,
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
@@ -102,10 +110,11 @@ impl ModelTables {
     }
 
     pub(super) fn construction(&self) -> Construction {
-        match self.construction {
-            ConstructionTable::TwoStage(_) => Construction::TwoStage,
-            ConstructionTable::Stencil(_) => Construction::Stencil,
-        }
+        if self.stencils.is_some() { Construction::Stencil } else { Construction::TwoStage }
+    }
+
+    pub(super) fn shares_normals(&self) -> bool {
+        self.shared.is_some()
     }
 
     /// How many patches of a kind there are.
@@ -115,48 +124,37 @@ impl ModelTables {
 
     /// How many types of connectivity have weights of their own: of rings (two-stage) or of patches (stencil).
     pub fn type_count(&self) -> usize {
-        match &self.construction {
-            ConstructionTable::TwoStage(rings) => rings.type_count,
-            ConstructionTable::Stencil(stencils) => stencils.type_count,
+        match (&self.stencils, &self.rings) {
+            (Some(stencils), _) => stencils.type_count,
+            (None, rings) => rings.as_ref().map_or(0, |rings| rings.type_count),
         }
     }
 
     /// Bytes of each table that drawing the surface reads.
     pub fn bytes(&self) -> Vec<TableBytes> {
-        let mut all = vec![("positions", 12 * self.stored_vertices() as u64)];
-        match &self.construction {
-            ConstructionTable::TwoStage(t) => all.extend([
-                ("ring_headers", bytes(&t.headers)),
-                ("ring_entries", bytes(&t.entries)),
-                ("ring_types", bytes(&t.types)),
-                ("patch_corners", bytes(&t.corners)),
-            ]),
-            ConstructionTable::Stencil(t) => all.extend([
-                ("stencil_patches", bytes(&t.patches)),
-                ("stencil_vertices", bytes(&t.vertices)),
-                ("stencil_types", bytes(&t.types)),
-            ]),
-        }
-        all
+        let positions = ("positions", 12 * self.stored_vertices() as u64);
+        let tables = self.bindings().into_iter().filter(|(name, array)| *name != "texcoords" && !array.is_empty());
+        std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).collect()
     }
 
-    /// The arrays behind bindings 1 to 4 of set 1, in order, with their names.
-    pub(super) fn bindings(&self) -> [(&'static str, &[u8]); 4] {
-        use bytemuck::cast_slice;
-        match &self.construction {
-            ConstructionTable::TwoStage(t) => [
-                ("ring headers", cast_slice(&t.headers)),
-                ("ring entries", cast_slice(&t.entries)),
-                ("ring types", cast_slice(&t.types)),
-                ("patch corners", cast_slice(&t.corners)),
-            ],
-            ConstructionTable::Stencil(t) => [
-                ("stencil patches", cast_slice(&t.patches)),
-                ("stencil vertices", cast_slice(&t.vertices)),
-                ("stencil types", cast_slice(&t.types)),
-                ("nothing", &[]),
-            ],
+    /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need
+    /// are empty.
+    pub(super) fn bindings(&self) -> [(&'static str, &[u8]); 9] {
+        fn array<'t, T, E: bytemuck::NoUninit>(table: &'t Option<T>, array: impl Fn(&'t T) -> &'t [E]) -> &'t [u8] {
+            table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
         }
+        let (rings, stencils) = (&self.rings, &self.stencils);
+        [
+            ("ring_headers", array(rings, |t| &t.headers)),
+            ("ring_entries", array(rings, |t| &t.entries)),
+            ("ring_types", array(rings, |t| &t.types)),
+            ("patch_corners", array(rings, |t| &t.corners)),
+            ("stencil_patches", array(stencils, |t| &t.patches)),
+            ("stencil_vertices", array(stencils, |t| &t.vertices)),
+            ("stencil_types", array(stencils, |t| &t.types)),
+            ("texcoords", array(&self.texcoords, |t| t.as_slice())),
+            ("shared_corners", array(&self.shared, |t| &t.corners)),
+        ]
     }
 }
 

@@ -1,5 +1,5 @@
 use crate::mesh::MeshError;
-use crate::patch::Undefined;
+use crate::patch::{Scheme, Undefined};
 
 /// Why a mesh could not become patches.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -11,4 +11,10 @@ pub enum TableError {
     /// The scheme has no patch for a face.
     #[error(transparent)]
     Undefined(#[from] Undefined),
+    /// Shared normals of a scheme that is not watertight.
+    #[error("the scheme {} has no edges that both patches evaluate alike: for shared normals and displacement choose gregory", scheme.name())]
+    NothingShared {
+        /// The scheme that was asked for.
+        scheme: Scheme,
+    },
 }

@@ -12,6 +12,7 @@ mod error;
 mod plan;
 mod prepare;
 mod rings;
+mod shared;
 mod stencils;
 
 pub use cpu::{CpuSurface, grid_parameters};
@@ -19,6 +20,7 @@ pub use error::TableError;
 pub use plan::{Patch, PatchPlan};
 pub use prepare::{FaceOrigin, Notice, Prepared, prepare};
 pub use rings::RingTable;
+pub use shared::{SharedCorner, SharedTable};
 pub use stencils::StencilTable;
 
 /// Bytes of a table's array.

@@ -12,6 +12,8 @@ pub const TRIANGLE_BIT: u32 = 1 << 31;
 pub const OPEN_BIT: u32 = 1 << 31;
 /// Bit of [`RingTable::headers`]`[3]`: edge points go straight at the neighbours ([`RingShape::has_frame`] is false).
 pub const CONE_BIT: u32 = 1 << 30;
+/// Bit of [`RingTable::headers`]`[3]`: transversals are the scheme's own, with weights in the ring's type.
+pub const FITTED_BIT: u32 = 1 << 29;
 
 /// One-rings as the shaders read them. GLSL twin: `glsl/lib/rings.glsl`.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -22,9 +24,8 @@ pub struct RingTable {
     pub entries: Vec<u32>,
     /// For each type of ring: `cos_k`; cosine and sine of each edge's direction; then, for the vertex itself and
     /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame); then, for
-    /// [`Scheme::GregoryFitted`], two weights for each edge ([`Fit::transversal_weights`]).
-    ///
-    /// [`Fit::transversal_weights`]: crate::patch::fitted::Fit::transversal_weights
+    /// rings with the [`FITTED_BIT`], two weights for each edge
+    /// ([`Fit::transversal_weights`](crate::patch::fitted::Fit::transversal_weights)).
     pub types: Vec<f32>,
     /// How many types there are.
     pub type_count: usize,
@@ -41,15 +42,8 @@ impl RingTable {
             .rings()
             .iter()
             .map(|ring| {
-                let (kind, has_frame) = types.of(topology, ring);
-                let mut faces = ring.faces;
-                if ring.open {
-                    faces |= OPEN_BIT;
-                }
-                if !has_frame {
-                    faces |= CONE_BIT;
-                }
-                let header = [topology.mesh_vertex(ring.start), entries, kind, faces];
+                let (kind, bits) = types.of(topology, ring);
+                let header = [topology.mesh_vertex(ring.start), entries, kind, ring.faces | bits];
                 entries += 2 * ring.faces + u32::from(ring.open);
                 header
             })
@@ -104,13 +98,13 @@ struct RingTypes {
     words: Vec<f32>,
     count: usize,
     /// Rings of quads only, by kind, openness and faces: no need to look at their faces one by one.
-    of_quads: HashMap<(RingKind, bool, u32), (u32, bool)>,
-    mixed: HashMap<RingShape, (u32, bool)>,
+    of_quads: HashMap<(RingKind, bool, u32), (u32, u32)>,
+    mixed: HashMap<RingShape, (u32, u32)>,
 }
 
 impl RingTypes {
-    /// Where the type of a ring starts, and whether it has a frame.
-    fn of(&mut self, topology: &Topology, ring: &Ring) -> (u32, bool) {
+    /// Where the type of a ring starts, and the bits of its header.
+    fn of(&mut self, topology: &Topology, ring: &Ring) -> (u32, u32) {
         if !ring.quads {
             return self.of_shape(RingShape::of(topology, ring));
         }
@@ -123,7 +117,7 @@ impl RingTypes {
         found
     }
 
-    fn of_shape(&mut self, shape: RingShape) -> (u32, bool) {
+    fn of_shape(&mut self, shape: RingShape) -> (u32, u32) {
         if let Some(&found) = self.mixed.get(&shape) {
             return found;
         }
@@ -136,11 +130,14 @@ impl RingTypes {
         for entry in 0..=(shape.faces() + shape.edges()) as u32 {
             self.words.extend([&frame.p, &frame.a, &frame.b].map(|row| row.weight(entry) as f32));
         }
-        for weights in (0..shape.edges()).filter_map(|j| self.scheme.edge_weights(&shape, j)) {
-            self.words.extend(weights.map(|x| x as f32));
+        let transversals: Vec<_> = (0..shape.edges()).map(|j| self.scheme.transversal_weights(&shape, j)).collect();
+        let fitted = transversals.iter().any(|&weights| weights != [1.0, 0.0]);
+        if fitted {
+            self.words.extend(transversals.iter().flatten().map(|&x| x as f32));
         }
         self.count += 1;
-        let found = (start, shape.has_frame());
+        let bits = [(shape.open, OPEN_BIT), (!shape.has_frame(), CONE_BIT), (fitted, FITTED_BIT)];
+        let found = (start, bits.into_iter().filter(|bit| bit.0).map(|bit| bit.1).sum());
         self.mixed.insert(shape, found);
         found
     }
@@ -148,7 +145,7 @@ impl RingTypes {
 
 impl RingValues<Row> {
     /// A ring whose values are unknowns, numbered as in a table: 0 for the vertex, then `a_0, d_0, a_1, d_1, ..`.
-    fn unknowns(shape: RingShape) -> Self {
+    pub(super) fn unknowns(shape: RingShape) -> Self {
         Self {
             centre: Row::unit(0),
             edges: (0..shape.edges() as u32).map(|j| Row::unit(1 + 2 * j)).collect(),

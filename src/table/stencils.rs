@@ -2,7 +2,7 @@
 
 use super::{PatchPlan, bytes};
 use crate::mesh::MeshError;
-use crate::patch::{Row, Scheme};
+use crate::patch::{RingShape, RingValues, Row, Scheme};
 use crate::table::Patch;
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -11,15 +11,21 @@ use std::collections::HashMap;
 /// Patches as weighted sums of the vertices around them. GLSL twin: `glsl/lib/stencils.glsl`.
 ///
 /// Within a kind, patches are sorted by type.
+///
+/// What patches share (the limit point of a corner and its edge points) every one of them sums in the same order: that
+/// of the corner's one-ring, from where the ring starts. The weights are stored once a type, in the order in which
+/// the patch sees the ring; how far it has to be turned is stored for each patch.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StencilTable {
     /// For each patch, where its vertices start and where its type starts.
     pub patches: Vec<[u32; 2]>,
-    /// The vertices of the one-ring of each patch.
+    /// For each patch, for each of its corners how many entries the corner's ring is to be turned by; then the vertices
+    /// of its one-ring.
     pub vertices: Vec<u32>,
     /// For each type, in words: for each corner of the patch where its entries start (counted from the start of the
-    /// type) and how many there are; then the entries: the number of a vertex in the patch's one-ring and, as f32
-    /// bits, its weights in the control points that the corner owns ([`Scheme::corner_slots`]). Vertices without weight are left out.
+    /// type), how many there are, and how many can be turned: those after the first. Then the entries: the number of
+    /// a vertex in the patch's one-ring and, as f32 bits, its weights in the control points that the corner owns
+    /// ([`Scheme::corner_slots`]). First those of the corner's ring, then others that have weight.
     pub types: Vec<u32>,
     /// How many types there are.
     pub type_count: usize,
@@ -68,6 +74,7 @@ impl StencilTable {
             .collect();
 
         let mut table = Self::default();
+        let mut shared = SharedRows { scheme, known: HashMap::new() };
         let mut types: HashMap<Key, (u32, u32)> = HashMap::new();
         let mut rings: Vec<(u32, u32, PatchRing)> = Vec::with_capacity(plan.patches().len());
         for (chunk, keys) in chunks {
@@ -77,7 +84,7 @@ impl StencilTable {
                 .into_iter()
                 .map(|(key, (_, example))| {
                     let next = types.len() as u32;
-                    *types.entry(key).or_insert_with(|| (next, table.push_type(topology, scheme, &chunk[example])))
+                    *types.entry(key).or_insert_with(|| (next, table.push_type(topology, &mut shared, &chunk[example])))
                 })
                 .collect();
             rings.extend(chunk.into_iter().map(|ring| {
@@ -89,6 +96,8 @@ impl StencilTable {
         rings.sort_by_key(|(number, _, ring)| (ring.patch.kind, *number));
         for (_, start, ring) in &rings {
             table.patches.push([table.vertices.len() as u32, *start]);
+            let corners = topology.mesh().face_corners(ring.patch.face);
+            table.vertices.extend(corners.map(|h| CornerRing::turn(topology, h as u32)));
             table.vertices.extend(&ring.vertices);
             table.largest_ring = table.largest_ring.max(ring.vertices.len());
         }
@@ -102,37 +111,160 @@ impl StencilTable {
     }
 
     /// Appends the weights for patches connected like `ring`'s. Gives where they start.
-    fn push_type(&mut self, topology: &Topology, scheme: Scheme, ring: &PatchRing) -> u32 {
+    fn push_type(&mut self, topology: &Topology, shared: &mut SharedRows, ring: &PatchRing) -> u32 {
         let local: HashMap<u32, u32> = ring.vertices.iter().zip(0..).map(|(&vertex, i)| (vertex, i)).collect();
-        let patch = ring.patch;
+        let (patch, scheme) = (ring.patch, shared.scheme);
         let rows = scheme.control_points(topology, patch.face, patch.kind, |vertex| Row::unit(local[&vertex]));
-        let corners = patch.kind.corners();
         let start = self.types.len();
-        self.types.resize(start + 2 * corners, 0);
-        let mut weights = Vec::with_capacity(scheme.owned(patch.kind));
-        for k in 0..corners {
+        self.types.resize(start + HEAD_WORDS * patch.kind.corners(), 0);
+        for (k, h) in topology.mesh().face_corners(patch.face).enumerate() {
             let owned = scheme.corner_slots(patch.kind, k);
             let first = self.types.len();
-            for vertex in 0..ring.vertices.len() as u32 {
-                weights.clear();
-                weights.extend(owned.iter().map(|&slot| rows[slot].weight(vertex) as f32));
-                if weights.iter().any(|&w| w != 0.0) {
+            let ring_of_corner = CornerRing::of(topology, h as u32);
+            let of_frame = if scheme.shares_frame(patch.kind) { shared.of(&ring_of_corner) } else { &[] };
+            // The other control points take each vertex once, wherever it is met first.
+            let mut pending = vec![true; ring.vertices.len()];
+            let around = ring_of_corner.entries.iter().map(|&(vertex, entry)| (local[&vertex], Some(entry)));
+            for (vertex, entry) in around.chain((0..ring.vertices.len() as u32).map(|vertex| (vertex, None))) {
+                let own = std::mem::replace(&mut pending[vertex as usize], false);
+                let weights: Vec<f32> = (owned.iter().enumerate())
+                    .map(|(i, &slot)| match of_frame.get(i) {
+                        Some(row) => entry.map_or(0.0, |entry| row.weight(entry)),
+                        None if own => rows[slot].weight(vertex),
+                        None => 0.0,
+                    } as f32)
+                    .collect();
+                if entry.is_some() || weights.iter().any(|&w| w != 0.0) {
                     self.types.push(vertex);
-                    self.types.extend(weights.iter().map(|w| w.to_bits()));
+                    self.types.extend(weights.into_iter().map(f32::to_bits));
                 }
             }
-            self.types[start + 2 * k] = (first - start) as u32;
-            self.types[start + 2 * k + 1] = ((self.types.len() - first) / (1 + owned.len())) as u32;
+            let count = (self.types.len() - first) / (1 + owned.len());
+            let head = [first - start, count, ring_of_corner.turning].map(|word| word as u32);
+            self.types[start + HEAD_WORDS * k..][..HEAD_WORDS].copy_from_slice(&head);
         }
         start as u32
     }
 }
 
-/// An upper bound of the vertices in all one-rings: what two corners of a patch share is counted twice.
+/// Words at the start of a type for each corner.
+const HEAD_WORDS: usize = 3;
+
+/// The one-ring of a patch corner, as the patch sees it.
+struct CornerRing {
+    /// The shape of the ring, a closed one turned to begin with the corner's plus edge.
+    shape: RingShape,
+    /// The ring edge that is the corner's plus edge: 0 in a closed ring.
+    plus: usize,
+    /// Vertices in the order in which they are summed, with their numbers as in [`RingValues::unknowns`].
+    entries: Vec<(u32, u32)>,
+    /// How many entries, after the first, are in a circle.
+    turning: usize,
+}
+
+impl CornerRing {
+    /// In a closed ring first the vertex itself, then around it from the plus edge of half-edge `h`. In an open ring the ends
+    /// come first, as in `ring_frame` of `glsl/lib/rings.glsl`: the ring on the other side of a crease has them the other
+    /// way round.
+    fn of(topology: &Topology, h: u32) -> Self {
+        let place = topology.place(h);
+        let ring = &topology.rings()[place.ring as usize];
+        let RingValues { mut shape, centre, mut edges, mut diagonals } =
+            RingValues::new(topology, ring, |vertex| vertex);
+        let (faces, index) = (shape.faces(), place.index as usize);
+        if !shape.open {
+            shape.triangles.rotate_left(index);
+            edges.rotate_left(index);
+            diagonals.rotate_left(index);
+        }
+        let edge = |j: usize| (edges[j], 1 + 2 * j as u32);
+        let diagonal = |i: usize| (!shape.triangles[i]).then(|| (diagonals[i], 2 + 2 * i as u32));
+        let ends = if shape.open { vec![edge(0), edge(faces)] } else { Vec::new() };
+        let mut entries = [ends, vec![(centre, 0)]].concat();
+        let before = entries.len();
+        for i in 0..faces {
+            if i > 0 || !shape.open {
+                entries.push(edge(i));
+            }
+            entries.extend(diagonal(i));
+        }
+        let turning = if shape.open { 0 } else { entries.len() - before };
+        Self { plus: if shape.open { index } else { 0 }, shape, entries, turning }
+    }
+
+    /// By how many entries a corner's ring has to be turned for it to begin where the ring itself does.
+    fn turn(topology: &Topology, h: u32) -> u32 {
+        let place = topology.place(h);
+        let ring = &topology.rings()[place.ring as usize];
+        if ring.open || place.index == 0 {
+            0
+        } else if ring.quads {
+            2 * (ring.faces - place.index)
+        } else {
+            // From the patch on to the end of the ring.
+            let after = topology.ring_half_edges(ring).skip(place.index as usize);
+            after.map(|h| if topology.face_size(h) == 3 { 1 } else { 2 }).sum()
+        }
+    }
+}
+
+/// The limit point of a corner and its edge points at the plus and the minus edge: what patches share.
+///
+/// All faces around a vertex get weights with the same bits: each row is made with the ring turned in a way that does not
+/// depend on the face that asks.
+struct SharedRows {
+    scheme: Scheme,
+    /// By the shape of the ring and its plus edge.
+    known: HashMap<(RingShape, usize), [Row; 3]>,
+}
+
+impl SharedRows {
+    fn of(&mut self, ring: &CornerRing) -> &[Row] {
+        let key = (ring.shape.clone(), ring.plus);
+        let scheme = self.scheme;
+        self.known.entry(key).or_insert_with(|| {
+            if ring.shape.open { open_rows(scheme, &ring.shape, ring.plus) } else { closed_rows(scheme, &ring.shape) }
+        })
+    }
+}
+
+fn open_rows(scheme: Scheme, shape: &RingShape, plus: usize) -> [Row; 3] {
+    let ring = RingValues::unknowns(shape.clone());
+    let frame = scheme.frame(&ring);
+    [frame.p.clone(), ring.edge_point(&frame, plus), ring.edge_point(&frame, plus + 1)]
+}
+
+fn closed_rows(scheme: Scheme, shape: &RingShape) -> [Row; 3] {
+    let faces = shape.faces();
+    let turned = |by: usize| {
+        let mut shape = shape.clone();
+        shape.triangles.rotate_left(by % faces);
+        shape
+    };
+    // From the numbers of the turned ring to those of the ring; the vertex itself stays 0.
+    let back = |row: &Row, by: usize| {
+        let number = |entry: u32| if entry == 0 { 0 } else { 1 + (entry - 1 + 2 * by as u32) % (2 * faces as u32) };
+        Row::new(row.weights().iter().map(|&(entry, weight)| (number(entry), weight)).collect())
+    };
+    let edge = |j: usize| {
+        let ring = RingValues::unknowns(turned(j));
+        back(&ring.edge_point(&scheme.frame(&ring), 0), j)
+    };
+    // The limit point from the least of all turned shapes; turns that do not change it must not change the weights.
+    let least = (0..faces).min_by_key(|&by| turned(by).triangles).unwrap_or(0);
+    let canonical = turned(least);
+    let period = (1..=faces).find(|&by| turned(least + by) == canonical).unwrap_or(faces) as u32;
+    let p = scheme.frame(&RingValues::unknowns(canonical)).p;
+    let alike = |entry: u32| if entry == 0 { 0 } else { 1 + (entry - 1) % (2 * period) };
+    let p = Row::new((0..=2 * faces as u32).map(|entry| (entry, p.weight(alike(entry)))).collect());
+    [back(&p, least), edge(0), edge(1)]
+}
+
+/// An upper bound of [`StencilTable::vertices`]: what two corners of a patch share is counted twice.
 fn largest_vertex_count(topology: &Topology, plan: &PatchPlan) -> usize {
     let around = |h: &u32| {
         let ring = &topology.rings()[topology.place(*h).ring as usize];
-        1 + ring.faces as usize + ring.edges() as usize
+        2 + ring.faces as usize + ring.edges() as usize
     };
     plan.corners(topology).iter().map(around).sum()
 }

@@ -1,0 +1,67 @@
+//! What the two patches at an edge share: its curve and one normal along it, from data of the edge alone
+//! (patch_maths B, "One normal an edge").
+//!
+//! Both patches evaluate an edge in one direction, from the lower vertex to the higher, so that they get the same bits.
+
+use super::bicubic::{Basis, cubic};
+use super::point::{scalar, unit_normal};
+use super::{Blend, Frame, Point, RingValues, Scheme};
+
+/// An edge from one vertex to another.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Edge<P> {
+    /// The Bezier points of its curve.
+    pub curve: [P; 4],
+    /// Across the edge at either end, as its vertex sees it ([`RingValues::across`]).
+    pub across: [P; 2],
+    /// The transversal at either end, as its vertex sees it ([`Scheme::transversal`]).
+    pub transversals: [P; 2],
+}
+
+impl<P: Point> Edge<P> {
+    /// The same edge seen from its other end.
+    pub fn reversed(self) -> Self {
+        let Self { mut curve, mut across, mut transversals } = self;
+        curve.reverse();
+        across.reverse();
+        transversals.reverse();
+        Self { curve, across, transversals }
+    }
+}
+
+impl<P: Point + Blend> Edge<P> {
+    /// The edge that is edge `index[0]` of the ring at its start and edge `index[1]` of the one at its end; frames are those of
+    /// the scheme.
+    pub fn new(scheme: Scheme, rings: [&RingValues<P>; 2], frames: [&Frame<P>; 2], index: [usize; 2]) -> Self {
+        let at = |end: usize| (rings[end], frames[end], index[end]);
+        let point = |(ring, frame, j): (&RingValues<P>, &Frame<P>, usize)| ring.edge_point(frame, j);
+        let transversal = |(ring, frame, j): (&RingValues<P>, &Frame<P>, usize)| scheme.transversal(ring, frame, j);
+        let across = |(ring, frame, j): (&RingValues<P>, &Frame<P>, usize)| ring.across(frame, j);
+        Self {
+            curve: [frames[0].p, point(at(0)), point(at(1)), frames[1].p],
+            across: [across(at(0)), across(at(1))],
+            transversals: [transversal(at(0)), transversal(at(1))],
+        }
+    }
+}
+
+/// The point at `t` along an edge.
+///
+/// GLSL twin: `edge_position` in `glsl/lib/edges.glsl`.
+pub fn edge_position<P: Point>(edge: &Edge<P>, t: P::Scalar) -> P {
+    cubic(&Basis::new::<P>(t), &edge.curve)
+}
+
+/// The unit normal at `t` along an edge, of both its faces. Where curve and transversal are parallel it is along `fallback`.
+///
+/// GLSL twin: `edge_normal` in `glsl/lib/edges.glsl`.
+pub fn edge_normal<P: Point>(edge: &Edge<P>, t: P::Scalar, fallback: P) -> P {
+    let [p0, e0, e1, p1] = edge.curve;
+    let s = scalar::<P>(1.0) - t;
+    let (ss, st, tt) = (s * s, scalar::<P>(2.0) * (s * t), t * t);
+    let along = (e0 - p0) * ss + (e1 - e0) * st + (p1 - e1) * tt;
+    let three = scalar::<P>(3.0);
+    let across = (edge.across[0] * (ss * s) - edge.across[1] * (tt * t))
+        + (edge.transversals[0] * (three * ss * t) - edge.transversals[1] * (three * tt * s));
+    unit_normal(along, across, fallback)
+}

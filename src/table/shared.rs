@@ -1,0 +1,124 @@
+//! What patches share: which ring speaks for each edge and each vertex.
+
+use super::{PatchPlan, bytes};
+use crate::mesh::NO_TWIN;
+use crate::topology::Topology;
+use rayon::prelude::*;
+
+/// Bit of [`SharedCorner::plus_edge`]: the plus edge leads to a lower vertex. Edges are evaluated from the lower one on.
+pub const REVERSED_BIT: u32 = 1 << 31;
+/// Bit of [`SharedCorner::plus_edge`]: the faces at the plus edge are lit with normals of their own.
+pub const SHARP_EDGE_BIT: u32 = 1 << 30;
+
+/// Who speaks for what a patch corner shares with other patches. GLSL twin: `glsl/lib/shared.glsl`.
+///
+/// Along a smooth edge and around a smooth vertex there is only one ring to ask. Along a crease the side speaks on whose left
+/// the edge leads from the lower vertex to the higher; for a vertex with several rings the first of them in
+/// [`Topology::rings`].
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct SharedCorner {
+    /// The ring that speaks for the vertex.
+    pub ring: u32,
+    /// The ring at this vertex that speaks for the plus edge.
+    pub plus_ring: u32,
+    /// The number of the plus edge in that ring, and bits.
+    pub plus_edge: u32,
+    /// The ring at this vertex that speaks for the minus edge.
+    pub minus_ring: u32,
+    /// The number of the minus edge in that ring.
+    pub minus_edge: u32,
+}
+
+/// A [`SharedCorner`] for each patch corner, in the order of the plan.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SharedTable {
+    /// In the order of the patches' corners.
+    pub corners: Vec<SharedCorner>,
+}
+
+impl SharedTable {
+    /// For the corners of the patches in `plan`.
+    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
+        let speakers = Speakers::new(topology);
+        let corner = |h: u32| speakers.corner(h);
+        Self { corners: plan.corners(topology).into_par_iter().map(corner).collect() }
+    }
+
+    /// Bytes of the array.
+    pub fn bytes(&self) -> u64 {
+        bytes(&self.corners)
+    }
+}
+
+/// Who speaks for edges and vertices.
+pub(crate) struct Speakers<'t, 'm> {
+    topology: &'t Topology<'m>,
+    /// The first ring of each vertex of the mesh.
+    first_rings: Vec<u32>,
+}
+
+const NO_RING: u32 = u32::MAX;
+
+impl<'t, 'm> Speakers<'t, 'm> {
+    pub(crate) fn new(topology: &'t Topology<'m>) -> Self {
+        let mut first_rings = vec![NO_RING; topology.mesh().vertex_count()];
+        for (ring, index) in topology.rings().iter().zip(0..) {
+            let first = &mut first_rings[topology.mesh_vertex(ring.start) as usize];
+            *first = (*first).min(index);
+        }
+        Self { topology, first_rings }
+    }
+
+    /// The half-edge that speaks for the edge of half-edge `h`: itself or its twin.
+    pub(crate) fn edge(&self, h: u32) -> u32 {
+        let twin = self.topology.mesh().twins()[h as usize];
+        if twin != NO_TWIN && self.is_reversed(h) { twin } else { h }
+    }
+
+    /// Whether a half-edge leads to a lower vertex.
+    pub(crate) fn is_reversed(&self, h: u32) -> bool {
+        self.topology.mesh_vertex(h) > self.topology.mesh_vertex(self.topology.next(h))
+    }
+
+    /// Ring and number in it of the edge of half-edge `h`, at its start, as the one who speaks for it sees it.
+    fn at_start(&self, h: u32) -> (u32, u32) {
+        let speaker = self.edge(h);
+        if speaker == h { self.plus(h) } else { self.minus(self.topology.next(speaker)) }
+    }
+
+    /// The same at its end.
+    fn at_end(&self, h: u32) -> (u32, u32) {
+        let speaker = self.edge(h);
+        if speaker == h { self.minus(self.topology.next(h)) } else { self.plus(speaker) }
+    }
+
+    fn plus(&self, h: u32) -> (u32, u32) {
+        let place = self.topology.place(h);
+        (place.ring, place.index)
+    }
+
+    fn minus(&self, h: u32) -> (u32, u32) {
+        let place = self.topology.place(h);
+        (place.ring, (place.index + 1) % self.topology.rings()[place.ring as usize].edges())
+    }
+
+    fn corner(&self, h: u32) -> SharedCorner {
+        let topology = self.topology;
+        let (plus_ring, plus_edge) = self.at_start(h);
+        let (minus_ring, minus_edge) = self.at_end(topology.prev(h));
+        let twin = topology.mesh().twins()[h as usize];
+        // At a dart the edge is sharp, and both faces are in one ring all the same.
+        let one_ring = twin == NO_TWIN
+            || (topology.place(h).ring == topology.place(topology.next(twin)).ring
+                && topology.place(twin).ring == topology.place(topology.next(h)).ring);
+        let bit = |on: bool, bit: u32| if on { bit } else { 0 };
+        SharedCorner {
+            ring: self.first_rings[topology.mesh_vertex(h) as usize],
+            plus_ring,
+            plus_edge: plus_edge | bit(self.is_reversed(h), REVERSED_BIT) | bit(!one_ring, SHARP_EDGE_BIT),
+            minus_ring,
+            minus_edge,
+        }
+    }
+}
