@@ -17,11 +17,30 @@
 //! **What was fitted on what.** The six numbers of [`Fit::GREGORY`] minimise the angle between normals and the distance
 //! along them, each against that of [`Scheme::Gregory`](super::Scheme::Gregory) on the same mesh, over small random
 //! meshes of triangles and quads. No built-in shape and no model from elsewhere is among them. `cargo run --release
-//! --example fit_gregory` fits again, in some seconds, and prints the errors before and after.
+//! --example fit_gregory` fits again in two seconds.
 //!
-//! MEASURED
+//! Measured as by `subdiv error`, root mean squares over all faces, as multiples of Gregory's:
 //!
-//! **What did not generalise.** MEASURED
+//! | | normals | nearest distance |
+//! |---|---|---|
+//! | training set (192 meshes; distance along the normal) | 0.953 | 0.933 |
+//! | monster frog, bigguy | 0.82, 0.86 | 0.97, 0.90 |
+//! | the same, refined once | 0.76, 0.78 | |
+//! | OpenSubdiv's car, rook | 0.87, 1.01 | 0.90, 1.00 |
+//! | built-in `creature`, `creature-mixed`, `valences` | 0.82, 0.79, 0.87 | 0.86, 0.72, 0.91 |
+//! | built-in `polygons`, `cube`, `tetrahedron` | 1.04, 2.71, 0.57 | 1.52, 0.08, 0.27 |
+//!
+//! Normals are closer than those of every other scheme on the character meshes, the car and `valences`. Distances at the
+//! same parameters grow, by 6 to 8 % on characters: points move within the surface.
+//!
+//! **What it is not good at.** Balls: on `polygons`, 1e-5 of the diagonal from the limit surface in any case, and `cube`
+//! Gregory's normals are closer. The rook, whose narrow bevels are unlike the training set, gains nothing.
+//!
+//! **What did not generalise**, when fitted to the same meshes. Factors by pairs of valences, up to 29 numbers: no better
+//! elsewhere than by the vertex's own. Weights of their own for the midpoints and centroids in `r_j`: up to 2 % worse
+//! elsewhere. Cubes of c: 1 to 3 % worse on the frog and `valences`. Factors of their own for edges between two triangles: 7 %
+//! worse on `creature-mixed`. (Tangents left as long as they were would lose a third of the gain on `creature`; the
+//! transversal of the edge's other end would gain another 1 to 3 %, for twice the fetches.)
 //!
 //! [`gregory`]: super::gregory
 
