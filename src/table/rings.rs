@@ -24,7 +24,7 @@ pub struct RingTable {
     pub entries: Vec<u32>,
     /// For each type of ring: `cos_k`; cosine and sine of each edge's direction; then, for the vertex itself and
     /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame); then, for
-    /// rings with the [`FITTED_BIT`], two weights for each edge
+    /// rings with their `FITTED_BIT` set, two weights for each edge
     /// ([`Fit::transversal_weights`](crate::patch::fitted::Fit::transversal_weights)).
     pub types: Vec<f32>,
     /// How many types there are.
