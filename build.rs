@@ -1,5 +1,6 @@
-//! Compiles every shader below `glsl/` (and `tests/glsl/`) to SPIR-V with glslang, and writes the Rust files that
-//! embed them: `shaders.rs` (included by `src/gpu/shaders.rs`) and `test_shaders.rs` (included by tests).
+//! Compiles every shader below `glsl/` (and `src/cli/glsl/`, `tests/glsl/`) to SPIR-V with glslang, and writes the Rust
+//! files that embed them: `shaders.rs` (included by `src/gpu/shaders.rs`), `cli_shaders.rs` (by the program) and
+//! `test_shaders.rs` (by tests).
 //!
 //! A shader `evaluate/gregory_quad.tese` becomes the constant `EVALUATE_GREGORY_QUAD_TESE`. A line such as
 //!
@@ -49,6 +50,7 @@ fn build() -> Result<(), String> {
 
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: run this through cargo")?);
     embed(Path::new("glsl"), &out, "shaders.rs")?;
+    embed(Path::new("src/cli/glsl"), &out, "cli_shaders.rs")?;
     embed(Path::new("tests/glsl"), &out, "test_shaders.rs")
 }
 

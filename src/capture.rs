@@ -7,7 +7,10 @@ use crate::gpu::{
 };
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::mesh::ControlMesh;
-use crate::renderer::{Capture, DrawItem, Error, ModelOptions, ModelTables, Options, Renderer, Style, Target, View};
+use crate::renderer::{
+    Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Factor, ModelOptions, ModelTables, Options, Renderer,
+    Style, Target, View,
+};
 use crate::topology::PatchKind;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -42,10 +45,62 @@ const HEAD_BYTES: u64 = size_of::<Head>() as u64;
 const RECORD_BYTES: u64 = size_of::<CapturedVertex>() as u64;
 /// Words that the control points of a patch take, whatever its kind.
 const CONTROL_POINT_WORDS: usize = 96;
+/// Words that its factors take, after them.
+const FACTOR_WORDS: usize = 7;
+/// In the place of a grid's size: vertices on edges as they come.
+const EDGES_ONLY: u32 = u32::MAX;
 /// Larger captures are done in several draws, each of which keeps some of the patches.
 const MAX_BYTES: u64 = 128 << 20;
 
 const _: () = assert!(RECORD_BYTES == 40 && HEAD_BYTES == 20);
+
+/// Which vertices of a draw are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Which {
+    /// Every one.
+    All,
+    /// Those on the edges and corners of patches.
+    OnEdges,
+}
+
+/// The factors of a patch as the control shader made them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CapturedFactors {
+    /// What each edge asks for, from the first corner's plus edge on, not yet within limits; the last is nothing for triangles.
+    pub asked: [f32; 4],
+    /// The inner factors; the second is nothing for triangles.
+    pub inner: [f32; 2],
+    /// Whether the patch is left out.
+    pub culled: bool,
+}
+
+/// How the watched model is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaptureDraw {
+    /// What factors in pixels and culling go by.
+    pub view: View,
+    /// The factors.
+    pub factor: Factor,
+    /// Those of edges, for [`Factor::Edges`]; else empty.
+    pub edge_factors: Vec<f32>,
+    /// Patches that are left out.
+    pub cull: Cull,
+    /// Scale and bias of the displacement.
+    pub displacement: [f32; 2],
+}
+
+impl CaptureDraw {
+    /// All patches with these factors, from nowhere in particular.
+    pub fn new(factor: impl Into<Factor>) -> Self {
+        Self {
+            view: View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [0.0, 0.0, 1.0], 1.0).sized(256, 256),
+            factor: factor.into(),
+            edge_factors: Vec::new(),
+            cull: Cull::NONE,
+            displacement: [0.0; 2],
+        }
+    }
+}
 
 /// A model whose tessellation stages can be watched.
 pub struct Captured<'h> {
@@ -53,6 +108,8 @@ pub struct Captured<'h> {
     options: ModelOptions,
     tables: ModelTables,
     positions: Vec<[f32; 3]>,
+    displacement: Option<DisplacementMap>,
+    shaders: Vec<(String, Vec<u32>)>,
 }
 
 impl<'h> Captured<'h> {
@@ -67,7 +124,37 @@ impl<'h> Captured<'h> {
             return Err(Error::Unsupported { device, missing: vec!["vertexPipelineStoresAndAtomics".into()] });
         }
         let tables = ModelTables::new(mesh, options)?;
-        Ok(Self { headless, options: options.clone(), tables, positions: mesh.positions_f32() })
+        Ok(Self {
+            headless,
+            options: options.clone(),
+            tables,
+            positions: mesh.positions_f32(),
+            displacement: None,
+            shaders: Vec::new(),
+        })
+    }
+
+    /// With a displacement map.
+    ///
+    /// # Errors
+    /// As [`Captured::new`]; a mesh without texture coordinates.
+    ///
+    /// # Safety
+    /// As [`Renderer::add_displacement`]; the map lives as long as this.
+    pub unsafe fn displaced(
+        headless: &'h Headless,
+        mesh: &ControlMesh,
+        options: &ModelOptions,
+        map: DisplacementMap,
+    ) -> Result<Self, Error> {
+        // The first map that a renderer is told of.
+        let options = ModelOptions { displacement: Some(DisplacementId::FIRST), ..options.clone() };
+        Ok(Self { displacement: Some(map), ..Self::new(headless, mesh, &options)? })
+    }
+
+    /// With shaders in the place of the crate's own: see [`Options::shaders`].
+    pub fn with_shaders(self, shaders: Vec<(String, Vec<u32>)>) -> Self {
+        Self { shaders, ..self }
     }
 
     /// The arrays that the shaders read, with the order of the patches.
@@ -80,16 +167,10 @@ impl<'h> Captured<'h> {
     /// # Errors
     /// Failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn control_points(&self) -> Result<Vec<Vec<[f32; 3]>>, Error> {
-        let words = self.capture(
-            Capture::Points,
-            1.0,
-            |_| 4 * CONTROL_POINT_WORDS as u64,
-            |patches| Head { first_patch: patches.start, patches: patches.len() as u32, ..Head::zeroed() },
-        )?;
+        let words = self.capture_patches(&CaptureDraw::new(1.0))?;
         let patches = self.tables.plan().patches().iter();
-        let words: Vec<f32> = words.into_iter().flat_map(|(_, words)| words).collect();
         let scheme = self.options.scheme;
-        let points = patches.zip(words.chunks_exact(CONTROL_POINT_WORDS)).map(|(patch, words)| {
+        let points = patches.zip(words.chunks_exact(CONTROL_POINT_WORDS + FACTOR_WORDS)).map(|(patch, words)| {
             let mut points = vec![[0.0; 3]; scheme.points(patch.kind)];
             // The shaders count them corner by corner.
             let slots = (0..patch.kind.corners()).flat_map(|k| scheme.corner_slots(patch.kind, k));
@@ -97,6 +178,30 @@ impl<'h> Captured<'h> {
             points
         });
         Ok(points.collect())
+    }
+
+    /// The factors of every patch, in the order of [`ModelTables::plan`].
+    ///
+    /// # Errors
+    /// As [`Renderer::cmd_draw`] and [`Renderer::set_edge_factors`].
+    pub fn factors(&self, draw: &CaptureDraw) -> Result<Vec<CapturedFactors>, Error> {
+        let words = self.capture_patches(draw)?;
+        let factors = words.chunks_exact(CONTROL_POINT_WORDS + FACTOR_WORDS).map(|words| {
+            let w = &words[CONTROL_POINT_WORDS..];
+            CapturedFactors { asked: [w[0], w[1], w[2], w[3]], inner: [w[4], w[5]], culled: w[6] != 0.0 }
+        });
+        Ok(factors.collect())
+    }
+
+    /// What the control shader says of each patch.
+    fn capture_patches(&self, draw: &CaptureDraw) -> Result<Vec<f32>, Error> {
+        let words = self.capture(
+            Capture::Points,
+            draw,
+            |_| 4 * (CONTROL_POINT_WORDS + FACTOR_WORDS) as u64,
+            |patches| Head { first_patch: patches.start, patches: patches.len() as u32, ..Head::zeroed() },
+        )?;
+        Ok(words.into_iter().flat_map(|(_, words)| words).collect())
     }
 
     /// Every patch on a grid of `n` samples along each side, in the order of
@@ -111,7 +216,7 @@ impl<'h> Captured<'h> {
         }
         let places = |kind| if kind == PatchKind::Triangle { n * (n + 1) / 2 } else { n * n };
         let bytes = |kind| u64::from(places(kind)) * RECORD_BYTES;
-        let captured = self.capture(Capture::Grid, (n - 1) as f32, bytes, |patches| Head {
+        let captured = self.capture(Capture::Grid, &CaptureDraw::new((n - 1) as f32), bytes, |patches| Head {
             first_patch: patches.start,
             patches: patches.len() as u32,
             grid: n,
@@ -133,18 +238,38 @@ impl<'h> Captured<'h> {
     /// # Errors
     /// [`Error::BadFactor`]; failed Vulkan calls; tables larger than a shader of the device can see.
     pub fn vertices(&self, factor: f32) -> Result<Vec<CapturedVertex>, Error> {
+        self.vertices_of(&CaptureDraw::new(factor), Which::All)
+    }
+
+    /// The vertices of a draw, all or those on edges only.
+    ///
+    /// # Errors
+    /// As [`Renderer::cmd_draw`] and [`Renderer::set_edge_factors`].
+    pub fn vertices_of(&self, draw: &CaptureDraw, which: Which) -> Result<Vec<CapturedVertex>, Error> {
         let max = self.headless.properties().max_tessellation_level;
+        let most = match draw.factor {
+            Factor::Uniform(factor) => factor,
+            Factor::Pixels(_) | Factor::Curvature(_) => max as f32,
+            Factor::Edges(scale) => draw.edge_factors.iter().fold(1.0, |most, &factor| (scale * factor).max(most)),
+        };
         let bytes = |kind| {
             let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
+            let vertices = match which {
+                Which::All => tessellated_vertices(domain, self.options.spacing, most, max),
+                Which::OnEdges => 4 * (self.options.spacing.segments(most, max) + 1),
+            };
             // At worst a device shares nothing between the triangles of a patch.
             let shared = if self.headless.properties().patch_batch == crate::gpu::PatchBatch::LAVAPIPE { 1 } else { 6 };
-            shared * u64::from(tessellated_vertices(domain, self.options.spacing, factor, max)) * RECORD_BYTES
+            shared * u64::from(vertices) * RECORD_BYTES
         };
         let mut vertices = Vec::new();
-        let captured = self.capture(Capture::Vertices, factor, bytes, |patches| Head {
+        let captured = self.capture(Capture::Vertices, draw, bytes, |patches| Head {
             first_patch: patches.start,
             patches: patches.len() as u32,
-            grid: 0,
+            grid: match which {
+                Which::All => 0,
+                Which::OnEdges => EDGES_ONLY,
+            },
             capacity: u32::MAX,
             count: 0,
         })?;
@@ -159,7 +284,7 @@ impl<'h> Captured<'h> {
     fn capture(
         &self,
         mode: Capture,
-        factor: f32,
+        draw: &CaptureDraw,
         bytes: impl Fn(PatchKind) -> u64,
         head: impl Fn(&Range<u32>) -> Head,
     ) -> Result<Vec<(PatchKind, Vec<f32>)>, Error> {
@@ -171,6 +296,7 @@ impl<'h> Captured<'h> {
         let options = Options {
             styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
             set_layouts: vec![layout.raw()],
+            shaders: self.shaders.clone(),
             ..Options::default()
         };
         let desc = target.desc();
@@ -178,7 +304,16 @@ impl<'h> Captured<'h> {
         // SAFETY: the set layout is that of the capture buffer and outlives the renderer, which is dropped when idle:
         // every submission is waited for.
         let mut renderer = unsafe { Renderer::with_capture(context, &render_target, &options, mode)? };
+        if let Some(map) = self.displacement {
+            // SAFETY: as the caller of `displaced` promises.
+            unsafe { renderer.add_displacement(map) };
+        }
         let model = renderer.add_tables(self.tables.clone(), &self.positions, &self.options)?;
+        if let Factor::Edges(_) = draw.factor {
+            renderer.set_edge_factors(model, 0, &draw.edge_factors)?;
+        }
+        let CaptureDraw { factor, cull, displacement, .. } = *draw;
+        let item = DrawItem { factor, cull, displacement, ..DrawItem::new(model, 1.0) };
 
         let mut captured = Vec::new();
         for kind in PatchKind::ALL {
@@ -204,14 +339,13 @@ impl<'h> Captured<'h> {
                 buffer.write(0, &[head])?;
                 let (_pool, set) = capture_set(headless, layout.raw(), &buffer)?;
                 let pipeline_layout = renderer.pipeline_layout();
-                let view = View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [0.0, 0.0, 1.0], 1.0);
                 // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
                 headless.try_submit(|cmd| unsafe {
                     renderer.cmd_prepare(cmd, 0)?;
                     target.cmd_begin(cmd, [0.0; 4]);
                     let point = vk::PipelineBindPoint::GRAPHICS;
                     headless.device().cmd_bind_descriptor_sets(cmd, point, pipeline_layout, 2, &[set], &[]);
-                    renderer.cmd_draw(cmd, 0, &view, &[DrawItem::new(model, factor)])?;
+                    renderer.cmd_draw(cmd, 0, &draw.view, &[item])?;
                     target.cmd_end(cmd);
                     Ok::<(), Error>(())
                 })?;

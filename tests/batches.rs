@@ -126,6 +126,7 @@ fn straight_down() -> View {
         view_projection: [[scale, 0.0, 0.0, 0.0], [0.0, scale, 0.0, 0.0], [0.0; 4], [shift, shift, 0.5, 1.0]],
         eye: [0.0, 0.0, 1.0],
         light: [0.0, 0.0, 1.0],
+        viewport: [0.0; 2],
     }
 }
 

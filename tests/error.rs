@@ -65,6 +65,9 @@ fn regular_faces_are_exact() {
         // Both surfaces as triangles: half way between the corners of one there are chords.
         let nearest = error.all.nearest.unwrap();
         assert!(nearest.max < 1e-4 && nearest.rms > 0.0, "{scheme:?}: {nearest:?}");
+        // That is what is measured of the limit surface itself.
+        let floor = report.nearest_floor.unwrap();
+        assert!((nearest.rms / floor.rms - 1.0).abs() < 1e-6, "{scheme:?}: {nearest:?} {floor:?}");
     }
 }
 

@@ -52,7 +52,12 @@ impl Stage {
     }
 
     fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Picture, Error> {
-        let view = View { view_projection: orthographic(), eye: [0.0, 0.0, 10.0], light: [0.0, 0.0, 1.0] };
+        let view = View {
+            view_projection: orthographic(),
+            eye: [0.0, 0.0, 10.0],
+            light: [0.0, 0.0, 1.0],
+            viewport: [0.0; 2],
+        };
         // SAFETY: as above, inside rendering.
         let pixels =
             self.target.draw(&self.headless, BLACK, |cmd| unsafe { renderer.cmd_draw(cmd, frame, &view, items) })?;
@@ -276,8 +281,10 @@ fn wrong_use_is_told() {
     assert_eq!(draw(&mut renderer, 2, item), "frame index 2: Options::frames_in_flight is 2, so frames are 0 to 1");
     for factor in [0.5, f32::NAN] {
         assert_eq!(
-            draw(&mut renderer, 0, DrawItem { factor, ..item }),
-            format!("model 0: the tessellation factor {factor} is no number from 1 up")
+            draw(&mut renderer, 0, DrawItem { factor: factor.into(), ..item }),
+            format!(
+                "model 0: Uniform({factor:?}): a tessellation factor is a number from 1 up, pixels and scales are above 0"
+            )
         );
         stage.prepare(&mut renderer, 0);
     }

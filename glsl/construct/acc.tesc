@@ -4,6 +4,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 8
+// The others are tangents.
+#define HULL 4
 #include "control.glsl"
 #include "frames.glsl"
 
@@ -65,4 +67,6 @@ void main() {
     owned[gl_InvocationID][6] = acc_across(inner, along_plus, owned[next][2], t_plus, cosine, in_limit[next].w);
     owned[gl_InvocationID][7] = acc_across(inner, along_minus, owned[before][1], t_minus, cosine, in_limit[before].w);
     finish_corner(in_patch_number[0]);
+    barrier();
+    finish_patch(in_patch_number[0]);
 }

@@ -1,7 +1,7 @@
 // Second stage of the two-stage construction: the control points of a Gregory patch from the frames of its corners.
 // Each corner owns p, e+, e-, f+, f-. Rust twin: `gregory_points` in src/patch/gregory.rs.
-// variants: CAPTURE, CAPTURE_POINTS, TEXCOORD, SHARED, SHARED+CAPTURE, SHARED+TEXCOORD
-// variants: TRIANGLE, TRIANGLE+CAPTURE, TRIANGLE+CAPTURE_POINTS, TRIANGLE+TEXCOORD, TRIANGLE+SHARED, TRIANGLE+SHARED+CAPTURE, TRIANGLE+SHARED+TEXCOORD
+// variants: CAPTURE, CAPTURE_POINTS, TEXCOORD, SHARED, SHARED+CAPTURE, SHARED+TEXCOORD, DISPLACED, DISPLACED+CAPTURE
+// variants: TRIANGLE, TRIANGLE+CAPTURE, TRIANGLE+CAPTURE_POINTS, TRIANGLE+TEXCOORD, TRIANGLE+SHARED, TRIANGLE+SHARED+CAPTURE, TRIANGLE+SHARED+TEXCOORD, TRIANGLE+DISPLACED, TRIANGLE+DISPLACED+CAPTURE
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 5
@@ -38,4 +38,6 @@ void main() {
     owned[gl_InvocationID][4] = face_point(p, minus, owned[before][1], cosine, in_limit[before].w,
                                            -corner_transversal(corner, k, corner.minus));
     finish_framed_corner(corner, k);
+    barrier();
+    finish_patch(in_patch_number[0]);
 }

@@ -4,6 +4,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 6
+// Its spokes may leave the hull of what corners own.
+#define HULL 0
 #include "control.glsl"
 #include "frames.glsl"
 
@@ -68,4 +70,6 @@ void main() {
         (1.0 / 16.0) * (owned[next][3] + owned[k][4] - owned[before][4] - owned[opposite][3]);
 #endif
     finish_corner(in_patch_number[0]);
+    barrier();
+    finish_patch(in_patch_number[0]);
 }

@@ -1,5 +1,5 @@
 // A Gregory quad. Rust twin: `evaluate_gregory_quad` in src/patch/gregory.rs.
-// variants: TEXCOORD, CAPTURE, CAPTURE_GRID, SHARED, SHARED+TEXCOORD, SHARED+CAPTURE, SHARED+CAPTURE_GRID
+// variants: TEXCOORD, CAPTURE, CAPTURE_GRID, SHARED, SHARED+TEXCOORD, SHARED+CAPTURE, SHARED+CAPTURE_GRID, DISPLACED, DISPLACED+CAPTURE, DISPLACED+CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 5

@@ -6,13 +6,15 @@
 layout(set = 2, binding = 0, std430) buffer Capture {
     uint capture_first_patch;  // patches before this one are not captured
     uint capture_patches;      // nor those from first + patches on
-    uint capture_grid;         // samples along a side of a patch, or 0: every evaluated vertex as it comes
+    uint capture_grid;         // samples along a side of a patch, or 0: every evaluated vertex as it comes, or EDGES_ONLY
     uint capture_capacity;     // records that fit
     uint capture_count;        // records written when capture_grid is 0
     float captured[];
 };
 
 const uint CONTROL_POINT_WORDS = 96u;
+const uint FACTOR_WORDS = 7u;
+const uint EDGES_ONLY = ~0u;  // vertices on edges as they come
 const uint RECORD_WORDS = 10u;
 
 void put(uint at, vec3 x) {
@@ -25,7 +27,18 @@ void put(uint at, vec3 x) {
 void capture_point(uint patch_index, uint number, vec3 x) {
     uint slot = patch_index - capture_first_patch;
     if (slot < capture_patches) {
-        put(slot * CONTROL_POINT_WORDS + 3u * number, x);
+        put(slot * (CONTROL_POINT_WORDS + FACTOR_WORDS) + 3u * number, x);
+    }
+}
+
+// The factors that its edges ask for, in order from the first corner's plus edge; its inner factors; whether it is left out.
+void capture_factors(uint patch_index, vec4 asked, vec2 inner, bool culled) {
+    uint slot = patch_index - capture_first_patch;
+    if (slot < capture_patches) {
+        uint at = slot * (CONTROL_POINT_WORDS + FACTOR_WORDS) + CONTROL_POINT_WORDS;
+        put(at, asked.xyz);
+        put(at + 3u, vec3(asked.w, inner));
+        captured[at + 6u] = culled ? 1.0 : 0.0;
     }
 }
 
@@ -35,7 +48,15 @@ void capture_sample(uint patch_index, uint place, uint places, vec3 coordinate, 
     if (slot >= capture_patches) {
         return;
     }
-    uint record = capture_grid > 0u ? slot * places + place : atomicAdd(capture_count, 1u);
+#ifdef TRIANGLE
+    bool on_edge = any(equal(coordinate, vec3(0.0)));
+#else
+    bool on_edge = any(equal(coordinate.xy, vec2(0.0))) || any(equal(coordinate.xy, vec2(1.0)));
+#endif
+    if (capture_grid == EDGES_ONLY && !on_edge) {
+        return;
+    }
+    uint record = capture_grid > 0u && capture_grid != EDGES_ONLY ? slot * places + place : atomicAdd(capture_count, 1u);
     if (record < capture_capacity) {
         uint at = record * RECORD_WORDS;
         put(at, coordinate);

@@ -5,6 +5,12 @@
 #ifndef CONTROL_GLSL
 #define CONTROL_GLSL
 
+// Displacement needs all that is shared.
+#ifdef DISPLACED
+#define SHARED
+#define TEXCOORD
+#endif
+
 #include "draw.glsl"
 #ifdef CAPTURE_POINTS
 #include "capture.glsl"
@@ -27,30 +33,74 @@ layout(location = 8) out vec2 texcoord[];
 layout(location = 9) patch out uint captured_patch;
 #endif
 
-void set_factors() {
-    if (gl_InvocationID == 0) {
-        float outer = draw.normal_transform[0].w;
-        float inner = draw.normal_transform[1].w;
-        gl_TessLevelOuter[0] = outer;
-        gl_TessLevelOuter[1] = outer;
-        gl_TessLevelOuter[2] = outer;
-        gl_TessLevelOuter[3] = outer;
-        gl_TessLevelInner[0] = inner;
-        gl_TessLevelInner[1] = inner;
+// How many of a corner's control points enclose the patch, with those of the others.
+#ifndef HULL
+#define HULL OWNED
+#endif
+#include "culling.glsl"
+
+// The factor of the edge from corner k to the next.
+float plus_factor(uint patch_number, uint k, uint next) {
+    switch (metric()) {
+    case METRIC_UNIFORM:
+        return draw_factor();
+    case METRIC_EDGES:
+        return draw_factor() * corner_factors[draw.first_corner + patch_number * CORNERS + k];
+    default:
+        return edge_factor(owned[k][0], owned[k][1], owned[next][2], owned[next][0]);
     }
 }
 
-// What is left to do when the corner's control points are written; `patch_number` counts within the draw.
+// What is left to do when all control points are written and a barrier is passed. `patch_number` counts within the draw.
+void finish_patch(uint patch_number) {
+    if (gl_InvocationID != 0) {
+        return;
+    }
+    bool culled = (draw.flags & CULL_FLAGS) != 0u && is_culled();
+    vec4 asked, outer;
+    for (uint k = 0u; k < CORNERS; ++k) {
+        asked[k] = plus_factor(patch_number, k, k + 1u == CORNERS ? 0u : k + 1u);
+        // What is no number counts as 1.
+        outer[k] = min(max(1.0, asked[k]), MAX_FACTOR);
+    }
+#ifdef TRIANGLE
+    float largest = max(max(outer[0], outer[1]), outer[2]);
+#else
+    float largest = max(max(outer[0], outer[2]), max(outer[1], outer[3]));
+#endif
+    // With fractional spacing an inner factor of nearly 1 would put vertices of the inside on the edge.
+    float least = largest > 1.0 && metric() != METRIC_UNIFORM ? min(1.5, MAX_FACTOR) : 1.0;
+#ifdef TRIANGLE
+    vec2 inner = vec2(max(least, largest));
+    gl_TessLevelOuter[0] = culled ? 0.0 : outer[1];
+    gl_TessLevelOuter[1] = culled ? 0.0 : outer[2];
+    gl_TessLevelOuter[2] = culled ? 0.0 : outer[0];
+    // Of no use but where a grid is captured, which is laid over a quad domain.
+    gl_TessLevelOuter[3] = outer[0];
+#else
+    vec2 inner = max(vec2(least), vec2(max(outer[0], outer[2]), max(outer[1], outer[3])));
+    gl_TessLevelOuter[0] = culled ? 0.0 : outer[3];
+    gl_TessLevelOuter[1] = culled ? 0.0 : outer[0];
+    gl_TessLevelOuter[2] = culled ? 0.0 : outer[1];
+    gl_TessLevelOuter[3] = culled ? 0.0 : outer[2];
+#endif
+    gl_TessLevelInner[0] = inner.x;
+    gl_TessLevelInner[1] = inner.y;
+#ifdef CAPTURE
+    captured_patch = draw.first_patch + patch_number;
+#endif
+#ifdef CAPTURE_POINTS
+    capture_factors(draw.first_patch + patch_number, asked, inner, culled);
+#endif
+}
+
+// What is left to do when the corner's control points are written; `patch_number` counts within the draw. A barrier and
+// `finish_patch` have to follow.
 void finish_corner(uint patch_number) {
-    set_factors();
 #ifdef TEXCOORD
     texcoord[gl_InvocationID] = texcoords[draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID)];
 #endif
-#ifdef CAPTURE
-    if (gl_InvocationID == 0) {
-        captured_patch = draw.first_patch + patch_number;
-    }
-#endif
+    examine_corner();
 #ifdef CAPTURE_POINTS
     for (uint i = 0u; i < OWNED; ++i) {
         capture_point(draw.first_patch + patch_number, uint(gl_InvocationID) * OWNED + i, owned[gl_InvocationID][i]);

@@ -7,11 +7,13 @@ layout(set = 0, binding = 0, std140) uniform View {
     mat4 view_projection;
     vec4 eye;    // xyz: in world space
     vec4 light;  // xyz: towards the light, in world space, of length one
+    vec4 viewport;  // width and height in pixels, the least distance of what is seen, and what a length of one at a distance
+                    // of one is of half the height
 } view;
 
 layout(push_constant, std430) uniform Draw {
     vec4 transform[3];         // rows: object to world
-    vec4 normal_transform[3];  // rows; w: outer factor, inner factor, unused
+    vec4 normal_transform[3];  // rows; w: see below
     vec4 colour;
     uint first_corner;
     uint first_patch;
@@ -19,11 +21,29 @@ layout(push_constant, std430) uniform Draw {
     uint flags;
 } draw;
 
+float draw_factor() {
+    return draw.normal_transform[0].w;
+}
+
+// What a texel of the displacement map is multiplied with, and what is added then, in object space.
+float displacement_scale() {
+    return draw.normal_transform[1].w;
+}
+
+float displacement_bias() {
+    return draw.normal_transform[2].w;
+}
+
 vec3 to_world(vec3 position) {
     vec4 p = vec4(position, 1.0);
     // The same bits in every pipeline: patches of two kinds meet at their edges on the screen, too.
     precise vec3 world = vec3(dot(draw.transform[0], p), dot(draw.transform[1], p), dot(draw.transform[2], p));
     return world;
+}
+
+vec4 to_clip(vec3 world) {
+    precise vec4 clip = view.view_projection * vec4(world, 1.0);
+    return clip;
 }
 
 vec3 normal_to_world(vec3 normal) {

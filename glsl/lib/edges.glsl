@@ -30,6 +30,10 @@ vec3 edge_normal(Edge edge, float t, vec3 fallback) {
 // What the corners of the patch share with others: see glsl/lib/shared.glsl.
 layout(location = 16) in vec3 shared_with[][SHARED_VECTORS];
 layout(location = 22) in uint shared_bits[];
+#ifdef DISPLACED
+layout(location = 23) in vec2 shared_texcoord[][3];
+layout(location = 26) in float shared_lod[];
+#endif
 
 // A point of the surface. Where it is displaced it goes along `direction`, which is that of all patches that meet there;
 // `normal` is, too, but at creases.
@@ -37,11 +41,20 @@ struct SharedSample {
     vec3 position;
     vec3 normal;
     vec3 direction;
+#ifdef DISPLACED
+    vec2 texcoord;  // where the displacement is looked up
+    float lod;
+#endif
 };
 
 // Puts what is shared in the place of what the patch alone makes of it.
 SharedSample share(Sample own, vec3 at) {
+#ifdef DISPLACED
+    SharedSample surface =
+        SharedSample(own.position, own.normal, own.normal, INTERPOLATED(texcoord, at), INTERPOLATED(shared_lod, at));
+#else
     SharedSample surface = SharedSample(own.position, own.normal, own.normal);
+#endif
     // On which edge, and how far from its corner on the way around the patch.
 #ifdef TRIANGLE
     bvec4 on = bvec4(at.z == 0.0, at.x == 0.0, at.y == 0.0, false);
@@ -93,6 +106,21 @@ SharedSample share(Sample own, vec3 at) {
     surface.direction = way == 0.0 ? direction0 : way == 1.0 ? direction1 : along_edge;
     bool sharp = (bits & SHARP_EDGE_BIT) != 0u;
     surface.normal = way == 0.0 ? PICK(NORMAL0) : way == 1.0 ? PICK(NORMAL1) : sharp ? own.normal : along_edge;
+#endif
+#ifdef DISPLACED
+#define TEXCOORD0(k, n) shared_texcoord[k][0]
+#define TEXCOORD1(k, n) shared_texcoord[n][1]
+#define CORNER_TEXCOORD0(k, n) shared_texcoord[k][2]
+#define CORNER_TEXCOORD1(k, n) shared_texcoord[n][2]
+#define LOD0(k, n) shared_lod[k]
+#define LOD1(k, n) shared_lod[n]
+    vec2 texcoord0 = PICK(TEXCOORD0), texcoord1 = PICK(TEXCOORD1);
+    float lod0 = PICK(LOD0), lod1 = PICK(LOD1);
+    precise float s = 1.0 - t;
+    precise vec2 on_edge = s * (reversed ? texcoord1 : texcoord0) + t * (reversed ? texcoord0 : texcoord1);
+    precise float lod = s * (reversed ? lod1 : lod0) + t * (reversed ? lod0 : lod1);
+    surface.texcoord = way == 0.0 ? PICK(CORNER_TEXCOORD0) : way == 1.0 ? PICK(CORNER_TEXCOORD1) : on_edge;
+    surface.lod = lod;
 #endif
     return surface;
 }

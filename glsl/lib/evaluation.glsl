@@ -3,6 +3,12 @@
 #ifndef EVALUATION_GLSL
 #define EVALUATION_GLSL
 
+// Displacement needs all that is shared.
+#ifdef DISPLACED
+#define SHARED
+#define TEXCOORD
+#endif
+
 #include "draw.glsl"
 #include "patch.glsl"
 
@@ -17,15 +23,25 @@ layout(quads, equal_spacing, cw) in;
 
 // The control points that each corner owns.
 layout(location = 0) in vec3 owned[][OWNED];
-#ifdef SHARED
-#include "edges.glsl"
-#endif
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 #ifdef TEXCOORD
 layout(location = 8) in vec2 texcoord[];
 layout(location = 2) out vec2 out_texcoord;
+#endif
+
+// What the corners have, at a point of the patch.
+#ifdef TRIANGLE
+#define INTERPOLATED(of, at) (at.x * of[0] + at.y * of[1] + at.z * of[2])
+#else
+#define INTERPOLATED(of, at) mix(mix(of[0], of[1], at.x), mix(of[3], of[2], at.x), at.y)
+#endif
+#ifdef SHARED
+#include "edges.glsl"
+#endif
+#ifdef DISPLACED
+#include "displace.glsl"
 #endif
 
 #if defined(CAPTURE) || defined(CAPTURE_GRID)
@@ -61,8 +77,12 @@ vec3 parameter() {
 
 void emit(Sample surface, vec3 at) {
 #ifdef SHARED
-    SharedSample shared_surface = share(surface, at);
-    surface = Sample(shared_surface.position, shared_surface.normal);
+    SharedSample of_all = share(surface, at);
+    surface = Sample(of_all.position, of_all.normal);
+#endif
+#ifdef DISPLACED
+    vec3 displaced = displace(of_all.position, of_all.direction, of_all.texcoord, of_all.lod);
+    surface = Sample(displaced, of_all.normal);
 #endif
 #ifdef CAPTURE
     capture_sample(captured_patch, 0u, 0u, at, surface.position, surface.normal);
@@ -71,16 +91,11 @@ void emit(Sample surface, vec3 at) {
     capture_sample(captured_patch, capture_place, capture_places, at, surface.position, surface.normal);
 #endif
 #ifdef TEXCOORD
-#ifdef TRIANGLE
-    out_texcoord = at.x * texcoord[0] + at.y * texcoord[1] + at.z * texcoord[2];
-#else
-    out_texcoord = mix(mix(texcoord[0], texcoord[1], at.x), mix(texcoord[3], texcoord[2], at.x), at.y);
-#endif
+    out_texcoord = INTERPOLATED(texcoord, at);
 #endif
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);
-    precise vec4 clip = view.view_projection * vec4(world_position, 1.0);
-    gl_Position = clip;
+    gl_Position = to_clip(world_position);
 }
 
 #endif

@@ -32,7 +32,7 @@ vec3 corner_edge_point(Corner corner, uint k, uint j) {
     return edge_point(corner.ring, j, in_centre[k], in_limit[k].xyz, in_tangent_a[k], in_tangent_b[k]);
 }
 
-// What is left to do when the corner's control points are written.
+// What is left to do when the corner's control points are written: see `finish_corner`.
 void finish_framed_corner(Corner corner, uint k) {
     finish_corner(in_patch_number[0]);
 #ifdef SHARED

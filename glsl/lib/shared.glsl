@@ -11,6 +11,17 @@ layout(set = 1, binding = 9, std430) readonly buffer SharedCorners { uint shared
 layout(location = 16) out vec3 shared_with[][SHARED_VECTORS];
 layout(location = 22) out uint shared_bits[];
 
+#ifdef DISPLACED
+#include "displace.glsl"
+
+// Texture coordinates at a corner: on its plus edge, on its minus edge, at the corner itself; and x: the mean length of an
+// edge there. Rust twin: `SharedTexcoord` in src/table/shared.rs.
+struct SharedTexcoord { vec2 plus, minus, corner, scale; };
+layout(set = 1, binding = 10, std430) readonly buffer SharedTexcoords { SharedTexcoord shared_texcoords[]; };
+layout(location = 23) out vec2 shared_texcoord[][3];
+layout(location = 26) out float shared_lod[];
+#endif
+
 const uint SHARED_WORDS = 5u;
 const uint EDGE_MASK = ~(REVERSED_BIT | SHARP_EDGE_BIT);
 
@@ -68,7 +79,7 @@ vec3 ring_normal(FramedRing at) {
     return unit(sum);
 }
 
-// Writes what corner k of the patch shares; `own` is its ring, `corner` its number among all corners.
+// Writes what a corner of the patch shares; `own` is its ring, `corner` its number among all corners.
 void share_corner(uint corner, FramedRing own) {
     uint first = SHARED_WORDS * corner;
     uint speaker = shared_corners[first];
@@ -94,6 +105,15 @@ void share_corner(uint corner, FramedRing own) {
         at = framed_ring(speaker);
     }
     shared_with[gl_InvocationID][5] = ring_normal(at);
+    SharedTexcoord texcoord = shared_texcoords[corner];
+    shared_texcoord[gl_InvocationID][0] = texcoord.plus;
+    shared_texcoord[gl_InvocationID][1] = texcoord.minus;
+    shared_texcoord[gl_InvocationID][2] = texcoord.corner;
+    // The level at which an edge here has as many texels as segments.
+    vec2 size = vec2(textureSize(displacement_map, 0));
+    precise float texels = texcoord.scale.x * max(size.x, size.y) 
+        / vertex_factor(at.p, at.a, at.b);
+    shared_lod[gl_InvocationID] = max(log2(texels), 0.0);
 #endif
     shared_bits[gl_InvocationID] = plus_edge & ~EDGE_MASK;
 }

@@ -1,14 +1,14 @@
 // The smooth surface under one light and the sky.
+// variants: DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define FRAGMENT_STAGE
 #include "draw.glsl"
 #include "lighting.glsl"
 #include "output.glsl"
-
-layout(location = 0) in vec3 world_position;
-// Taken inside the triangle: at a silhouette, a normal from beyond its edge may face away.
-layout(location = 1) centroid in vec3 world_normal;
+#include "surface.glsl"
 
 void main() {
-    write_colour(lit(draw.colour.rgb, world_position, world_normal, view.eye.xyz, view.light.xyz), draw.colour.a);
+    vec3 normal = surface_normal();
+    write_colour(lit(draw.colour.rgb, world_position, normal, view.eye.xyz, view.light.xyz), draw.colour.a);
 }

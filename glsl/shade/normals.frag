@@ -1,13 +1,12 @@
 // The direction of the normal as a colour: x red, y green, z blue, from -1 at 0 to 1 at full.
+// variants: DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define FRAGMENT_STAGE
 #include "draw.glsl"
 #include "output.glsl"
-
-layout(location = 0) in vec3 world_position;
-// Taken inside the triangle: at a silhouette, a normal from beyond its edge may face away.
-layout(location = 1) centroid in vec3 world_normal;
+#include "surface.glsl"
 
 void main() {
-    write_colour(0.5 + 0.5 * normalize(world_normal), draw.colour.a);
+    write_colour(0.5 + 0.5 * normalize(surface_normal()), draw.colour.a);
 }

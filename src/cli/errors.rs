@@ -2,13 +2,16 @@
 
 use super::error::CliError;
 use super::output::{self, Progress, Table};
-use super::parse;
+use super::plot::{self, Curve, CurvePoint, Figure};
 use super::source::SourceArgs;
-use ash_subdiv::Scheme;
+use super::{parse, published};
 use ash_subdiv::measure::{Deviation, ErrorOptions, ErrorReport, FaceErrors, SchemeError, surface_errors};
+use ash_subdiv::renderer::ModelTables;
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme};
 use clap::Args;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
@@ -27,6 +30,16 @@ pub(super) struct ErrorArgs {
     /// Write comma-separated values, one line for each scheme and set of faces.
     #[arg(long, conflicts_with = "json")]
     csv: bool,
+    /// Refine the mesh uniformly, 0, 1, .. times, and plot the errors against patches and bytes of tables:
+    /// PREFIX.svg and PREFIX.png.
+    #[arg(long, value_name = "PREFIX")]
+    plot: Option<PathBuf>,
+    /// With --plot: how many times the mesh is refined at most.
+    #[arg(long, value_name = "STEPS", default_value_t = 3, requires = "plot", value_parser = clap::value_parser!(u32).range(0..=6))]
+    plot_steps: u32,
+    /// Print what Loop et al. (2009) published for the monster frog or bigguy beside the figures of here.
+    #[arg(long, conflicts_with_all = ["csv", "json"])]
+    published: bool,
 }
 
 const NOTES: &str = "\
@@ -35,9 +48,17 @@ nearest:  distance to the nearest point of the other surface, both ways, as a de
 normal:   angle between the normals at the same (u, v), in radians.
 Distances are over the diagonal of the control mesh's bounding box; rms is weighted by area.
 
+JSON: mesh, diagonal, area, samples, nearest_samples, patches, irregular_patches,
+nearest_floor_rms (measured of the exact surface itself), undefined{name: why},
+schemes{name{position_rms, position_max, nearest_rms, nearest_max, normal_rms, normal_max,
+position_rms_per_sample, nearest_rms_per_sample, normal_rms_per_sample, irregular{the same}}};
+with --plot also refinements[{refine, samples, nearest_floor_rms, patches,
+schemes{name{the same but irregular, table_bytes}}}].
+
 Examples:
   subdiv error --shape creature
-  subdiv error model.obj --scheme gregory --scheme acc --samples 17 --json";
+  subdiv error model.obj --scheme gregory --scheme acc --samples 17 --json
+  subdiv error model.obj --plot errors";
 
 #[derive(Serialize)]
 struct ReportOut {
@@ -46,11 +67,32 @@ struct ReportOut {
     area: f64,
     samples: u32,
     nearest_samples: u32,
+    /// What is measured of the limit surface itself.
+    nearest_floor_rms: Option<f64>,
     patches: usize,
     irregular_patches: usize,
     schemes: BTreeMap<&'static str, SchemeOut>,
     /// Schemes that have no patches for the mesh, and why.
     undefined: BTreeMap<&'static str, String>,
+    /// What is plotted: the mesh refined 0, 1, .. times more.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    refinements: Vec<RefinementOut>,
+}
+
+#[derive(Serialize)]
+struct RefinementOut {
+    refine: u32,
+    samples: u32,
+    nearest_floor_rms: Option<f64>,
+    patches: usize,
+    schemes: BTreeMap<&'static str, RefinedSchemeOut>,
+}
+
+#[derive(Serialize)]
+struct RefinedSchemeOut {
+    #[serde(flatten)]
+    all: ErrorsOut,
+    table_bytes: u64,
 }
 
 #[derive(Serialize)]
@@ -91,6 +133,7 @@ impl From<FaceErrors> for ErrorsOut {
 }
 
 pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
+    let published = if args.published { Some(published::rows(&args.mesh.name())?) } else { None };
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
     let mut schemes = Vec::new();
@@ -102,20 +145,30 @@ pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
     progress.now("measuring");
     let options = ErrorOptions { refine: args.mesh.refine, samples: args.samples, nearest: args.nearest };
     let report = surface_errors(&mesh, &schemes, &options)?;
-    drop(progress);
     let undefined = report.schemes.iter().filter_map(|(_, result)| result.as_ref().err());
     if !args.scheme.is_empty()
         && let Some(error) = undefined.clone().next()
     {
         return Err(CliError::Work(error.to_string()));
     }
+    let refinements = match &args.plot {
+        Some(_) => refinements(args, &mesh, &schemes, &options, &report, &progress)?,
+        None => Vec::new(),
+    };
+    drop(progress);
+    if let Some(prefix) = &args.plot {
+        plot(prefix, args, &schemes, &refinements)?;
+    }
     if json {
-        return output::json_pretty(&out(args, &report));
+        return output::json_pretty(&out(args, &report, refinements));
     }
     if args.csv {
         print_csv(&report)?
     } else {
         print_table(&report)?
+    }
+    if let Some(rows) = published {
+        published::print(rows, &report)?;
     }
     undefined.for_each(output::note);
     Ok(())
@@ -125,7 +178,69 @@ fn measured(report: &ErrorReport) -> impl Iterator<Item = (Scheme, &SchemeError)
     report.schemes.iter().filter_map(|(scheme, result)| Some((*scheme, result.as_ref().ok()?)))
 }
 
-fn out(args: &ErrorArgs, report: &ErrorReport) -> ReportOut {
+/// The errors at each step of refinement; `first` is the report without.
+fn refinements(
+    args: &ErrorArgs,
+    mesh: &ControlMesh,
+    schemes: &[Scheme],
+    options: &ErrorOptions,
+    first: &ErrorReport,
+    progress: &Progress,
+) -> Result<Vec<RefinementOut>, CliError> {
+    progress.now("measuring refined meshes");
+    let step = |step: u32| {
+        let refine = options.refine + step;
+        // As many samples over each face of the mesh as without refinement, and not so few that they miss its middle.
+        let samples = options.samples.div_ceil(1 << step).max(options.samples.min(5));
+        let refined = match step {
+            0 => None,
+            _ => Some(surface_errors(mesh, schemes, &ErrorOptions { refine, samples, ..*options })?),
+        };
+        let report = refined.as_ref().unwrap_or(first);
+        let scheme = |(scheme, error): (Scheme, &SchemeError)| {
+            let options = ModelOptions { refine, ..args.mesh.model_options(scheme, Construction::TwoStage) };
+            let bytes = ModelTables::new(mesh, &options)?.bytes();
+            let table_bytes = bytes.iter().map(|(_, bytes)| bytes).sum();
+            Ok((scheme.name(), RefinedSchemeOut { all: error.all.into(), table_bytes }))
+        };
+        let schemes = measured(report).map(scheme).collect::<Result<_, CliError>>()?;
+        let nearest_floor_rms = report.nearest_floor.map(|floor| floor.rms);
+        Ok(RefinementOut { refine, samples, nearest_floor_rms, patches: report.patches, schemes })
+    };
+    (0..=args.plot_steps).map(step).collect()
+}
+
+fn plot(prefix: &Path, args: &ErrorArgs, schemes: &[Scheme], refinements: &[RefinementOut]) -> Result<(), CliError> {
+    let curve = |scheme: &Scheme| {
+        let name = scheme.name();
+        let point = |refinement: &RefinementOut| {
+            let RefinedSchemeOut { all, table_bytes } = refinement.schemes.get(name)?;
+            Some(CurvePoint {
+                patches: refinement.patches as f64,
+                table_bytes: *table_bytes as f64,
+                errors: [Some(all.position_rms), all.nearest_rms, Some(all.normal_rms)],
+            })
+        };
+        Curve { name, points: refinements.iter().filter_map(point).collect() }
+    };
+    let curves: Vec<Curve> = schemes.iter().map(curve).filter(|curve| !curve.points.is_empty()).collect();
+    let exact = |refinement: &RefinementOut| {
+        let patches = refinement.patches as f64;
+        let table_bytes = refinement.schemes.values().next()?.table_bytes as f64;
+        Some(CurvePoint { patches, table_bytes, errors: [None, refinement.nearest_floor_rms, None] })
+    };
+    let floor = Curve { name: "floor of measuring", points: refinements.iter().filter_map(exact).collect() };
+    let name = args.mesh.name();
+    let title = format!("{}: distance from the limit surface", name.rsplit(['/', '\\']).next().unwrap_or(&name));
+    let last = args.mesh.refine + args.plot_steps;
+    let subtitle = format!(
+        "dots: the whole mesh refined {} to {last} times before patches are made (uniform, not feature-adaptive); tables of the two-stage construction",
+        args.mesh.refine
+    );
+    plot::write(prefix, &Figure { title, subtitle, curves, floor })
+}
+
+fn out(args: &ErrorArgs, report: &ErrorReport, refinements: Vec<RefinementOut>) -> ReportOut {
     let scheme = |error: &SchemeError| SchemeOut { all: error.all.into(), irregular: error.irregular.map(Into::into) };
     let undefined =
         report.schemes.iter().filter_map(|(s, result)| Some((s.name(), result.as_ref().err()?.to_string())));
@@ -135,10 +250,12 @@ fn out(args: &ErrorArgs, report: &ErrorReport) -> ReportOut {
         area: report.area,
         samples: args.samples,
         nearest_samples: args.nearest,
+        nearest_floor_rms: report.nearest_floor.map(|floor| floor.rms),
         patches: report.patches,
         irregular_patches: report.irregular_patches,
         schemes: measured(report).map(|(s, error)| (s.name(), scheme(error))).collect(),
         undefined: undefined.collect(),
+        refinements,
     }
 }
 
@@ -189,6 +306,10 @@ fn print_table(report: &ErrorReport) -> Result<(), CliError> {
     table.print()?;
     let (patches, irregular) = (report.patches, report.irregular_patches);
     output::with_stdout(|out| {
-        Ok(writeln!(out, "{patches} faces, {irregular} irregular; diagonal {}", report.diagonal)?)
+        write!(out, "{patches} faces, {irregular} irregular; diagonal {}", report.diagonal)?;
+        if let Some(floor) = report.nearest_floor {
+            write!(out, "; nearest of the exact surface itself {}", output::short(floor.rms))?;
+        }
+        Ok(writeln!(out)?)
     })
 }

@@ -2,7 +2,9 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `camera`, `shading`, `picture` | what `render` needs |
+//! | `camera`, `displacement`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
+//! | `plot`, `published` | what `error` needs |
+//! | `canvas` | pixels to draw and write on |
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
@@ -10,20 +12,27 @@
 //! | `error` | what goes to the user, and the exit code |
 
 mod camera;
+mod canvas;
 mod devices;
+mod displacement;
 mod error;
+mod error_map;
 mod errors;
 mod info;
+mod legend;
 mod obj;
 mod output;
 mod parse;
 mod patches;
 mod picture;
+mod plot;
+mod published;
 mod render;
 mod sample;
 mod shading;
 mod shapes;
 mod source;
+mod watertight;
 
 use clap::{Parser, Subcommand};
 use error::CliError;
@@ -47,6 +56,7 @@ Examples:
   subdiv render model.obj --shading patches -o patches.png
   subdiv info model.glb --json
   subdiv error model.obj
+  subdiv watertight model.glb
   subdiv sample model.obj --grid 9 --cpu --json > samples.json
 
 Exit codes: 0 done, 1 the work failed, 2 wrong usage.
@@ -64,6 +74,8 @@ enum Command {
     Sample(sample::SampleArgs),
     /// How far the patches of each scheme are from the exact surface, in position and normal. Needs no device.
     Error(errors::ErrorArgs),
+    /// Prove that neighbouring patches meet, to the last bit, under any factors and displacement.
+    Watertight(watertight::WatertightArgs),
     /// List the built-in shapes, or write one as OBJ.
     Shapes(shapes::ShapesArgs),
     /// List the Vulkan devices, what they can do and what they lack.
@@ -81,6 +93,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Patches(args) => patches::run(&args, cli.json),
         Command::Sample(args) => sample::run(&args, cli.json),
         Command::Error(args) => errors::run(&args, cli.json),
+        Command::Watertight(args) => watertight::run(&args, cli.json),
         Command::Shapes(args) => shapes::run(&args, cli.json),
         Command::Devices => devices::run(cli.json),
     });

@@ -128,3 +128,34 @@ pub(super) fn write_file(path: &Path, write: impl FnOnce(&Path) -> Result<(), St
     }
     written.map_err(error)
 }
+
+/// A number for people, of at most four digits.
+pub(super) fn short(value: f64) -> String {
+    let text = format!("{value:.3e}");
+    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let digits = digits.trim_end_matches('0').trim_end_matches('.');
+    match exponent.parse() {
+        Ok(-3..=3) => format!("{}", format!("{digits}e{exponent}").parse().unwrap_or(value)),
+        _ => format!("{digits}e{exponent}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, text) in [
+            (0.0015, "0.0015"),
+            (0.00075, "7.5e-4"),
+            (2.0 / 3.0 * 1e-5, "6.667e-6"),
+            (0.25, "0.25"),
+            (1234.5, "1234"),
+            (0.1 + 0.2, "0.3"),
+            (4e6, "4e6"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+    }
+}

@@ -72,6 +72,13 @@ pub(super) fn angle(text: &str) -> Result<f32, String> {
     number(text).ok_or_else(|| "it must be a number of degrees".into())
 }
 
+/// How many, such as 1000000 or 1e6.
+pub(super) fn count(text: &str) -> Result<u64, String> {
+    let whole = |x: &f64| (0.0..1e15).contains(x) && x.fract() == 0.0;
+    let number = text.parse().ok().filter(whole).map(|x: f64| x as u64);
+    number.ok_or_else(|| "it must be a whole number, such as 1000000 or 1e6".into())
+}
+
 /// Something above zero.
 pub(super) fn positive(text: &str) -> Result<f32, String> {
     number(text).filter(|&f| f > 0.0).ok_or_else(|| "it must be a number above 0".into())

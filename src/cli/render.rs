@@ -2,7 +2,9 @@
 
 use super::camera::CameraArgs;
 use super::error::CliError;
+use super::error_map::{ErrorMap, ErrorSet};
 use super::info::Patches;
+use super::legend::Legend;
 use super::output::{self, Progress, write_file};
 use super::parse::{self, Colour};
 use super::picture::unpremultiply;
@@ -11,6 +13,7 @@ use super::source::{DeviceArgs, MeshArgs, tell_notices};
 use ash::vk;
 use ash_subdiv::gpu::DeviceProperties;
 use ash_subdiv::headless::{Headless, HeadlessError, Offscreen, OffscreenDesc, save_png};
+use ash_subdiv::measure::Quantity;
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::table::CpuSurface;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Options, Renderer, Spacing, Target, View};
@@ -39,6 +42,10 @@ pub(super) struct RenderArgs {
     /// What the picture shows.
     #[arg(long, value_enum, default_value_t = Shading::Lit)]
     shading: Shading,
+    /// The error at the top of the scale of --shading error-position (over the diagonal of the mesh's bounding box) or
+    /// error-normal (radians); if not given, a round number that 99 % of all samples are below.
+    #[arg(long, value_name = "ERROR", value_parser = parse::positive)]
+    error_max: Option<f32>,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = parse::size)]
     size: [u32; 2],
@@ -56,12 +63,13 @@ pub(super) struct RenderArgs {
 
 const EXAMPLES: &str = "\
 JSON: file, size[width, height], patches{regular, irregular_quad, triangle}, construction, factor, spacing,
-shading, samples, device.
+shading, samples, device, error{top, largest} (null unless an error is shown).
 
 Examples:
   subdiv render --shape creature -o creature.png
   subdiv render model.obj --shading wireframe --factor 3.5 --spacing odd -o wires.png
   subdiv render scene.glb --mesh-name Head --background transparent --yaw 40 -o head.png
+  subdiv render model.obj --scheme acc --shading error-normal --error-max 0.1 -o errors.png
   subdiv render --shape cloth --eye 3,4,5 --target 0,0,0 --fov 25 --size 1920x1080 -o cloth.png";
 
 #[derive(Serialize)]
@@ -75,6 +83,13 @@ struct RenderOut<'a> {
     shading: String,
     samples: u32,
     device: &'a str,
+    error: Option<ErrorOut>,
+}
+
+#[derive(Serialize)]
+struct ErrorOut {
+    top: f64,
+    largest: f64,
 }
 
 pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
@@ -83,24 +98,37 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     if ending.is_none_or(|ending| ending != "png") {
         return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
     }
+    let legend = if args.shading.quantity().is_some() { Legend::height(args.size)? } else { 0 };
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
+    let map = args.error_map(&mesh, &progress)?;
     progress.now("building tables");
-    let options = ModelOptions { spacing: args.spacing, ..args.mesh.model_options(args.construction) };
-    let tables = ModelTables::new(&mesh, &options)?;
-    tell_notices(tables.notices(), &progress);
+    let mut options = ModelOptions { spacing: args.spacing, ..args.mesh.model_options(args.construction) };
+    let mut drawn = &mesh;
+    if let Some(map) = &map {
+        (drawn, options.refine) = (&map.mesh, 0);
+    }
+    let tables = ModelTables::new(drawn, &options)?;
+    if map.is_none() {
+        tell_notices(tables.notices(), &progress);
+    }
     let patches = Patches::of(&tables);
     let [width, height] = args.size;
-    let view = args.camera.view(&args.seen_points(&mesh)?, f64::from(width) / f64::from(height))?;
+    let size = [width, height - legend];
+    let view = args.camera.view(&args.seen_points(&mesh)?, f64::from(size[0]) / f64::from(size[1]))?;
     progress.now("drawing");
     let (samples, device, mut pixels) = args.device.run(|headless| {
         let samples = args.check_limits(headless.properties())?;
-        let pixels = args.draw(headless, samples, &view, tables, &mesh, &options)?;
+        let picture = Picture { size, samples, view, map: map.as_ref() };
+        let pixels = args.draw(headless, &picture, tables, drawn, &options)?;
         Ok((samples, headless.properties().name.clone(), pixels))
     })?;
     progress.now("writing the picture");
     if args.background.is_transparent() {
         unpremultiply(&mut pixels, args.shading.format() == vk::Format::R8G8B8A8_SRGB);
+    }
+    if let Some(map) = &map {
+        args.legend(map).add(args.size, args.background, &mut pixels)?;
     }
     write_file(&args.output, |part| match save_png(part, vk::Extent2D { width, height }, &pixels) {
         Err(HeadlessError::Picture { message, .. }) => Err(message),
@@ -118,15 +146,59 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
             shading: args.shading.name(),
             samples,
             device: &device,
+            error: map.map(|ErrorMap { top, largest, .. }| ErrorOut { top, largest }),
         });
     }
     output::with_stdout(|out| {
         let factor = args.factor;
-        Ok(writeln!(out, "{file}: {width} x {height}, {patches}, factor {factor}, {samples} samples, on {device}")?)
+        writeln!(out, "{file}: {width} x {height}, {patches}, factor {factor}, {samples} samples, on {device}")?;
+        if let Some(ErrorMap { top, largest, .. }) = map {
+            let [top, largest] = [top, largest].map(output::short);
+            writeln!(out, "the scale ends at {top} (--error-max); the largest error is {largest}")?;
+        }
+        Ok(())
     })
 }
 
+/// What is drawn besides the model.
+struct Picture<'p> {
+    /// In pixels, without the legend.
+    size: [u32; 2],
+    samples: u32,
+    view: View,
+    map: Option<&'p ErrorMap>,
+}
+
 impl RenderArgs {
+    /// The errors to be shown, if any.
+    fn error_map(&self, mesh: &ControlMesh, progress: &Progress) -> Result<Option<ErrorMap>, CliError> {
+        let Some(quantity) = self.shading.quantity() else {
+            return match self.error_max {
+                None => Ok(None),
+                Some(_) => {
+                    let shading = self.shading.name();
+                    let message = format!(
+                        "--error-max: --shading {shading} shows no error: choose error-position or error-normal"
+                    );
+                    Err(CliError::Usage(message))
+                }
+            };
+        };
+        progress.now("measuring");
+        let surface = self.mesh.cpu_surface(mesh, progress)?;
+        let [low, high] = mesh.bounds();
+        Ok(Some(ErrorMap::new(&surface, quantity, low.distance(high), self.error_max)?))
+    }
+
+    fn legend(&self, map: &ErrorMap) -> Legend {
+        let what = match self.shading.quantity() {
+            Some(Quantity::Normal) => "normal error, radians",
+            _ => "position error / diagonal",
+        };
+        let title = format!("{}: {what}", self.mesh.scheme.name());
+        Legend { title, top: map.top, exceeded: map.largest > map.top }
+    }
+
     /// Points around which everything is that the picture shows.
     fn seen_points(&self, mesh: &ControlMesh) -> Result<Vec<DVec3>, CliError> {
         let mut points = Vec::new();
@@ -165,26 +237,41 @@ impl RenderArgs {
     fn draw(
         &self,
         headless: &Headless,
-        samples: u32,
-        view: &View,
+        picture: &Picture,
         tables: ModelTables,
         mesh: &ControlMesh,
         model_options: &ModelOptions,
     ) -> Result<Vec<u8>, CliError> {
-        let samples = vk::SampleCountFlags::from_raw(samples);
-        let [width, height] = self.size;
+        let samples = vk::SampleCountFlags::from_raw(picture.samples);
+        let [width, height] = picture.size;
         let desc = OffscreenDesc { samples, color: self.shading.format(), ..OffscreenDesc::new(width, height) };
         let target = Offscreen::new(headless, &desc)?;
-        let options = Options { styles: self.shading.styles(), ..Options::default() };
+        let errors = picture.map.map(|map| ErrorSet::new(headless.context(), map)).transpose()?;
+        let options = Options {
+            styles: self.shading.styles(),
+            texcoords: errors.is_some(),
+            set_layouts: errors.iter().map(|errors| errors.layout.raw()).collect(),
+            ..Options::default()
+        };
         let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
-        // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
+        // SAFETY: the layout outlives the renderer, whose shaders fit it; every submission is waited for, so the renderer
+        // is dropped when idle.
         let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options)? };
         let model = renderer.add_tables(tables, &mesh.positions_f32(), model_options)?;
         let draws = self.shading.draws(model, self.factor);
         // SAFETY: the command buffer is being recorded, outside rendering.
         headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
-        // SAFETY: inside rendering that fits the target, after the frame was prepared.
-        let record = |cmd| unsafe { renderer.cmd_draw(cmd, 0, view, &draws) };
+        let record = |cmd| {
+            if let Some(errors) = &errors {
+                let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, renderer.pipeline_layout());
+                // SAFETY: the set is of the layout at this place, and outlives the submission.
+                unsafe {
+                    headless.context().device().cmd_bind_descriptor_sets(cmd, point, layout, 2, &[errors.set], &[]);
+                }
+            }
+            // SAFETY: inside rendering that fits the target, after the frame was prepared.
+            unsafe { renderer.cmd_draw(cmd, 0, &picture.view, &draws) }
+        };
         let background = match desc.color {
             vk::Format::R8G8B8A8_SRGB => self.background.linear(),
             _ => self.background.0.map(|byte| f32::from(byte) / 255.0),

@@ -3,6 +3,7 @@
 use super::parse::Colour;
 use ash::vk;
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
+use ash_subdiv::measure::Quantity;
 use ash_subdiv::renderer::{Fragment, Geometry};
 use ash_subdiv::{DrawItem, ModelId, Style};
 use clap::ValueEnum;
@@ -22,6 +23,16 @@ pub(super) enum Shading {
     Cage,
     /// The control mesh itself: its faces flat, and its edges.
     ControlMesh,
+    /// How far the surface is from the exact one, at the same parameters, as a colour with a legend.
+    ErrorPosition,
+    /// The angle to the normal of the exact surface, as a colour with a legend.
+    ErrorNormal,
+}
+
+/// The program's own shaders.
+mod shaders {
+    #![allow(dead_code, reason = "their list is for the library")]
+    include!(concat!(env!("OUT_DIR"), "/cli_shaders.rs"));
 }
 
 const CLAY: Colour = Colour::rgb(0xddd3c6);
@@ -55,6 +66,15 @@ impl Shading {
         matches!(self, Self::Cage | Self::ControlMesh)
     }
 
+    /// The error that is shown.
+    pub(super) fn quantity(self) -> Option<Quantity> {
+        match self {
+            Self::ErrorPosition => Some(Quantity::Position),
+            Self::ErrorNormal => Some(Quantity::Normal),
+            _ => None,
+        }
+    }
+
     pub(super) fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }
@@ -85,6 +105,9 @@ impl Shading {
                 };
                 let edges = Style { depth: Some(DepthState::LESS_OR_EQUAL), ..Style::cage() };
                 vec![Layer { style: faces, colours: [CLAY; 3] }, Layer::lines(edges, EDGES)]
+            }
+            Self::ErrorPosition | Self::ErrorNormal => {
+                vec![Layer::surface(Fragment::Spirv(shaders::ERROR_FRAG.to_vec()), [CLAY; 3])]
             }
         }
     }

@@ -16,10 +16,12 @@ mod error;
 mod instance;
 mod offscreen;
 mod query;
+mod texture;
 
 pub use devices::{DeviceInfo, devices};
 pub use error::HeadlessError;
 pub use offscreen::{Offscreen, OffscreenDesc};
+pub use texture::{Texels, Texture};
 pub use query::{Statistics, StatisticsQuery, Timestamps, Timing};
 
 #[cfg(feature = "png")]

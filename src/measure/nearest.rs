@@ -1,5 +1,6 @@
 //! Distances to the nearest point of the other surface.
 
+use super::dense::{Dense, lattice};
 use super::error::{Parameters, Surfaces, angle, parts};
 use super::sums::Sums;
 use crate::mesh::MeshError;
@@ -7,18 +8,16 @@ use crate::patch::{Sample, Scheme};
 use crate::topology::PatchKind;
 use glam::DVec3;
 use rayon::prelude::*;
-use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 /// Where normals differ by more, in radians, the nearest point is on the other side of something thin.
 const MAX_ANGLE: f64 = 1.2;
-
-/// Triangles of a surface, about.
-const TRIANGLES: f64 = 2e6;
 
 /// What [`measure`] found.
 pub(super) struct Nearest {
     /// Of each scheme, for each patch, the distances from its points to the limit surface and the other way.
     pub distances: Vec<Vec<Sums>>,
+    /// For each patch, the distances from points of the limit surface to its own triangles.
+    pub floor: Vec<Sums>,
 }
 
 /// A point of a surface, and the area it stands for over the average of the patch.
@@ -30,7 +29,7 @@ struct Probe {
 
 /// What both surfaces over a patch are asked at.
 struct LimitPatch {
-    facets: Vec<Facet>,
+    lattice: Vec<DVec3>,
     probes: Vec<Probe>,
 }
 
@@ -41,11 +40,11 @@ pub(super) fn measure(
     areas: &[f64],
     samples: u32,
 ) -> Result<Nearest, MeshError> {
-    let side = ((TRIANGLES / 2.0 / surfaces.patches.len().max(1) as f64).sqrt() as u32).clamp(4, 32);
+    let kinds: Vec<_> = surfaces.patches.iter().map(|patch| patch.kind).collect();
     let ranges = spread(areas, samples);
     let limits = surfaces.for_each(|limit, patch| {
-        let kind = surfaces.patches[patch].kind;
-        let facets = facets(kind, side, |at| surfaces.limit(limit, patch, at).position);
+        let kind = kinds[patch];
+        let lattice = lattice(kind, kinds.len(), |at| surfaces.limit(limit, patch, at).position);
         let probe = |number: u32| {
             let at = parameters(kind, number);
             let truth = surfaces.limit(limit, patch, at);
@@ -53,24 +52,31 @@ pub(super) fn measure(
             let weight = truth.du.cross(truth.dv).length() / mean;
             Probe { at, sample: Sample { position: truth.position, normal: truth.normal }, weight }
         };
-        LimitPatch { facets, probes: ranges[patch].clone().map(probe).collect() }
+        LimitPatch { lattice, probes: ranges[patch].clone().map(probe).collect() }
     })?;
-    let (limit_facets, probes): (Vec<_>, Vec<_>) = limits.into_iter().map(|patch| (patch.facets, patch.probes)).unzip();
-    let limit = RTree::bulk_load(limit_facets.into_iter().flatten().collect());
+    let (lattices, probes): (Vec<_>, Vec<_>) = limits.into_iter().map(|patch| (patch.lattice, patch.probes)).unzip();
+    let limit = Dense::new(&kinds, &lattices);
+    let own = |probes: &Vec<Probe>| {
+        let mut sums = Sums::default();
+        for probe in probes {
+            distance(&limit, &probe.sample).into_iter().for_each(|distance| sums.add(probe.weight, distance));
+        }
+        sums
+    };
+    let floor = probes.par_iter().map(own).collect();
     let of_scheme = |&scheme: &Scheme| {
         let of_patch = |patch: usize| {
             let points = surfaces.control_points(scheme, patch);
             let evaluate = |at| surfaces.evaluate(scheme, patch, &points, at);
-            let triangles = facets(surfaces.patches[patch].kind, side, |at| evaluate(at).position);
-            (triangles, probes[patch].iter().map(|probe| evaluate(probe.at)).collect::<Vec<_>>())
+            let lattice = lattice(kinds[patch], kinds.len(), |at| evaluate(at).position);
+            (lattice, probes[patch].iter().map(|probe| evaluate(probe.at)).collect::<Vec<_>>())
         };
-        let patches = (0..surfaces.patches.len()).into_par_iter().map(of_patch);
-        let (facets, samples): (Vec<_>, Vec<_>) = patches.unzip();
-        let tree = RTree::bulk_load(facets.into_iter().flatten().collect());
+        let (lattices, samples): (Vec<_>, Vec<_>) = (0..kinds.len()).into_par_iter().map(of_patch).unzip();
+        let dense = Dense::new(&kinds, &lattices);
         let sums = |(probes, samples): (&Vec<Probe>, &Vec<Sample<DVec3>>)| {
             let mut sums = Sums::default();
             for (probe, sample) in probes.iter().zip(samples) {
-                for distance in [distance(&limit, sample), distance(&tree, &probe.sample)].into_iter().flatten() {
+                for distance in [distance(&limit, sample), distance(&dense, &probe.sample)].into_iter().flatten() {
                     sums.add(probe.weight, distance);
                 }
             }
@@ -78,7 +84,7 @@ pub(super) fn measure(
         };
         probes.par_iter().zip(&samples).map(sums).collect()
     };
-    Ok(Nearest { distances: schemes.iter().map(of_scheme).collect() })
+    Ok(Nearest { distances: schemes.par_iter().map(of_scheme).collect(), floor })
 }
 
 /// Numbers of samples for each patch, as many as its area is worth.
@@ -105,84 +111,8 @@ fn parameters(kind: PatchKind, number: u32) -> Parameters {
 }
 
 /// The distance to the nearest triangle, if its side is the same.
-fn distance(tree: &RTree<Facet>, sample: &Sample<DVec3>) -> Option<f64> {
-    let point = sample.position.to_array();
-    let facet = tree.nearest_neighbor(point)?;
-    let other_side = angle(sample.normal, facet.normal()).is_some_and(|angle| angle > MAX_ANGLE);
-    (!other_side).then(|| facet.distance_2(&point).sqrt())
-}
-
-/// A triangle of a dense mesh.
-struct Facet([DVec3; 3]);
-
-impl Facet {
-    fn normal(&self) -> DVec3 {
-        let [a, b, c] = self.0;
-        (b - a).cross(c - a).normalize_or_zero()
-    }
-}
-
-impl RTreeObject for Facet {
-    type Envelope = AABB<[f64; 3]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        let [a, b, c] = self.0;
-        AABB::from_corners(a.min(b).min(c).to_array(), a.max(b).max(c).to_array())
-    }
-}
-
-impl PointDistance for Facet {
-    fn distance_2(&self, point: &[f64; 3]) -> f64 {
-        let point = DVec3::from_array(*point);
-        point.distance_squared(closest(self.0, point))
-    }
-}
-
-/// The point of a triangle that is closest to `p` (Ericson, *Real-Time Collision Detection*, 5.1.5).
-fn closest([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + d1 / (d1 - d3) * ab;
-    }
-    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + d2 / (d2 - d6) * ac;
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-    }
-    a + (vb * ab + vc * ac) / (va + vb + vc)
-}
-
-/// A patch as triangles, `side` cells along each side; about as many for a triangle in all.
-fn facets(kind: PatchKind, side: u32, position: impl Fn(Parameters) -> DVec3) -> Vec<Facet> {
-    let side = if kind == PatchKind::Triangle { side.div_ceil(2) } else { side };
-    let at = |i: u32| f64::from(i) / f64::from(side);
-    let mut facets = Vec::new();
-    for sub in parts(kind) {
-        let lattice: Vec<DVec3> = (0..=side)
-            .flat_map(|j| (0..=side).map(move |i| Parameters { sub, u: at(i), v: at(j) }))
-            .map(&position)
-            .collect();
-        for (i, j) in (0..side).flat_map(|j| (0..side).map(move |i| (i, j))) {
-            let [a, b, c, d] =
-                [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| lattice[(j * (side + 1) + i) as usize]);
-            facets.extend([Facet([a, b, c]), Facet([a, c, d])]);
-        }
-    }
-    facets
+fn distance(surface: &Dense, sample: &Sample<DVec3>) -> Option<f64> {
+    let (distance, normal) = surface.nearest(sample.position)?;
+    let other_side = angle(sample.normal, normal).is_some_and(|angle| angle > MAX_ANGLE);
+    (!other_side).then_some(distance)
 }

@@ -1,6 +1,8 @@
 //! Recording the draws of a view.
 
+use super::factor::{Cull, Factor};
 use super::gpu_data::DrawConstants;
+use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::{Error, Geometry, ModelId, Renderer, View};
 use crate::gpu::{Domain, tessellated_vertices};
@@ -14,19 +16,30 @@ pub struct DrawItem {
     pub model: ModelId,
     /// Object to world, by columns. Affine.
     pub transform: [[f32; 4]; 4],
-    /// The tessellation factor of every edge and of the inside, from 1 up; clamped to what the device has (64 at least).
-    pub factor: f32,
+    /// How finely it is cut.
+    pub factor: Factor,
+    /// Patches that are left out.
+    pub cull: Cull,
     /// Index into [`Options::styles`](super::Options::styles).
     pub style: usize,
     /// Linear RGBA of regular patches, irregular quads and triangles.
     pub colors: [[f32; 4]; 3],
+    /// For a model with a displacement map: what its values are multiplied with, and what is added then. Object space.
+    pub displacement: [f32; 2],
 }
 
 impl DrawItem {
     /// The model where it is, in the first style, in light grey.
-    pub fn new(model: ModelId, factor: f32) -> Self {
-        let transform = glam::Mat4::IDENTITY.to_cols_array_2d();
-        Self { model, transform, factor, style: 0, colors: [[0.7, 0.7, 0.7, 1.0]; 3] }
+    pub fn new(model: ModelId, factor: impl Into<Factor>) -> Self {
+        Self {
+            model,
+            transform: glam::Mat4::IDENTITY.to_cols_array_2d(),
+            factor: factor.into(),
+            cull: Cull::NONE,
+            style: 0,
+            colors: [[0.7, 0.7, 0.7, 1.0]; 3],
+            displacement: [0.0; 2],
+        }
     }
 
     /// All patches in one colour.
@@ -76,12 +89,18 @@ impl Renderer {
         let mut bound = Bound::default();
         for item in items {
             // SAFETY: as the caller promises.
-            unsafe { self.cmd_draw_item(cmd, item, &mut bound)? };
+            unsafe { self.cmd_draw_item(cmd, view, item, &mut bound)? };
         }
         Ok(())
     }
 
-    unsafe fn cmd_draw_item(&self, cmd: vk::CommandBuffer, item: &DrawItem, bound: &mut Bound) -> Result<(), Error> {
+    unsafe fn cmd_draw_item(
+        &self,
+        cmd: vk::CommandBuffer,
+        view: &View,
+        item: &DrawItem,
+        bound: &mut Bound,
+    ) -> Result<(), Error> {
         let id = item.model;
         let model = self.model(id)?;
         let styles = self.pipelines.styles();
@@ -89,13 +108,16 @@ impl Renderer {
         if !model.prepared {
             return Err(Error::NotPrepared { id });
         }
-        if item.factor.is_nan() || item.factor < 1.0 {
-            return Err(Error::BadFactor { id, factor: item.factor });
-        }
+        let most = self.check_item(view, item, model)?;
         let device = self.context.device();
         let properties = self.context.properties();
-        let factor = item.factor.min(properties.max_tessellation_level as f32);
-        let mut constants = DrawConstants::new(&item.transform, factor);
+        let [scale, bias] = item.displacement;
+        let value = match item.factor {
+            Factor::Uniform(factor) => factor.min(most),
+            factor => factor.value(),
+        };
+        let mut constants = DrawConstants::new(&item.transform, [value, scale, bias]);
+        constants.flags = item.factor.flags() | item.cull.flags() | model.displacement_flags(item.displacement);
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
             if bound.set != model.set {
@@ -123,7 +145,7 @@ impl Renderer {
                 let (kind, spacing) = (stages.kind, stages.spacing);
                 self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
                 let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
-                let vertices = tessellated_vertices(domain, spacing, factor, properties.max_tessellation_level);
+                let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
                 let points = stages.input_points();
                 constants.colour = item.colors[kind as usize];
                 constants.first_corner = plan.first_corner(kind);
@@ -138,6 +160,30 @@ impl Renderer {
             }
         }
         Ok(())
+    }
+
+    /// Tells whether the numbers of an item make sense. Gives the largest factor that any edge may have.
+    fn check_item(&self, view: &View, item: &DrawItem, model: &Model) -> Result<f32, Error> {
+        let (id, factor) = (item.model, item.factor);
+        if !factor.is_valid() {
+            return Err(Error::BadFactor { id, factor });
+        }
+        if view.viewport.contains(&0.0) && (factor.needs_viewport() || item.cull.small) {
+            return Err(Error::NoViewport { id });
+        }
+        let [scale, bias] = item.displacement;
+        if !(scale.is_finite() && bias.is_finite()) {
+            return Err(Error::BadDisplacement { id, scale, bias });
+        }
+        let max = self.context.properties().max_tessellation_level as f32;
+        match factor {
+            Factor::Uniform(factor) => Ok(factor.min(max)),
+            Factor::Pixels(_) | Factor::Curvature(_) => Ok(max),
+            Factor::Edges(scale) => {
+                let largest = model.largest_edge_factor().ok_or(Error::NoEdgeFactors { id })?;
+                Ok((scale * largest).clamp(1.0, max))
+            }
+        }
     }
 
     unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {

@@ -1,4 +1,4 @@
-use super::ModelId;
+use super::{DisplacementId, Factor, ModelId};
 use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 use crate::table::TableError;
@@ -18,6 +18,8 @@ pub enum Error {
     Unsupported { device: String, missing: Vec<String> },
     #[error("model {}: there is no such model: it was removed, or is another renderer's", id.0)]
     NoSuchModel { id: ModelId },
+    #[error("displacement map {}: this renderer was not told of it: call add_displacement first", id.0)]
+    NoSuchDisplacement { id: DisplacementId },
     #[error("model {}: {given} positions are given, but its control mesh has {needed} vertices", id.0)]
     PositionCount { id: ModelId, given: usize, needed: usize },
     #[error("model {}: {table} take {bytes} bytes, but a shader can see {max} at once on this device: split the mesh", id.0)]
@@ -30,8 +32,18 @@ pub enum Error {
     TooManyViews { frame: u32, max: u32 },
     #[error("style {given}: Options::styles has {count}")]
     NoSuchStyle { given: usize, count: usize },
-    #[error("model {}: the tessellation factor {factor} is no number from 1 up", id.0)]
-    BadFactor { id: ModelId, factor: f32 },
+    #[error("model {}: {factor:?}: a tessellation factor is a number from 1 up, pixels and scales are above 0", id.0)]
+    BadFactor { id: ModelId, factor: Factor },
+    #[error("model {}: factors in pixels and leaving out small patches need the size of the viewport: set View::viewport", id.0)]
+    NoViewport { id: ModelId },
+    #[error("model {}: its edges have no factors: call set_edge_factors first", id.0)]
+    NoEdgeFactors { id: ModelId },
+    #[error("model {}: {given} factors are given, but its patches have {needed} edges", id.0)]
+    EdgeFactorCount { id: ModelId, given: usize, needed: usize },
+    #[error("model {}: edge {edge}: the factor {factor} is no number", id.0)]
+    BadEdgeFactor { id: ModelId, edge: usize, factor: f32 },
+    #[error("model {}: displacement by {scale} and {bias} is not by finite numbers", id.0)]
+    BadDisplacement { id: ModelId, scale: f32, bias: f32 },
     #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
     BadGrid { given: u32, max: u32 },
     #[error("{what} of Options is {given}: it must be at least 1")]

@@ -13,6 +13,7 @@ pub(super) struct ViewData {
     pub view_projection: [[f32; 4]; 4],
     pub eye: [f32; 4],
     pub light: [f32; 4],
+    pub viewport: [f32; 4],
 }
 
 #[repr(C)]
@@ -20,7 +21,8 @@ pub(super) struct ViewData {
 pub(super) struct DrawConstants {
     /// Rows of the object-to-world matrix.
     pub transform: [[f32; 4]; 3],
-    /// Rows of its cofactor matrix, which turns normals; in the last column outer factor, inner factor, nothing.
+    /// Rows of its cofactor matrix, which turns normals; in the last column the tessellation factor, and scale and bias of
+    /// the displacement.
     pub normal_transform: [[f32; 4]; 3],
     pub colour: [f32; 4],
     pub first_corner: u32,
@@ -29,15 +31,38 @@ pub(super) struct DrawConstants {
     pub flags: u32,
 }
 
-const _: () = assert!(size_of::<ViewData>() == 96);
+/// Bits of [`DrawConstants::flags`]. GLSL twins: `glsl/lib/displace.glsl` and `glsl/lib/factors.glsl`.
+pub(super) const VECTOR_FLAG: u32 = 1;
+pub(super) const CULL_FRUSTUM_FLAG: u32 = 1 << 1;
+pub(super) const CULL_BACK_FLAG: u32 = 1 << 2;
+pub(super) const CULL_SMALL_FLAG: u32 = 1 << 3;
+pub(super) const METRIC_SHIFT: u32 = 8;
+/// How far displacement reaches, as a half-precision number.
+pub(super) const REACH_SHIFT: u32 = 16;
+
+/// The half-precision number next to `x` that is not below it, for `x` from 0 up.
+pub(super) fn half_not_below(x: f32) -> u16 {
+    const SMALLEST_NORMAL: f32 = 1.0 / 16384.0;
+    const LARGEST: f32 = 65504.0;
+    if x <= 0.0 {
+        0
+    } else if x > LARGEST {
+        0x7c00
+    } else {
+        // The exponent's bias goes from 127 to 15, and 13 bits of the fraction are rounded up.
+        ((x.max(SMALLEST_NORMAL).to_bits() - ((127 - 15) << 23) + 0x1fff) >> 13) as u16
+    }
+}
+
+const _: () = assert!(size_of::<ViewData>() == 112);
 const _: () = assert!(std::mem::offset_of!(DrawConstants, colour) == 96);
 const _: () = assert!(std::mem::offset_of!(DrawConstants, first_corner) == 112);
 // Every Vulkan device has at least 128 bytes of push constants.
 const _: () = assert!(size_of::<DrawConstants>() == 128);
 
 impl DrawConstants {
-    /// For an object-to-world matrix given by columns, and a tessellation factor for edges and inside.
-    pub(super) fn new(transform: &[[f32; 4]; 4], factor: f32) -> Self {
+    /// For an object-to-world matrix given by columns, with a tessellation factor, and scale and bias of the displacement.
+    pub(super) fn new(transform: &[[f32; 4]; 4], [factor, scale, bias]: [f32; 3]) -> Self {
         let transform = Mat4::from_cols_array_2d(transform);
         let linear = Mat3::from_mat4(transform);
         let rows = [transform.row(0), transform.row(1), transform.row(2)];
@@ -48,8 +73,8 @@ impl DrawConstants {
             transform: rows.map(Into::into),
             normal_transform: [
                 cofactors[0].extend(factor).into(),
-                cofactors[1].extend(factor).into(),
-                cofactors[2].extend(0.0).into(),
+                cofactors[1].extend(scale).into(),
+                cofactors[2].extend(bias).into(),
             ],
             ..Self::zeroed()
         }
@@ -68,18 +93,30 @@ mod tests {
             Quat::from_rotation_y(0.7) * Quat::from_rotation_x(0.3),
             Vec3::new(5.0, 6.0, 7.0),
         );
-        let constants = DrawConstants::new(&transform.to_cols_array_2d(), 9.0);
+        let constants = DrawConstants::new(&transform.to_cols_array_2d(), [9.0, 0.5, 0.25]);
         let apply = |rows: &[[f32; 4]; 3], v: Vec4| Vec3::from(rows.map(|row| Vec4::from(row).dot(v)));
         let (a, b) = (Vec3::new(1.0, 2.0, 0.5), Vec3::new(-1.0, 0.3, 2.0));
         let turn = |v: Vec3| apply(&constants.transform, v.extend(0.0));
-        let without_factors = constants.normal_transform.map(|[x, y, z, _]| [x, y, z, 0.0]);
-        let normal = apply(&without_factors, a.cross(b).extend(0.0));
+        let without_others = constants.normal_transform.map(|[x, y, z, _]| [x, y, z, 0.0]);
+        let normal = apply(&without_others, a.cross(b).extend(0.0));
         assert!(normal.dot(turn(a)).abs() < 1e-4 && normal.dot(turn(b)).abs() < 1e-4);
         // It is the cross product of the turned tangents itself, so it points out where the faces do.
         assert!((normal - turn(a).cross(turn(b))).length() < 1e-4);
-        assert_eq!(constants.normal_transform[0][3], 9.0);
-        assert_eq!(constants.normal_transform[1][3], 9.0);
+        assert_eq!(constants.normal_transform.map(|row| row[3]), [9.0, 0.5, 0.25]);
         let moved = apply(&constants.transform, a.extend(1.0));
         assert!((moved - transform.transform_point3(a)).length() < 1e-5);
+    }
+
+    #[test]
+    fn halves_are_not_below() {
+        let value = |half: u16| match half >> 10 {
+            0 => 0.0,
+            31 => f32::INFINITY,
+            exponent => (1.0 + f32::from(half & 0x3ff) / 1024.0) * 2f32.powi(i32::from(exponent) - 15),
+        };
+        for x in [0.0, 1e-9, 6.2e-5, 0.03, 0.5, 0.500_01, 1.0, 3.1415, 1000.3, 65504.0, 65505.0, 1e9] {
+            let half = value(half_not_below(x));
+            assert!(half >= x && (half <= x * 1.001 || x < 1e-4 || x > 65504.0), "{x}: {half}");
+        }
     }
 }

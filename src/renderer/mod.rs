@@ -22,23 +22,28 @@
 //!
 //! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
 
+mod displacement;
 mod draw;
 mod error;
+mod factor;
 mod gpu_data;
 mod model;
 mod options;
 mod pipelines;
 mod stages;
+mod streamed;
 mod tables;
 mod view;
 
+pub use displacement::{DisplacementId, DisplacementMap};
 pub use draw::DrawItem;
 pub use error::Error;
+pub use factor::{Cull, Factor};
 pub use options::{
     ColorEncoding, Construction, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style, Target, check,
     requirements,
 };
-pub use tables::{ModelTables, TableBytes};
+pub use tables::{Edges, ModelTables, TableBytes};
 pub use view::View;
 
 pub(crate) use pipelines::Capture;
@@ -47,6 +52,7 @@ use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Ow
 use crate::mesh::ControlMesh;
 use crate::table::Notice;
 use ash::vk;
+use displacement::Displacements;
 use gpu_data::ViewData;
 use model::Model;
 use pipelines::Pipelines;
@@ -62,7 +68,7 @@ pub struct ModelId(u64);
 pub struct MemoryUsage {
     /// Connectivity or stencils, and texture coordinates, on the device.
     pub tables: u64,
-    /// Control vertices on the device.
+    /// Control vertices on the device, and factors of edges.
     pub positions: u64,
     /// Edges and faces of control meshes on the device, if a style draws them.
     pub control_meshes: u64,
@@ -99,6 +105,7 @@ pub struct Renderer {
     context: Arc<DeviceContext>,
     options: Options,
     pipelines: Pipelines,
+    displacements: Displacements,
     models: HashMap<ModelId, Model>,
     next_id: u64,
     retired: Vec<Retired>,
@@ -152,6 +159,7 @@ impl Renderer {
             context: context.clone(),
             options: options.clone(),
             pipelines,
+            displacements: Displacements::new(context)?,
             models: HashMap::new(),
             next_id: 0,
             retired: Vec::new(),
@@ -190,11 +198,21 @@ impl Renderer {
             return Err(Error::PositionCount { id, given: positions.len(), needed: tables.control_vertices });
         }
         let options = ModelOptions { construction: tables.construction(), ..options.clone() };
-        let model = Model::new(&self.context, &self.pipelines, &self.options, id, &options, tables, positions)?;
+        let map = self.displacements.get(options.displacement)?;
+        let model = Model::new(&self.context, &self.pipelines, &self.options, id, &options, tables, positions, map)?;
         self.pipelines.make(&model.stages)?;
         self.next_id += 1;
         self.models.insert(id, model);
         Ok(id)
+    }
+
+    /// Makes a displacement map known, for [`ModelOptions::displacement`].
+    ///
+    /// # Safety
+    /// The view and the sampler are of the context's device and live as long as the renderer. Whenever a model that uses the
+    /// map is drawn, the image is in its layout and visible to the tessellation and fragment stages.
+    pub unsafe fn add_displacement(&mut self, map: DisplacementMap) -> DisplacementId {
+        self.displacements.add(map)
     }
 
     /// Removes a model. Its memory is freed when every frame has been prepared again.
@@ -234,6 +252,19 @@ impl Renderer {
     pub fn set_positions(&mut self, id: ModelId, frame_index: u32, positions: &[[f32; 3]]) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_positions(frame_index, positions)
+    }
+
+    /// Sets the tessellation factors of a model's edges, for [`Factor::Edges`], from the next [`Renderer::cmd_prepare`] of
+    /// `frame_index` on until others are set in any frame. In the order of [`ModelTables::edges`].
+    ///
+    /// The last use of `frame_index` must be done on the device.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`], [`Error::NoSuchFrame`], [`Error::EdgeFactorCount`], [`Error::BadEdgeFactor`]; failed Vulkan
+    /// calls.
+    pub fn set_edge_factors(&mut self, id: ModelId, frame_index: u32, factors: &[f32]) -> Result<(), Error> {
+        self.check_frame(frame_index)?;
+        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_edge_factors(frame_index, factors)
     }
 
     /// Records what has to happen before this frame's draws: copies and barriers. Once a frame.

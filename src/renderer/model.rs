@@ -1,8 +1,9 @@
 //! A model on the GPU.
 
-use super::pipelines::{MODEL_BINDINGS, Pipelines};
-use super::stages::PatchStages;
-use super::{Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
+use super::pipelines::{MODEL_BUFFERS, Pipelines};
+use super::stages::{PatchStages, Sharing};
+use super::streamed::Streamed;
+use super::{DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::topology::PatchKind;
 use ash::vk;
@@ -20,15 +21,15 @@ pub(super) struct Model {
     _pool: Owned<vk::DescriptorPool>,
     /// All tables of the construction and the texture coordinates, one after the other.
     table_buffer: Buffer,
-    positions: Buffer,
-    /// A copy of the positions for each frame that may be on the device.
-    staged_positions: Buffer,
-    /// Frames whose staged positions are new since they were last copied.
-    dirty: Vec<bool>,
+    positions: Streamed,
+    /// The factor of each patch corner's plus edge, if edges are to have their own.
+    corner_factors: Option<Streamed>,
+    largest_edge_factor: f32,
     /// Edges, then faces of the control mesh, if a style draws them.
     pub control: Option<ControlIndices>,
     /// What was not copied to the device yet.
     uploads: Vec<(Buffer, vk::Buffer)>,
+    map: DisplacementMap,
     pub prepared: bool,
 }
 
@@ -48,6 +49,7 @@ impl Model {
         model_options: &ModelOptions,
         tables: ModelTables,
         control: &[[f32; 3]],
+        map: DisplacementMap,
     ) -> Result<Self, Error> {
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
@@ -56,7 +58,8 @@ impl Model {
         };
 
         let zeros;
-        let texcoords: &[[f32; 2]] = match (&tables.texcoords, options.texcoords) {
+        let needed = options.texcoords || tables.sharing() == Sharing::Displacement;
+        let texcoords: &[[f32; 2]] = match (&tables.texcoords, needed) {
             (_, false) => &[],
             (Some(texcoords), true) => texcoords,
             (None, true) => {
@@ -91,15 +94,17 @@ impl Model {
 
         let position_bytes = 12 * tables.stored_vertices() as u64;
         check("positions", position_bytes)?;
-        let positions = device_buffer(context, &format!("{name}: positions"), position_bytes, storage)?;
-        let frames = u64::from(options.frames_in_flight);
-        let staged_name = format!("{name}: positions to copy");
-        let mut staged_positions = upload_buffer(context, &staged_name, position_bytes * frames)?;
+        let frames = options.frames_in_flight;
         let stored = tables.stored_positions(control);
-        for frame in 0..frames {
-            staged_positions.write(frame * position_bytes, &stored)?;
-        }
+        let positions = Streamed::new(context, &format!("{name}: positions"), &stored, frames)?;
         drop(stored);
+        let corner_factors = match tables.edges() {
+            Some(edges) => {
+                let ones = vec![1.0f32; edges.of_corners.len()];
+                Some(Streamed::new(context, &format!("{name}: factors of edges"), &ones, frames)?)
+            }
+            None => None,
+        };
 
         let mut uploads = vec![(staged_tables, table_buffer.raw())];
         let control = if options.styles.iter().any(|s| s.geometry != Geometry::Surface) {
@@ -121,10 +126,15 @@ impl Model {
         };
 
         let (pool, set) = descriptor_set(context, pipelines.model_layout.raw(), name)?;
-        write_set(context, set, &positions, &table_buffer, &ranges);
+        let mut buffers = vec![positions.descriptor()];
+        let table = |&(offset, range)| vk::DescriptorBufferInfo { buffer: table_buffer.raw(), offset, range };
+        buffers.extend(ranges.iter().map(table));
+        // Every descriptor has to be written; without factors of its own a model's edges never read any.
+        buffers.push(corner_factors.as_ref().map_or(positions.descriptor(), Streamed::descriptor));
+        write_set(context, set, &buffers, map);
         let ModelOptions { scheme, construction, spacing, .. } = *model_options;
-        let shared = tables.shares_normals();
-        let stages = |kind| PatchStages { scheme, kind, construction, spacing, shared };
+        let sharing = tables.sharing();
+        let stages = |kind| PatchStages { scheme, kind, construction, spacing, sharing };
         Ok(Self {
             id,
             stages: PatchKind::ALL.into_iter().filter(|&kind| tables.plan.count(kind) > 0).map(stages).collect(),
@@ -133,10 +143,11 @@ impl Model {
             _pool: pool,
             table_buffer,
             positions,
-            staged_positions,
-            dirty: vec![false; options.frames_in_flight as usize],
+            corner_factors,
+            largest_edge_factor: 1.0,
             control,
             uploads,
+            map,
             prepared: false,
         })
     }
@@ -146,18 +157,39 @@ impl Model {
         if control.len() != needed {
             return Err(Error::PositionCount { id: self.id, given: control.len(), needed });
         }
-        let stored = self.tables.stored_positions(control);
-        self.staged_positions.write(u64::from(frame) * self.position_bytes(), &stored)?;
-        self.dirty[frame as usize] = true;
-        Ok(())
+        Ok(self.positions.write(frame, &self.tables.stored_positions(control))?)
     }
 
-    fn position_bytes(&self) -> u64 {
-        12 * self.tables.stored_vertices() as u64
+    pub(super) fn set_edge_factors(&mut self, frame: u32, factors: &[f32]) -> Result<(), Error> {
+        let id = self.id;
+        let (Some(edges), Some(streamed)) = (self.tables.edges(), &mut self.corner_factors) else {
+            return Err(Error::NoEdgeFactors { id });
+        };
+        let needed = edges.vertices.len();
+        if factors.len() != needed {
+            return Err(Error::EdgeFactorCount { id, given: factors.len(), needed });
+        }
+        if let Some(edge) = factors.iter().position(|factor| !factor.is_finite()) {
+            return Err(Error::BadEdgeFactor { id, edge, factor: factors[edge] });
+        }
+        let of_corners: Vec<f32> = edges.of_corners.iter().map(|&edge| factors[edge as usize]).collect();
+        self.largest_edge_factor = factors.iter().copied().fold(1.0, f32::max);
+        Ok(streamed.write(frame, &of_corners)?)
+    }
+
+    /// The largest factor of an edge, if they have any.
+    pub(super) fn largest_edge_factor(&self) -> Option<f32> {
+        self.corner_factors.as_ref().map(|_| self.largest_edge_factor)
+    }
+
+    /// The bits of a draw's flags that displacement by this scale and bias takes.
+    pub(super) fn displacement_flags(&self, displacement: [f32; 2]) -> u32 {
+        self.map.flags(displacement)
     }
 
     pub(super) fn needs_copies(&self, frame: u32) -> bool {
-        self.dirty[frame as usize] || !self.prepared
+        let streams = std::iter::once(&self.positions).chain(&self.corner_factors);
+        !self.prepared || streams.into_iter().any(|stream| stream.is_due(frame))
     }
 
     /// Records the copies that are due, and gives away the staging buffers to be kept until the frame is done.
@@ -165,30 +197,29 @@ impl Model {
     /// # Safety
     /// `cmd` is being recorded, outside rendering.
     pub(super) unsafe fn cmd_copy(&mut self, device: &ash::Device, cmd: vk::CommandBuffer, frame: u32) -> Vec<Buffer> {
-        let copy = |from: vk::Buffer, src_offset: u64, to: vk::Buffer, size: u64| {
-            let region = vk::BufferCopy { src_offset, dst_offset: 0, size };
-            // SAFETY: as the caller promises; both buffers hold the range.
-            unsafe { device.cmd_copy_buffer(cmd, from, to, &[region]) };
-        };
-        let bytes = self.position_bytes();
-        // Before the first copy every frame's region holds the first positions, or newer ones.
-        if std::mem::take(&mut self.dirty[frame as usize]) || !self.prepared {
-            copy(self.staged_positions.raw(), u64::from(frame) * bytes, self.positions.raw(), bytes);
+        // SAFETY: as the caller promises; both buffers hold the whole range.
+        unsafe {
+            for stream in std::iter::once(&mut self.positions).chain(&mut self.corner_factors) {
+                stream.cmd_send(device, cmd, frame);
+            }
+            for (staged, target) in &self.uploads {
+                let region = vk::BufferCopy { size: staged.size(), ..vk::BufferCopy::default() };
+                device.cmd_copy_buffer(cmd, staged.raw(), *target, &[region]);
+            }
         }
         let uploads = std::mem::take(&mut self.uploads);
-        for (staged, target) in &uploads {
-            copy(staged.raw(), 0, *target, staged.size());
-        }
         self.prepared = true;
         uploads.into_iter().map(|(staged, _)| staged).collect()
     }
 
     pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
         usage.tables += self.table_buffer.size();
-        usage.positions += self.positions.size();
+        let [positions, staged_positions] = self.positions.bytes();
+        let [factors, staged_factors] = self.corner_factors.as_ref().map_or([0; 2], Streamed::bytes);
+        usage.positions += positions + factors;
         usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
         let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
-        usage.staging += self.staged_positions.size() + uploads;
+        usage.staging += staged_positions + staged_factors + uploads;
     }
 }
 
@@ -212,8 +243,11 @@ fn descriptor_set(
     layout: vk::DescriptorSetLayout,
     name: &str,
 ) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    let sizes =
-        [vk::DescriptorPoolSize { ty: vk::DescriptorType::STORAGE_BUFFER, descriptor_count: MODEL_BINDINGS as u32 }];
+    let count = |ty, descriptor_count| vk::DescriptorPoolSize { ty, descriptor_count };
+    let sizes = [
+        count(vk::DescriptorType::STORAGE_BUFFER, MODEL_BUFFERS as u32),
+        count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1),
+    ];
     let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
     let layouts = [layout];
     // SAFETY: the pool is taken over by `Owned` and has room for the set.
@@ -230,18 +264,17 @@ fn descriptor_set(
 fn write_set(
     context: &DeviceContext,
     set: vk::DescriptorSet,
-    positions: &Buffer,
-    tables: &Buffer,
-    ranges: &[(u64, u64)],
+    buffers: &[vk::DescriptorBufferInfo],
+    map: DisplacementMap,
 ) {
-    let mut infos = vec![positions.descriptor()];
-    infos.extend(ranges.iter().map(|&(offset, range)| vk::DescriptorBufferInfo {
-        buffer: tables.raw(),
-        offset,
-        range,
-    }));
+    let image = [vk::DescriptorImageInfo { sampler: map.sampler, image_view: map.view, image_layout: map.layout }];
+    let sampler = vk::WriteDescriptorSet::default()
+        .dst_set(set)
+        .dst_binding(MODEL_BUFFERS as u32)
+        .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+        .image_info(&image);
     let writes: Vec<_> = (0..)
-        .zip(infos.chunks(1))
+        .zip(buffers.chunks(1))
         .map(|(binding, info)| {
             vk::WriteDescriptorSet::default()
                 .dst_set(set)
@@ -249,7 +282,8 @@ fn write_set(
                 .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
                 .buffer_info(info)
         })
+        .chain([sampler])
         .collect();
-    // SAFETY: the set is new, and the buffers live as long as it.
+    // SAFETY: the set is new, the buffers live as long as it, and the map as long as the renderer.
     unsafe { context.device().update_descriptor_sets(&writes, &[]) };
 }

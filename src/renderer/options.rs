@@ -1,6 +1,6 @@
 //! What the caller says once: where to draw, and how.
 
-use super::Error;
+use super::{DisplacementId, Error};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, Spacing};
 use crate::patch::Scheme;
 use ash::vk;
@@ -83,8 +83,9 @@ pub enum Geometry {
 /// The fragment shader of a [`Style`].
 ///
 /// Your own SPIR-V sees, for [`Geometry::Surface`], at location 0 the position in world space (`vec3`), at 1 the
-/// normal in world space (`vec3`, not of length one), and at 2 the texture coordinate (`vec2`) if
-/// [`Options::texcoords`] is on; for the control mesh only location 0. Set 0, binding 0 and the push constants are
+/// normal in world space (`vec3`, not of length one; where the surface is displaced, of the surface before: see
+/// `displaced_normal` in `glsl/lib/displace.glsl`), and at 2 the texture coordinate (`vec2`) if [`Options::texcoords`] is
+/// on or the model is displaced; for the control mesh only location 0. Set 0, binding 0 and the push constants are
 /// those of `glsl/lib/draw.glsl`; your own descriptor sets start at set 2
 /// ([`Options::set_layouts`]).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
@@ -177,6 +178,9 @@ pub struct Options {
     pub texcoords: bool,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
+    /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]): such
+    /// as evaluation shaders with a `displace` function of your own, see `glsl/lib/displace.glsl`.
+    pub shaders: Vec<(String, Vec<u32>)>,
     /// Used for all pipelines; null for none.
     pub pipeline_cache: vk::PipelineCache,
 }
@@ -190,6 +194,7 @@ impl Default for Options {
             styles: vec![Style::default()],
             texcoords: false,
             set_layouts: Vec::new(),
+            shaders: Vec::new(),
             pipeline_cache: vk::PipelineCache::null(),
         }
     }
@@ -235,6 +240,13 @@ pub struct ModelOptions {
     ///
     /// For schemes that are watertight ([`Scheme::is_watertight`]).
     pub shared_normals: bool,
+    /// Move the surface along its normal by what a map says, a height map or one of vectors
+    /// ([`Renderer::add_displacement`](super::Renderer::add_displacement)); draws say how far
+    /// ([`DrawItem::displacement`](super::DrawItem::displacement)). The mesh has to have texture coordinates. Normals are
+    /// shared then in any case.
+    pub displacement: Option<DisplacementId>,
+    /// Let edges have tessellation factors of their own ([`Factor::Edges`](super::Factor::Edges)).
+    pub edge_factors: bool,
     /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
     pub refine: u32,
 }

@@ -1,10 +1,10 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
-use super::stages::PatchStages;
+use super::stages::{PatchStages, Sharing, spaced};
 use super::{ColorEncoding, Construction, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
-    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Specialization, descriptor_set_layout,
-    pipeline_layout, shaders,
+    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
+    descriptor_set_layout, pipeline_layout, shaders,
 };
 use ash::vk;
 use std::collections::HashMap;
@@ -44,6 +44,7 @@ pub(super) struct Pipelines {
     target: Target,
     styles: Vec<Style>,
     texcoords: bool,
+    replaced: HashMap<String, Vec<u32>>,
     capture: Capture,
     cache: vk::PipelineCache,
     pub view_layout: Owned<vk::DescriptorSetLayout>,
@@ -60,8 +61,9 @@ pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
-/// Storage buffers of a model: positions, then [`ModelTables::bindings`](super::ModelTables).
-pub(super) const MODEL_BINDINGS: usize = 10;
+/// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges. The displacement
+/// map comes after them.
+pub(super) const MODEL_BUFFERS: usize = 12;
 
 impl Pipelines {
     pub(super) fn new(
@@ -71,7 +73,8 @@ impl Pipelines {
         capture: Capture,
     ) -> Result<Self, GpuError> {
         let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
-        let model = [(vk::DescriptorType::STORAGE_BUFFER, STAGES); MODEL_BINDINGS];
+        let mut model = vec![(vk::DescriptorType::STORAGE_BUFFER, STAGES); MODEL_BUFFERS];
+        model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, STAGES));
         let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
         let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;
         let mut sets = vec![view_layout.raw(), model_layout.raw()];
@@ -84,6 +87,7 @@ impl Pipelines {
             target: target.clone(),
             styles: options.styles.clone(),
             texcoords: options.texcoords,
+            replaced: options.shaders.iter().cloned().collect(),
             capture,
             cache: options.pipeline_cache,
             view_layout,
@@ -124,7 +128,7 @@ impl Pipelines {
         let pipeline = match key.geometry {
             GeometryKey::Control => {
                 let name = format!("subdiv style {} of the control mesh", key.style);
-                let stages = [Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT), fragment(style, &encode)];
+                let stages = [Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT), fragment(style, Sharing::Positions, &encode)];
                 self.create(&name, style, &stages, 0)?
             }
             GeometryKey::Patches(patch) => {
@@ -134,18 +138,28 @@ impl Pipelines {
                     Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
                     Construction::Stencil => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
                 };
-                let evaluation = patch.evaluation(self.capture, self.texcoords)?;
+                let control = self.find(&patch.control(self.capture, self.texcoords))?;
+                let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
+                let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
+                let evaluation = spaced(evaluation, spacing);
+                let limits = [Specialization::float(2, self.context.properties().max_tessellation_level as f32)];
                 let stages = [
                     vertex,
-                    Shader::tess_control(patch.control(self.capture, self.texcoords)?),
+                    Shader::tess_control(control).specialized(&limits),
                     Shader::tess_evaluation(&evaluation),
-                    fragment(style, &encode),
+                    fragment(style, patch.sharing, &encode),
                 ];
                 self.create(&name, style, &stages, patch.input_points())?
             }
         };
         self.made.insert(key, pipeline);
         Ok(())
+    }
+
+    /// A shader by its name: the caller's own, or ours.
+    fn find(&self, name: &str) -> Result<&[u32], GpuError> {
+        let missing = || GpuError::BadPipeline { object: name.to_owned(), message: "there is no such shader".into() };
+        self.replaced.get(name).map(Vec::as_slice).or_else(|| shaders::find(name)).ok_or_else(missing)
     }
 
     fn create(
@@ -187,9 +201,12 @@ impl Pipelines {
 }
 
 /// The fragment shader; `ours` are the constants of those that are ours.
-fn fragment<'a>(style: &'a Style, ours: &'a [Specialization]) -> Shader<'a> {
+fn fragment<'a>(style: &'a Style, sharing: Sharing, ours: &'a [Specialization]) -> Shader<'a> {
+    let displaced = sharing == Sharing::Displacement;
     let code = match (&style.fragment, style.geometry) {
         (Fragment::Spirv(code), _) => return Shader::fragment(code),
+        (Fragment::Lit, Geometry::Surface) if displaced => shaders::SHADE_LIT_FRAG_DISPLACED,
+        (Fragment::Normals, Geometry::Surface) if displaced => shaders::SHADE_NORMALS_FRAG_DISPLACED,
         (Fragment::Lit, Geometry::Surface) => shaders::SHADE_LIT_FRAG,
         (Fragment::Lit, Geometry::ControlFaces) => shaders::SHADE_FACETS_FRAG,
         (Fragment::Normals, Geometry::Surface) => shaders::SHADE_NORMALS_FRAG,

@@ -1,7 +1,7 @@
 //! Which shaders a patch is drawn with: found by name, so that a scheme adds files and its arm in [`files`].
 
 use super::{Capture, Construction};
-use crate::gpu::{GpuError, Spacing, shaders};
+use crate::gpu::Spacing;
 use crate::patch::Scheme;
 use crate::topology::PatchKind;
 
@@ -12,8 +12,29 @@ pub(super) struct PatchStages {
     pub kind: PatchKind,
     pub construction: Construction,
     pub spacing: Spacing,
-    /// Whether normals are shared.
-    pub shared: bool,
+    pub sharing: Sharing,
+}
+
+/// What patches share along edges and at corners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Sharing {
+    Positions,
+    Normals,
+    /// Normals and where the displacement is looked up.
+    Displacement,
+}
+
+impl Sharing {
+    /// At the end of a shader's name.
+    fn suffix(self, capture: Capture) -> &'static str {
+        match self {
+            // Control points are the same in all.
+            _ if capture == Capture::Points => "",
+            Self::Positions => "",
+            Self::Normals => "_SHARED",
+            Self::Displacement => "_DISPLACED",
+        }
+    }
 }
 
 /// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch.
@@ -37,7 +58,8 @@ impl PatchStages {
         }
     }
 
-    pub(super) fn control(self, capture: Capture, texcoords: bool) -> Result<&'static [u32], GpuError> {
+    /// The name of the control shader.
+    pub(super) fn control(self, capture: Capture, texcoords: bool) -> String {
         let [file, _] = files(self.scheme, self.kind);
         let mut name = match self.construction {
             Construction::TwoStage => format!("CONSTRUCT_{file}_TESC"),
@@ -46,37 +68,35 @@ impl PatchStages {
         if self.kind == PatchKind::Triangle {
             name += "_TRIANGLE";
         }
-        if self.shared && capture != Capture::Points {
-            name += "_SHARED";
-        }
+        name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Points => "_CAPTURE_POINTS",
             Capture::Vertices | Capture::Grid => "_CAPTURE",
-            Capture::Off if texcoords => "_TEXCOORD",
+            // Displacement comes with texture coordinates.
+            Capture::Off if texcoords && self.sharing != Sharing::Displacement => "_TEXCOORD",
             Capture::Off => "",
         };
-        find(&name)
+        name
     }
 
-    pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> Result<Vec<u32>, GpuError> {
+    /// The name of the evaluation shader.
+    pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> String {
         let [_, file] = files(self.scheme, self.kind);
         let mut name = format!("EVALUATE_{file}_TESE");
-        if self.shared && capture != Capture::Points {
-            name += "_SHARED";
-        }
+        name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Grid => "_CAPTURE_GRID",
             Capture::Vertices => "_CAPTURE",
-            Capture::Off if texcoords => "_TEXCOORD",
+            // Displacement comes with texture coordinates.
+            Capture::Off if texcoords && self.sharing != Sharing::Displacement => "_TEXCOORD",
             Capture::Off | Capture::Points => "",
         };
-        let spacing = if capture == Capture::Grid { Spacing::Equal } else { self.spacing };
-        Ok(spaced(find(&name)?, spacing))
+        name
     }
 }
 
 /// A tessellation evaluation shader with another spacing: the files all say `equal_spacing`.
-fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
+pub(super) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
     // SPIR-V 1.6, 2.3 and 3.6: five words of header; an instruction's first word is its length and its opcode.
     const HEADER_WORDS: usize = 5;
     const OP_EXECUTION_MODE: u32 = 16;
@@ -98,38 +118,44 @@ fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
     code
 }
 
-fn find(name: &str) -> Result<&'static [u32], GpuError> {
-    let missing = || GpuError::BadPipeline { object: name.to_owned(), message: "there is no such shader".to_owned() };
-    shaders::find(name).ok_or_else(missing)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::shaders;
 
     #[test]
     fn every_patch_has_its_shaders() {
-        for scheme in Scheme::ALL {
-            for kind in PatchKind::ALL {
-                if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle {
-                    continue;
-                }
-                for construction in Construction::ALL {
-                    for spacing in [Spacing::Equal, Spacing::FractionalOdd, Spacing::FractionalEven] {
-                        let stages = PatchStages { scheme, kind, construction, spacing };
-                        for (capture, texcoords) in [
-                            (Capture::Off, false),
-                            (Capture::Off, true),
-                            (Capture::Points, false),
-                            (Capture::Vertices, false),
-                            (Capture::Grid, false),
-                        ] {
-                            assert!(!stages.control(capture, texcoords).unwrap().is_empty());
-                            assert!(!stages.evaluation(capture, texcoords).unwrap().is_empty());
+        let modes = [Capture::Off, Capture::Points, Capture::Vertices, Capture::Grid];
+        for (scheme, kind) in Scheme::ALL.into_iter().flat_map(|scheme| PatchKind::ALL.map(|kind| (scheme, kind))) {
+            if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle {
+                continue;
+            }
+            for construction in Construction::ALL {
+                for sharing in [Sharing::Positions, Sharing::Normals, Sharing::Displacement] {
+                    if sharing != Sharing::Positions && !scheme.is_watertight() {
+                        continue;
+                    }
+                    let stages = PatchStages { scheme, kind, construction, spacing: Spacing::Equal, sharing };
+                    for capture in modes {
+                        for texcoords in [false, true] {
+                            for name in [stages.control(capture, texcoords), stages.evaluation(capture, texcoords)] {
+                                assert!(shaders::find(&name).is_some(), "{name}");
+                            }
                         }
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn spacing_is_one_word() {
+        let equal = shaders::find("EVALUATE_BICUBIC_TESE").unwrap();
+        assert_eq!(spaced(equal, Spacing::Equal), equal);
+        for (spacing, mode) in [(Spacing::FractionalEven, 2), (Spacing::FractionalOdd, 3)] {
+            let code = spaced(equal, spacing);
+            let changed: Vec<_> = (0..code.len()).filter(|&i| code[i] != equal[i]).collect();
+            assert_eq!((changed.len(), code[changed[0]], equal[changed[0]]), (1, mode, 1));
         }
     }
 }

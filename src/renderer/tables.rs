@@ -1,5 +1,6 @@
 //! The arrays of a model, before they are on the GPU.
 
+use super::stages::Sharing;
 use super::{Construction, ModelOptions};
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
@@ -19,6 +20,7 @@ pub struct ModelTables {
     /// Where normals are shared.
     shared: Option<SharedTable>,
     pub(super) texcoords: Option<Vec<[f32; 2]>>,
+    edges: Option<Edges>,
     /// Pairs of control vertices: the edges of the caller's mesh.
     pub(super) control_edges: Vec<u32>,
     /// Triples of control vertices: its faces as fans.
@@ -29,6 +31,35 @@ pub struct ModelTables {
     steps: Vec<Stencils>,
     origins: Vec<FaceOrigin>,
     notices: Vec<Notice>,
+}
+
+/// The edges of patches, for factors of their own.
+#[derive(Debug, Clone)]
+pub struct Edges {
+    /// The vertices at both ends of each: those of the control mesh, or of the refined one where it had to be refined.
+    pub vertices: Vec<[u32; 2]>,
+    /// For each patch corner, in the order of the plan, the edge to the next.
+    pub of_corners: Vec<u32>,
+}
+
+impl Edges {
+    /// Of the patches in `plan`, whose faces are those of `topology`.
+    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
+        let mesh = topology.mesh();
+        let mut vertices = Vec::new();
+        let mut of_half_edges = vec![0; mesh.corner_count()];
+        for h in 0..mesh.corner_count() as u32 {
+            of_half_edges[h as usize] = match topology.twin(h) {
+                Some(twin) if twin < h => of_half_edges[twin as usize],
+                _ => {
+                    vertices.push([topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h))]);
+                    vertices.len() as u32 - 1
+                }
+            };
+        }
+        let of_corners = plan.corners(topology).into_iter().map(|h| of_half_edges[h as usize]).collect();
+        Self { vertices, of_corners }
+    }
 }
 
 /// Bytes of a table by its name.
@@ -51,7 +82,11 @@ impl ModelTables {
             Construction::TwoStage => None,
             Construction::Stencil => Some(StencilTable::new(&topology, &mut plan, scheme)?),
         };
-        let shared = options.shared_normals.then(|| SharedTable::new(&topology, &plan));
+        let shared = match (options.displacement, options.shared_normals) {
+            (Some(_), _) => Some(SharedTable::with_texcoords(&topology, &plan).ok_or(TableError::NoTexcoords)?),
+            (None, true) => Some(SharedTable::new(&topology, &plan)),
+            (None, false) => None,
+        };
         if shared.is_some() && !scheme.is_watertight() {
             return Err(TableError::NothingShared { scheme });
         }
@@ -59,6 +94,7 @@ impl ModelTables {
         Ok(Self {
             texcoords: plan.texcoords(&topology),
             origins: plan.patches().iter().map(|patch| prepared.origin(patch.face)).collect(),
+            edges: options.edge_factors.then(|| Edges::new(&topology, &plan)),
             plan,
             rings,
             stencils,
@@ -75,6 +111,11 @@ impl ModelTables {
     /// What a user will want to know about how the mesh is drawn.
     pub fn notices(&self) -> &[Notice] {
         &self.notices
+    }
+
+    /// The edges of the patches, with [`ModelOptions::edge_factors`].
+    pub fn edges(&self) -> Option<&Edges> {
+        self.edges.as_ref()
     }
 
     /// Where each patch comes from, in the order of [`ModelTables::plan`].
@@ -113,8 +154,13 @@ impl ModelTables {
         if self.stencils.is_some() { Construction::Stencil } else { Construction::TwoStage }
     }
 
-    pub(super) fn shares_normals(&self) -> bool {
-        self.shared.is_some()
+    /// What the evaluation takes from other patches.
+    pub(super) fn sharing(&self) -> Sharing {
+        match &self.shared {
+            None => Sharing::Positions,
+            Some(shared) if shared.texcoords.is_empty() => Sharing::Normals,
+            Some(_) => Sharing::Displacement,
+        }
     }
 
     /// How many patches of a kind there are.
@@ -139,7 +185,7 @@ impl ModelTables {
 
     /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need
     /// are empty.
-    pub(super) fn bindings(&self) -> [(&'static str, &[u8]); 9] {
+    pub(super) fn bindings(&self) -> [(&'static str, &[u8]); 10] {
         fn array<'t, T, E: bytemuck::NoUninit>(table: &'t Option<T>, array: impl Fn(&'t T) -> &'t [E]) -> &'t [u8] {
             table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
         }
@@ -154,6 +200,7 @@ impl ModelTables {
             ("stencil_types", array(stencils, |t| &t.types)),
             ("texcoords", array(&self.texcoords, |t| t.as_slice())),
             ("shared_corners", array(&self.shared, |t| &t.corners)),
+            ("shared_texcoords", array(&self.shared, |t| &t.texcoords)),
         ]
     }
 }

@@ -2,7 +2,7 @@
 
 use super::gpu_data::ViewData;
 use glam::camera::rh::{proj::vulkan, view};
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DVec3, Mat3, Mat4, Vec3};
 
 /// A camera and a light. Matrices are given by columns, as `glam::Mat4::to_cols_array_2d` gives them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +13,9 @@ pub struct View {
     pub eye: [f32; 3],
     /// Towards the light, in world space; any length but zero.
     pub light: [f32; 3],
+    /// Width and height of the viewport in pixels, for factors in pixels ([`Factor`](super::Factor)) and for leaving out
+    /// small patches; zero if it is not known.
+    pub viewport: [f32; 2],
 }
 
 impl View {
@@ -34,7 +37,13 @@ impl View {
             view_projection: (projection * view).to_cols_array_2d(),
             eye: eye.into(),
             light: light.normalize_or(Vec3::Y).into(),
+            viewport: [0.0; 2],
         }
+    }
+
+    /// The same view, drawn this many pixels wide and high.
+    pub fn sized(self, width: u32, height: u32) -> Self {
+        Self { viewport: [width as f32, height as f32], ..self }
     }
 
     /// A camera that sees all of a box. `towards` leads from the box to the eye.
@@ -71,6 +80,43 @@ impl View {
     pub(super) fn data(&self) -> ViewData {
         let [x, y, z] = self.eye;
         let light = Vec3::from(self.light).normalize_or(Vec3::Y);
-        ViewData { view_projection: self.view_projection, eye: [x, y, z, 1.0], light: light.extend(0.0).into() }
+        let rows = Mat4::from_cols_array_2d(&self.view_projection).transpose();
+        let up = rows.y_axis.truncate().length();
+        let [width, height] = self.viewport;
+        ViewData {
+            view_projection: self.view_projection,
+            eye: [x, y, z, 1.0],
+            light: light.extend(0.0).into(),
+            viewport: [width, height, nearest(rows), up],
+        }
+    }
+}
+
+/// The least clip-space w of what is between the planes of depth 0 and 1; `rows` are those of the matrix.
+fn nearest(rows: Mat4) -> f32 {
+    let (depth, w) = (rows.z_axis, rows.w_axis);
+    let squared = w.truncate().length_squared();
+    if squared == 0.0 {
+        // A parallel projection: w is the same everywhere.
+        return w.w.max(f32::MIN_POSITIVE);
+    }
+    // On the way of the view: depth = a w + b.
+    let a = depth.truncate().dot(w.truncate()) / squared;
+    let b = depth.w - a * w.w;
+    let planes = [-b / a, b / (1.0 - a)];
+    planes.into_iter().filter(|w| w.is_finite() && *w > 0.0).fold(f32::INFINITY, f32::min).clamp(1e-20, 1e20)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_that_is_seen() {
+        let view = View::perspective([1.0, 2.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 0.6, 1.5, [0.25, 40.0]);
+        let [_, _, near, _] = view.data().viewport;
+        assert!((near - 0.25).abs() < 1e-4, "{near}");
+        let parallel = Mat4::from_scale(Vec3::new(0.5, -0.5, 0.1)).to_cols_array_2d();
+        assert_eq!(View { view_projection: parallel, ..view }.data().viewport[2], 1.0);
     }
 }

@@ -17,4 +17,7 @@ pub enum TableError {
         /// The scheme that was asked for.
         scheme: Scheme,
     },
+    /// Displacement of a mesh without texture coordinates.
+    #[error("the mesh has no texture coordinates, which displacement looks up: give it some (vt in OBJ, TEXCOORD_0 in glTF)")]
+    NoTexcoords,
 }

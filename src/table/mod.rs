@@ -20,7 +20,7 @@ pub use error::TableError;
 pub use plan::{Patch, PatchPlan};
 pub use prepare::{FaceOrigin, Notice, Prepared, prepare};
 pub use rings::RingTable;
-pub use shared::{SharedCorner, SharedTable};
+pub use shared::{SharedCorner, SharedTable, SharedTexcoord};
 pub use stencils::StencilTable;
 
 /// Bytes of a table's array.

@@ -30,24 +30,53 @@ pub struct SharedCorner {
     pub minus_edge: u32,
 }
 
+/// Texture coordinates of a patch corner on what it shares: where displacement is looked up there, so that both sides of a
+/// seam find the same texel. The patch's own are used inside. GLSL twin: `glsl/lib/shared.glsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct SharedTexcoord {
+    /// At this end of the plus edge, on the side that speaks for the edge.
+    pub plus: [f32; 2],
+    /// At this end of the minus edge, likewise.
+    pub minus: [f32; 2],
+    /// At the corner, where the ring that speaks for the vertex starts.
+    pub corner: [f32; 2],
+    /// First the mean length of an edge of that ring in texture space, then zero.
+    pub scale: [f32; 2],
+}
+
 /// A [`SharedCorner`] for each patch corner, in the order of the plan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SharedTable {
     /// In the order of the patches' corners.
     pub corners: Vec<SharedCorner>,
+    /// Likewise, for displacement; else empty.
+    pub texcoords: Vec<SharedTexcoord>,
 }
 
 impl SharedTable {
     /// For the corners of the patches in `plan`.
     pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
         let speakers = Speakers::new(topology);
-        let corner = |h: u32| speakers.corner(h);
-        Self { corners: plan.corners(topology).into_par_iter().map(corner).collect() }
+        let corners = plan.corners(topology).into_par_iter().map(|h| speakers.corner(h));
+        Self { corners: corners.collect(), texcoords: Vec::new() }
     }
 
-    /// Bytes of the array.
+    /// The same, with texture coordinates for displacement. `None` if the mesh has none.
+    pub fn with_texcoords(topology: &Topology, plan: &PatchPlan) -> Option<Self> {
+        let attribute = topology.mesh().data().texcoords.as_ref()?;
+        let at = |h: u32| attribute.values[attribute.indices[h as usize] as usize];
+        let speakers = Speakers::new(topology);
+        let corners = plan.corners(topology);
+        Some(Self {
+            corners: corners.par_iter().map(|&h| speakers.corner(h)).collect(),
+            texcoords: corners.par_iter().map(|&h| speakers.texcoord(h, at)).collect(),
+        })
+    }
+
+    /// Bytes of the arrays.
     pub fn bytes(&self) -> u64 {
-        bytes(&self.corners)
+        bytes(&self.corners) + bytes(&self.texcoords)
     }
 }
 
@@ -119,6 +148,25 @@ impl<'t, 'm> Speakers<'t, 'm> {
             plus_edge: plus_edge | bit(self.is_reversed(h), REVERSED_BIT) | bit(!one_ring, SHARP_EDGE_BIT),
             minus_ring,
             minus_edge,
+        }
+    }
+
+    fn texcoord(&self, h: u32, at: impl Fn(u32) -> [f32; 2]) -> SharedTexcoord {
+        let topology = self.topology;
+        // At the start of half-edge `h` seen from the side that speaks, and at its end.
+        let start = |h: u32| if self.edge(h) == h { h } else { topology.next(self.edge(h)) };
+        let end = |h: u32| if self.edge(h) == h { topology.next(h) } else { self.edge(h) };
+        let ring = &topology.rings()[self.first_rings[topology.mesh_vertex(h) as usize] as usize];
+        let length = |h: u32| {
+            let ([x0, y0], [x1, y1]) = (at(h), at(topology.next(h)));
+            (x1 - x0).hypot(y1 - y0)
+        };
+        let mean = topology.ring_half_edges(ring).map(length).sum::<f32>() / ring.faces as f32;
+        SharedTexcoord {
+            plus: at(start(h)),
+            minus: at(end(topology.prev(h))),
+            corner: at(ring.start),
+            scale: [mean, 0.0],
         }
     }
 }

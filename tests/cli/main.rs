@@ -1,6 +1,9 @@
 //! The program `subdiv`, run as a user runs it.
 #![cfg(feature = "cli")]
 
+#[path = "../common/mod.rs"]
+mod common;
+mod error_maps;
 mod errors;
 mod measures;
 mod pictures;

@@ -1,11 +1,12 @@
 //! `subdiv error`, and the limit surface of `subdiv sample`.
 
-use crate::{assert_close, fails, json, keys, length, run};
+use crate::{assert_close, fails, folder, json, keys, length, run};
 
 #[test]
 fn error_measures_every_scheme_there_is() {
     let report = json("error --shape tetrahedron --samples 5 --nearest 500");
-    let known = "area diagonal irregular_patches mesh nearest_samples patches samples schemes undefined";
+    let known =
+        "area diagonal irregular_patches mesh nearest_floor_rms nearest_samples patches samples schemes undefined";
     assert_eq!(keys(&report), known.split(' ').collect::<Vec<_>>());
     assert_eq!((&report["mesh"], &report["irregular_patches"]), (&"tetrahedron".into(), &4.into()));
     assert_eq!(keys(&report["schemes"]), ["gregory", "gregory-fitted", "pm"]);
@@ -16,6 +17,8 @@ fn error_measures_every_scheme_there_is() {
         // All of its faces are irregular.
         assert_eq!(gregory[key], gregory["irregular"][key], "{key}");
     }
+    // What is measured of the exact surface is a small part of it.
+    assert!(report["nearest_floor_rms"].as_f64().unwrap() < 0.1 * gregory["nearest_rms"].as_f64().unwrap());
     let torus = json("error --shape torus --samples 2 --nearest 0 --scheme acc --scheme acc");
     assert_eq!(keys(&torus["schemes"]), ["acc"]);
     let acc = &torus["schemes"]["acc"];
@@ -37,7 +40,69 @@ fn error_writes_tables() {
 }
 
 #[test]
+fn error_plots_refined_meshes() {
+    let prefix = folder("plots").join("new/tetrahedron");
+    let name = prefix.display();
+    let report = json(&format!("error --shape tetrahedron --samples 9 --nearest 500 --plot {name} --plot-steps 2"));
+    let steps = report["refinements"].as_array().unwrap();
+    let of_steps = |key: &str| steps.iter().map(|step| step[key].as_u64().unwrap()).collect::<Vec<_>>();
+    assert_eq!((of_steps("refine"), of_steps("patches")), (vec![0, 1, 2], vec![4, 12, 48]));
+    assert_eq!(of_steps("samples"), [9, 5, 5]);
+    assert_eq!((keys(&steps[0]["schemes"]).len(), keys(&steps[1]["schemes"]).len()), (2, 4));
+    let gregory = |key: &str| steps.iter().map(|s| s["schemes"]["gregory"][key].as_f64().unwrap()).collect::<Vec<_>>();
+    assert_eq!(gregory("normal_rms")[0], report["schemes"]["gregory"]["normal_rms"].as_f64().unwrap());
+    assert!(gregory("normal_rms").is_sorted_by(|a, b| a > b), "{report}");
+    for (step, bytes) in gregory("table_bytes").into_iter().enumerate() {
+        let info = json(&format!("info --shape tetrahedron --refine {step}"));
+        assert_eq!(info["bytes"]["total"].as_f64().unwrap(), bytes);
+    }
+
+    let svg = std::fs::read_to_string(prefix.with_extension("svg")).unwrap();
+    assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
+    for text in ["tetrahedron: distance", "gregory", "acc", "pm", "c-patch", "normal rms, radians", "1e-4"] {
+        assert!(svg.contains(text), "{text}");
+    }
+    // A dot for each step in each panel, and in the legend: schemes that start one step later have fewer.
+    let dots = |colour: &str| svg.lines().filter(|l| l.starts_with("<circle") && l.contains(colour)).count();
+    assert_eq!((dots("#0072B2"), dots("#D55E00")), (3 * 6 + 1, 2 * 6 + 1));
+    let png = image::open(prefix.with_extension("png")).unwrap().to_rgba8();
+    assert_eq!((png.dimensions(), png.get_pixel(0, 0).0), ((1500, 940), [255; 4]));
+    for colour in [[0, 114, 178, 255], [213, 94, 0, 255]] {
+        assert!(png.pixels().filter(|pixel| pixel.0 == colour).count() > 100, "{colour:?}");
+    }
+    // Exact surfaces have no errors to plot.
+    let torus = json(&format!("error --shape torus --samples 3 --nearest 0 --plot {name}.png --plot-steps 0"));
+    assert_eq!(length(&torus["refinements"]), 1);
+    assert!(std::fs::read_to_string(prefix.with_extension("svg")).unwrap().contains("no error, or not measured"));
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn error_prints_what_was_published() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/meshes/bigguy.obj");
+    let output = run(&format!("error {path} --samples 2 --nearest 0 --published"));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("\npm           0.072   0.88  0.00783   1.10"), "{text}");
+    assert!(text.contains("Metro") && text.contains("not the paper's mesh"), "{text}");
+}
+
+#[test]
 fn error_says_what_is_wrong() {
+    fails(
+        "error --shape cube --published",
+        2,
+        "--published: there are figures for the monster frog and for bigguy, not for \"cube\"",
+    );
+    fails(
+        "error --shape cube --plot-steps 1",
+        2,
+        "the following required arguments were not provided: --plot <PREFIX>",
+    );
+    fails(
+        "error --shape cube --samples 1 --nearest 0 --plot /dev/null/x",
+        1,
+        "/dev/null/x.svg: its folder can't be made: File exists (os error 17)",
+    );
     fails(
         "error --shape tetrahedron --scheme acc",
         1,

@@ -50,7 +50,7 @@ pub fn check(name: &str, variant: &str, size: [u32; 2], rgba: Vec<u8>, writes: b
     let actual = RgbaImage::from_raw(size[0], size[1], rgba).expect("four bytes a pixel");
     let path = folder().join(name).with_extension("png");
     if writes && std::env::var_os("UPDATE_GOLDENS").is_some_and(|value| value == "1") {
-        std::fs::create_dir_all(folder()).expect("a folder for goldens");
+        std::fs::create_dir_all(path.parent().unwrap()).expect("a folder for goldens");
         actual.save(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
     if !path.is_file() {
@@ -62,8 +62,8 @@ pub fn check(name: &str, variant: &str, size: [u32; 2], rgba: Vec<u8>, writes: b
         return Ok(());
     }
     let out = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/goldens");
-    std::fs::create_dir_all(&out).expect("a folder for differences");
     let file = |what: &str| out.join(format!("{name}.{variant}.{what}.png"));
+    std::fs::create_dir_all(file("actual").parent().unwrap()).expect("a folder for differences");
     actual.save(file("actual")).expect("a picture");
     let mut places = Vec::new();
     if golden.dimensions() == actual.dimensions() {

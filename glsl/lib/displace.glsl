@@ -1,0 +1,52 @@
+// Where a displaced surface goes: the one function to write anew for a displacement of your own.
+//
+// The evaluation shaders call `displace` with what all patches at a point share, so whatever it makes of these alone is
+// without cracks. To have your own, put a file of this name before this one: in a folder with your `displace.glsl`,
+//
+//     glslangValidator -V --target-env vulkan1.3 -DDISPLACED -I. -I$ash_subdiv/glsl/lib
+//         $ash_subdiv/glsl/evaluate/gregory_quad.tese -o gregory_quad.spv     (one line)
+//
+// and give the SPIR-V to the renderer as `Options::shaders` under the name "EVALUATE_GREGORY_QUAD_TESE_DISPLACED"; the same
+// for `bicubic` and `gregory_triangle`. `displaced_normal` is for fragment shaders; write it anew, too, if you use ours.
+#ifndef DISPLACE_GLSL
+#define DISPLACE_GLSL
+
+#include "draw.glsl"
+
+// The model's map: heights in red, or vectors in object space.
+layout(set = 1, binding = 12) uniform sampler2D displacement_map;
+
+const uint VECTOR_FLAG = 1u;  // in draw.flags
+
+// Object space to object space. `direction` is of length one, `texcoord` that of the edge's or corner's owner on edges and
+// corners, `lod` a level of the map at which a segment of the tessellation is about a texel long.
+vec3 displace(vec3 position, vec3 direction, vec2 texcoord, float lod) {
+    vec4 texel = textureLod(displacement_map, texcoord, lod);
+    precise vec3 vector = displacement_scale() * texel.xyz + displacement_bias();
+    precise vec3 along = (displacement_scale() * texel.x + displacement_bias()) * direction;
+    precise vec3 displaced = position + ((draw.flags & VECTOR_FLAG) != 0u ? vector : along);
+    return displaced;
+}
+
+#ifdef FRAGMENT_STAGE
+// The normal of the displaced surface in world space, so that light shows what is finer than the tessellation (Mikkelsen,
+// Bump Mapping Unparametrized Surfaces on the GPU, 2010). `normal` is that of the surface before it was displaced.
+vec3 displaced_normal(vec3 position, vec3 normal, vec2 texcoord) {
+    vec3 dx = dFdx(position), dy = dFdy(position);
+    if ((draw.flags & VECTOR_FLAG) != 0u) {
+        // Of the triangle: the map says nothing of what lies between its vertices.
+        vec3 plane = cross(dx, dy);
+        return dot(plane, normal) < 0.0 ? -plane : plane;
+    }
+    float scale = displacement_scale() * length(draw.transform[0].xyz);
+    float height = texture(displacement_map, texcoord).x;
+    float height_dx = scale * (texture(displacement_map, texcoord + dFdx(texcoord)).x - height);
+    float height_dy = scale * (texture(displacement_map, texcoord + dFdy(texcoord)).x - height);
+    vec3 n = normalize(normal);
+    vec3 across_x = cross(dy, n), across_y = cross(n, dx);
+    float area = dot(dx, across_x);
+    return abs(area) * n - sign(area) * (height_dx * across_x + height_dy * across_y);
+}
+#endif
+
+#endif

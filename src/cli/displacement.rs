@@ -1,0 +1,76 @@
+//! Displacement maps on the command line.
+
+use super::error::CliError;
+use ash_subdiv::ControlMesh;
+use ash_subdiv::headless::{Headless, HeadlessError, Texels, Texture};
+use clap::Args;
+
+/// The built-in height map: overlapping scales, which repeat.
+const SCALES: &[u8] = include_bytes!("../../assets/scales.png");
+/// What [`DisplacementArgs::displacement`] calls it.
+const SCALES_NAME: &str = "scales";
+
+#[derive(Debug, Args)]
+pub(super) struct DisplacementArgs {
+    /// Move the surface by a height map: a PNG or EXR file, or `scales` for a built-in one. The mesh has to have texture
+    /// coordinates.
+    #[arg(long, value_name = "FILE")]
+    displacement: Option<String>,
+    /// How far the greatest height (1 in a PNG file) moves it, as a part of the bounding box's diagonal.
+    #[arg(long, value_name = "PART", default_value_t = 0.01, allow_negative_numbers = true)]
+    displacement_scale: f32,
+    /// What is added to that everywhere, as a part of the diagonal.
+    #[arg(long, value_name = "PART", default_value_t = 0.0, allow_negative_numbers = true)]
+    displacement_bias: f32,
+    /// The map holds vectors in object space, in red, green and blue.
+    #[arg(long)]
+    displacement_vectors: bool,
+}
+
+impl DisplacementArgs {
+    pub(super) fn is_given(&self) -> bool {
+        self.displacement.is_some()
+    }
+
+    /// Reads the map, if one is given.
+    pub(super) fn texels(&self) -> Result<Option<Texels>, CliError> {
+        let Some(name) = &self.displacement else { return Ok(None) };
+        let vectors = self.displacement_vectors;
+        for (option, part) in [("scale", self.displacement_scale), ("bias", self.displacement_bias)] {
+            if !part.is_finite() {
+                return Err(CliError::Usage(format!("--displacement-{option} {part}: give a number")));
+            }
+        }
+        match name.as_str() {
+            SCALES_NAME => Ok(Some(scales()?)),
+            file => Ok(Some(Texels::open(file, vectors).map_err(|error| match error {
+                HeadlessError::Picture { path, message } => {
+                    CliError::Work(format!("--displacement {}: {message}", path.display()))
+                }
+                other => other.into(),
+            })?)),
+        }
+    }
+
+    /// Scale and bias in the mesh's own units.
+    pub(super) fn amount(&self, mesh: &ControlMesh) -> [f32; 2] {
+        let diagonal = diagonal(mesh);
+        [self.displacement_scale * diagonal, self.displacement_bias * diagonal]
+    }
+}
+
+/// The built-in height map.
+pub(super) fn scales() -> Result<Texels, CliError> {
+    Texels::decode(SCALES, false).map_err(|error| CliError::Work(format!("the built-in height map: {error}")))
+}
+
+/// The map on the device.
+pub(super) fn texture(headless: &Headless, texels: &Texels) -> Result<Texture, CliError> {
+    Ok(Texture::new(headless, "displacement map", texels)?)
+}
+
+/// Of the control mesh's bounding box.
+pub(super) fn diagonal(mesh: &ControlMesh) -> f32 {
+    let [low, high] = mesh.bounds();
+    (high - low).length() as f32
+}

@@ -1,0 +1,211 @@
+//! Images for shaders to read, such as displacement maps.
+
+use super::{Headless, HeadlessError};
+use crate::gpu::{Buffer, BufferDesc, GpuError, Image, ImageDesc, MemoryLocation, Owned, VkResultExt};
+use ash::vk;
+
+/// Texels: rows from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texels {
+    /// Texels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Numbers a texel: 1 for heights, 4 for vectors, whose last one is not looked at.
+    pub channels: u32,
+    /// Row by row.
+    pub values: Vec<f32>,
+}
+
+impl Texels {
+    /// Reads a picture: heights (its red channel) or vectors. Integers become numbers from 0 to 1; EXR files (feature `exr`)
+    /// are read as they are.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Picture`].
+    #[cfg(feature = "png")]
+    pub fn open(path: impl AsRef<std::path::Path>, vectors: bool) -> Result<Self, HeadlessError> {
+        let path = path.as_ref();
+        let error = |message: String| HeadlessError::Picture { path: path.to_owned(), message };
+        let reader = image::ImageReader::open(path).and_then(image::ImageReader::with_guessed_format);
+        let picture = reader.map_err(|e| error(e.to_string()))?.decode().map_err(|e| error(e.to_string()))?;
+        Self::of_picture(picture, vectors).ok_or_else(|| error("it has values that are no finite numbers".into()))
+    }
+
+    /// The same from the contents of a file.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    #[cfg(feature = "png")]
+    pub fn decode(bytes: &[u8], vectors: bool) -> Result<Self, String> {
+        let picture = image::load_from_memory(bytes).map_err(|e| e.to_string())?;
+        Self::of_picture(picture, vectors).ok_or_else(|| "it has values that are no finite numbers".into())
+    }
+
+    #[cfg(feature = "png")]
+    fn of_picture(picture: image::DynamicImage, vectors: bool) -> Option<Self> {
+        let (width, height) = (picture.width(), picture.height());
+        let texels = picture.into_rgba32f().into_raw();
+        let (channels, values) =
+            if vectors { (4, texels) } else { (1, texels.chunks_exact(4).map(|texel| texel[0]).collect()) };
+        values.iter().all(|x: &f32| x.is_finite()).then_some(Self { width, height, channels, values })
+    }
+
+    /// The least and the largest value of what is looked at.
+    pub fn range(&self) -> [f32; 2] {
+        let used = self.channels.min(3) as usize;
+        let values = self.values.chunks_exact(self.channels as usize).flat_map(|texel| &texel[..used]);
+        values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
+    }
+
+    /// Half as wide and high, each texel the mean of those it covers.
+    fn halved(&self) -> Self {
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let channels = self.channels as usize;
+        // Which texels of `of` a texel of `count` covers.
+        let covered = |i: u32, count: u32, of: u32| {
+            let (first, end) = (u64::from(i) * u64::from(of), u64::from(i + 1) * u64::from(of));
+            (first / u64::from(count)) as usize..end.div_ceil(u64::from(count)) as usize
+        };
+        let mut values = Vec::with_capacity(width as usize * height as usize * channels);
+        for y in 0..height {
+            for x in 0..width {
+                let (rows, columns) = (covered(y, height, self.height), covered(x, width, self.width));
+                let count = (rows.len() * columns.len()) as f32;
+                for channel in 0..channels {
+                    let at = |(row, column): (usize, usize)| {
+                        self.values[(row * self.width as usize + column) * channels + channel]
+                    };
+                    let texels = rows.clone().flat_map(|row| columns.clone().map(move |column| (row, column)));
+                    values.push(texels.map(at).sum::<f32>() / count);
+                }
+            }
+        }
+        Self { width, height, channels: self.channels, values }
+    }
+}
+
+/// Texels on the device with all their mip levels, and a trilinear sampler that repeats.
+#[derive(Debug)]
+pub struct Texture {
+    image: Image,
+    sampler: Owned<vk::Sampler>,
+    channels: u32,
+    range: [f32; 2],
+}
+
+impl Texture {
+    /// Makes the levels and copies them to the device.
+    ///
+    /// # Errors
+    /// No memory, sizes the device does not have, a device that does not filter 32-bit numbers.
+    pub fn new(headless: &Headless, name: &str, texels: &Texels) -> Result<Self, GpuError> {
+        let unsupported = |why: String| GpuError::Unsupported { object: name.to_owned(), why };
+        let format = match texels.channels {
+            1 => vk::Format::R32_SFLOAT,
+            4 => vk::Format::R32G32B32A32_SFLOAT,
+            other => return Err(unsupported(format!("{other} numbers a texel: 1 or 4 are possible"))),
+        };
+        // SAFETY: the physical device is of the instance.
+        let known = unsafe {
+            headless.instance().get_physical_device_format_properties(headless.physical_device(), format)
+        };
+        let needed = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR | vk::FormatFeatureFlags::TRANSFER_DST;
+        if !known.optimal_tiling_features.contains(needed) {
+            return Err(unsupported(format!("{} does not filter images of {format:?}", headless.properties().name)));
+        }
+        let mut levels = vec![texels.clone()];
+        while let Some(last) = levels.last().filter(|level| level.width.max(level.height) > 1) {
+            levels.push(last.halved());
+        }
+        let context = headless.context();
+        let extent = vk::Extent2D { width: texels.width, height: texels.height };
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let desc = ImageDesc { mip_levels: levels.len() as u32, ..ImageDesc::new(name, extent, format, usage) };
+        let image = Image::new(context, &desc)?;
+        upload(headless, &image, &levels)?;
+        let info = vk::SamplerCreateInfo::default()
+            .mag_filter(vk::Filter::LINEAR)
+            .min_filter(vk::Filter::LINEAR)
+            .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
+            .max_lod(vk::LOD_CLAMP_NONE);
+        // SAFETY: the description is valid, and the sampler is taken over by `Owned`.
+        let sampler = unsafe {
+            let raw = context.device().create_sampler(&info, None).of("vkCreateSampler", name)?;
+            Owned::new(context, raw, name)
+        };
+        Ok(Self { image, sampler, channels: texels.channels, range: texels.range() })
+    }
+
+    /// The image with all its levels, in the layout `SHADER_READ_ONLY_OPTIMAL`.
+    pub fn view(&self) -> vk::ImageView {
+        self.image.view()
+    }
+
+    /// The sampler.
+    pub fn sampler(&self) -> vk::Sampler {
+        self.sampler.raw()
+    }
+
+    /// Numbers a texel: 1 or 4.
+    pub fn channels(&self) -> u32 {
+        self.channels
+    }
+
+    /// The least and the largest value of what is looked at.
+    pub fn range(&self) -> [f32; 2] {
+        self.range
+    }
+}
+
+/// Copies all levels, and leaves the image as shaders read it.
+fn upload(headless: &Headless, image: &Image, levels: &[Texels]) -> Result<(), GpuError> {
+    use vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stage};
+    let texels: Vec<f32> = levels.iter().flat_map(|level| &level.values).copied().collect();
+    let mut staged = Buffer::new(
+        headless.context(),
+        &BufferDesc {
+            name: "texels to copy",
+            size: size_of_val(texels.as_slice()) as u64,
+            usage: vk::BufferUsageFlags::TRANSFER_SRC,
+            location: MemoryLocation::Upload,
+        },
+    )?;
+    staged.write(0, &texels)?;
+    let mut offset = 0;
+    let regions: Vec<_> = levels
+        .iter()
+        .zip(0..)
+        .map(|(level, mip)| {
+            let layers = vk::ImageSubresourceLayers {
+                aspect_mask: vk::ImageAspectFlags::COLOR,
+                mip_level: mip,
+                base_array_layer: 0,
+                layer_count: 1,
+            };
+            let region = vk::BufferImageCopy::default()
+                .buffer_offset(offset)
+                .image_subresource(layers)
+                .image_extent(vk::Extent3D { width: level.width, height: level.height, depth: 1 });
+            offset += 4 * level.values.len() as u64;
+            region
+        })
+        .collect();
+    let before = [image
+        .barrier(Layout::UNDEFINED, Layout::TRANSFER_DST_OPTIMAL)
+        .dst_stage_mask(Stage::COPY)
+        .dst_access_mask(Access::TRANSFER_WRITE)];
+    let after = [image
+        .barrier(Layout::TRANSFER_DST_OPTIMAL, Layout::SHADER_READ_ONLY_OPTIMAL)
+        .src_stage_mask(Stage::COPY)
+        .src_access_mask(Access::TRANSFER_WRITE)
+        .dst_stage_mask(Stage::ALL_GRAPHICS)
+        .dst_access_mask(Access::SHADER_SAMPLED_READ)];
+    // SAFETY: the command buffer is being recorded, the image is new, and the buffer holds all levels.
+    headless.submit(|cmd| unsafe {
+        let device = headless.device();
+        device.cmd_pipeline_barrier2(cmd, &vk::DependencyInfo::default().image_memory_barriers(&before));
+        device.cmd_copy_buffer_to_image(cmd, staged.raw(), image.raw(), Layout::TRANSFER_DST_OPTIMAL, &regions);
+        device.cmd_pipeline_barrier2(cmd, &vk::DependencyInfo::default().image_memory_barriers(&after));
+    })
+}

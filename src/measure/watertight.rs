@@ -1,0 +1,301 @@
+//! Whether neighbouring patches meet: to the last bit in their evaluated vertices, and in every pixel.
+
+use crate::capture::{CaptureDraw, Captured, CapturedVertex, Which};
+use crate::gpu::{Blend, shaders};
+use crate::headless::{Headless, Offscreen, OffscreenDesc, Texture};
+use crate::mesh::{ControlMesh, FaceVarying, MeshData};
+use crate::renderer::{
+    DrawItem, Edges, Error, Factor, Fragment, ModelOptions, ModelTables, Options, Renderer, Style, Target, View,
+};
+use crate::table::{PatchPlan, prepare};
+use crate::topology::{PatchKind, Topology};
+use ash::vk;
+use rayon::prelude::*;
+
+/// What was compared, and what differs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tally {
+    /// Pairs of vertices that two patches evaluated at one place of the surface.
+    pub samples: u64,
+    /// Pairs whose positions differ in some bit (zeros of both signs are one), and vertices that only one patch has.
+    pub position_mismatches: u64,
+    /// Pairs whose normals differ, where the surface is to have one.
+    pub normal_mismatches: u64,
+    /// The first that differ.
+    pub first: Option<Mismatch>,
+}
+
+impl Tally {
+    /// Puts together what two comparisons found.
+    pub fn add(&mut self, other: Self) {
+        self.samples += other.samples;
+        self.position_mismatches += other.position_mismatches;
+        self.normal_mismatches += other.normal_mismatches;
+        self.first = self.first.take().or(other.first);
+    }
+
+    /// Whether nothing differs.
+    pub fn is_watertight(&self) -> bool {
+        self.position_mismatches == 0 && self.normal_mismatches == 0
+    }
+}
+
+/// Two vertices that should be the same, or one that has no partner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mismatch {
+    /// The vertices at both ends of the edge, or the one vertex twice.
+    pub vertices: [u32; 2],
+    /// How far along the edge.
+    pub at: f32,
+    /// The faces of the vertices.
+    pub faces: [u32; 2],
+    /// The vertices.
+    pub captured: [CapturedVertex; 2],
+}
+
+/// Who meets whom: for the evaluated vertices of one model.
+pub struct Seams {
+    plan: PatchPlan,
+    edges: Edges,
+    /// Whether each edge has two patches, and whether they are to have one normal.
+    paired: Vec<bool>,
+    smooth: Vec<bool>,
+    /// For each patch corner: its vertex and its ring; whether its plus edge leads to a lower vertex.
+    corners: Vec<(u32, u32, bool)>,
+}
+
+impl Seams {
+    /// Of a model that is drawn with these tables; `refine` as in [`ModelOptions::refine`].
+    ///
+    /// # Errors
+    /// As [`prepare`].
+    pub fn new(mesh: &ControlMesh, refine: u32, tables: &ModelTables) -> Result<Self, Error> {
+        let prepared = prepare(mesh, refine)?;
+        let topology = Topology::new(&prepared.mesh);
+        let plan = tables.plan().clone();
+        let edges = Edges::new(&topology, &plan);
+        let mut patches = vec![0; edges.vertices.len()];
+        edges.of_corners.iter().for_each(|&edge| patches[edge as usize] += 1);
+        let mut smooth = vec![true; edges.vertices.len()];
+        let half_edges: Vec<u32> = plan
+            .patches()
+            .iter()
+            .flat_map(|patch| prepared.mesh.face_corners(patch.face))
+            .map(|h| h as u32)
+            .collect();
+        let one_ring = |h: u32| {
+            topology.twin(h).is_none_or(|twin| {
+                topology.place(h).ring == topology.place(topology.next(twin)).ring
+                    && topology.place(twin).ring == topology.place(topology.next(h)).ring
+            })
+        };
+        for (&h, &edge) in half_edges.iter().zip(&edges.of_corners) {
+            smooth[edge as usize] = one_ring(h);
+        }
+        let corner = |&h: &u32| {
+            let (vertex, next) = (topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h)));
+            (vertex, topology.place(h).ring, vertex > next)
+        };
+        let corners = half_edges.iter().map(corner).collect();
+        Ok(Self { paired: patches.into_iter().map(|count| count == 2).collect(), plan, edges, smooth, corners })
+    }
+
+    /// How many edges have two patches.
+    pub fn edge_count(&self) -> usize {
+        self.paired.iter().filter(|&&paired| paired).count()
+    }
+
+    /// Compares vertices of one draw; `normals` says whether they are shared. With culling, vertices may be without
+    /// partner.
+    pub fn compare(&self, vertices: &[CapturedVertex], normals: bool, culled: bool) -> Tally {
+        let mut places: Vec<Place> = vertices
+            .par_iter()
+            .enumerate()
+            .filter_map(|(i, vertex)| self.place(vertex).map(|key| Place { key, index: i as u32 }))
+            .collect();
+        places.par_sort_unstable();
+        let groups: Vec<&[Place]> = places.chunk_by(|a, b| a.key == b.key).collect();
+        let tally = |group: &&[Place]| self.compare_group(group, vertices, normals, culled);
+        let add = |mut a: Tally, b: Tally| {
+            a.add(b);
+            a
+        };
+        groups.par_iter().map(tally).reduce(Tally::default, add)
+    }
+
+    fn compare_group(&self, group: &[Place], vertices: &[CapturedVertex], normals: bool, culled: bool) -> Tally {
+        let key = group[0].key;
+        let first = vertices[group[0].index as usize];
+        let mut tally = Tally::default();
+        let note = |tally: &mut Tally, other: CapturedVertex| {
+            let faces = [first, other].map(|vertex| self.plan.patches()[vertex.patch as usize].face);
+            let vertices = if key.is_edge { self.edges.vertices[key.number as usize] } else { [key.number; 2] };
+            let mismatch = Mismatch { vertices, at: f32::from_bits(key.at), faces, captured: [first, other] };
+            tally.first.get_or_insert(mismatch);
+        };
+        if key.is_edge && self.paired[key.number as usize] && !culled {
+            let lonely = group.iter().all(|place| vertices[place.index as usize].patch == first.patch);
+            if lonely {
+                tally.position_mismatches += 1;
+                note(&mut tally, first);
+            }
+        }
+        for place in &group[1..] {
+            let other = vertices[place.index as usize];
+            tally.samples += 1;
+            let smooth = if key.is_edge {
+                self.smooth[key.number as usize]
+            } else {
+                self.ring(&first) == self.ring(&other)
+            };
+            if bits(first.position) != bits(other.position) {
+                tally.position_mismatches += 1;
+                note(&mut tally, other);
+            } else if normals && smooth && bits(first.normal) != bits(other.normal) {
+                tally.normal_mismatches += 1;
+                note(&mut tally, other);
+            }
+        }
+        tally
+    }
+
+    fn first_corner(&self, patch: usize) -> usize {
+        let kind = self.plan.patches()[patch].kind;
+        self.plan.first_corner(kind) as usize + (patch - self.plan.range(kind).start) * kind.corners()
+    }
+
+    /// The ring at the corner of a patch that a captured vertex is at.
+    fn ring(&self, captured: &CapturedVertex) -> Option<u32> {
+        let patch = captured.patch as usize;
+        let on = on_edges(self.plan.patches()[patch].kind, captured.coordinate);
+        let (k, _) = on.into_iter().flatten().find(|(_, t)| *t == 0.0)?;
+        Some(self.corners[self.first_corner(patch) + k].1)
+    }
+
+    /// Which edge, or which vertex, a captured vertex lies on, if any.
+    fn place(&self, captured: &CapturedVertex) -> Option<Key> {
+        let patch = captured.patch as usize;
+        let kind = self.plan.patches()[patch].kind;
+        let first = self.first_corner(patch);
+        let on = on_edges(kind, captured.coordinate);
+        if let Some((k, _)) = on.into_iter().flatten().find(|(_, t)| *t == 0.0) {
+            return Some(Key { is_edge: false, number: self.corners[first + k].0, at: 0 });
+        }
+        let (k, t) = on.into_iter().flatten().next()?;
+        let reversed = self.corners[first + k].2;
+        let at = if reversed { 1.0 - t } else { t };
+        Some(Key { is_edge: true, number: self.edges.of_corners[first + k], at: at.to_bits() })
+    }
+}
+
+/// A place where patches meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Key {
+    is_edge: bool,
+    /// Of the edge or the vertex.
+    number: u32,
+    /// Bits of the way from the lower vertex.
+    at: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Place {
+    key: Key,
+    /// Of the captured vertex.
+    index: u32,
+}
+
+/// The edges of a patch on which parameters lie, by the corner where each starts, and how far along: two at a corner.
+fn on_edges(kind: PatchKind, [u, v, w]: [f32; 3]) -> [Option<(usize, f32)>; 4] {
+    let edge = |k: usize, distance: f32, t: f32| (distance == 0.0).then_some((k, t));
+    match kind {
+        PatchKind::Triangle => [edge(0, w, v), edge(1, u, w), edge(2, v, u), None],
+        _ => [edge(0, v, u), edge(1, 1.0 - u, v), edge(2, 1.0 - v, 1.0 - u), edge(3, u, 1.0 - v)],
+    }
+}
+
+fn bits(x: [f32; 3]) -> [u32; 3] {
+    x.map(|x| (x + 0.0).to_bits())
+}
+
+/// A mesh of which every face has a part of texture space to itself, so that every edge is a seam.
+///
+/// # Errors
+/// None that the mesh did not have before.
+pub fn with_seams_everywhere(mesh: &ControlMesh) -> Result<ControlMesh, Error> {
+    let mut values = Vec::with_capacity(mesh.corner_count());
+    for face in 0..mesh.face_count() {
+        let n = mesh.face(face as u32).len();
+        // A regular polygon, turned from face to face.
+        let corner = |k: usize| {
+            let angle = std::f32::consts::TAU * (k as f32 / n as f32 + 0.618 * face as f32);
+            [0.5 + 0.45 * angle.cos(), 0.5 + 0.45 * angle.sin()]
+        };
+        values.extend((0..n).map(corner));
+    }
+    let indices = (0..values.len() as u32).collect();
+    let texcoords = Some(FaceVarying { values, indices });
+    Ok(ControlMesh::new(MeshData { texcoords, ..mesh.data().clone() })?)
+}
+
+/// Factors from 1 to `most`, different for every edge.
+pub fn random_factors(edges: usize, most: f32, seed: u64) -> Vec<f32> {
+    let factor = |edge: u64| {
+        // SplitMix64 (Steele, Lea and Flood 2014).
+        let mut x = (edge + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        1.0 + (most - 1.0) * ((x ^ (x >> 31)) >> 40) as f32 / (1u64 << 24) as f32
+    };
+    (0..edges as u64).map(factor).collect()
+}
+
+/// Captures what a draw evaluates on edges and compares it.
+///
+/// # Errors
+/// As [`Captured::vertices_of`].
+pub fn compare(captured: &Captured, seams: &Seams, draw: &CaptureDraw, normals: bool) -> Result<Tally, Error> {
+    let vertices = captured.vertices_of(draw, Which::OnEdges)?;
+    Ok(seams.compare(&vertices, normals, draw.cull != crate::renderer::Cull::NONE))
+}
+
+/// Pixels of a square picture in which a closed surface does not have as many layers that face the eye as layers that face
+/// away: where there is a hole, or something is drawn twice.
+///
+/// # Errors
+/// As [`Renderer::add_model`] and [`Renderer::cmd_draw`].
+pub fn leaked_pixels(
+    headless: &Headless,
+    mesh: &ControlMesh,
+    options: &ModelOptions,
+    displacement: Option<&Texture>,
+    draw: &CaptureDraw,
+    side: u32,
+) -> Result<u64, Error> {
+    let desc = OffscreenDesc { color: vk::Format::R8G8B8A8_UNORM, ..OffscreenDesc::new(side, side) };
+    let target = Offscreen::new(headless, &desc)?;
+    let style = Style {
+        fragment: Fragment::Spirv(shaders::SHADE_LAYERS_FRAG.to_vec()),
+        blend: Blend::Add,
+        depth: None,
+        ..Style::default()
+    };
+    let renderer_options = Options { styles: vec![style], ..Options::default() };
+    let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
+    // SAFETY: every submission is waited for, and the texture outlives the renderer.
+    let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &renderer_options)? };
+    // SAFETY: as above.
+    let map = displacement.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
+    let model = renderer.add_model(mesh, &ModelOptions { displacement: map, ..options.clone() })?;
+    if let Factor::Edges(_) = draw.factor {
+        renderer.set_edge_factors(model, 0, &draw.edge_factors)?;
+    }
+    let CaptureDraw { factor, cull, displacement, .. } = *draw;
+    let item = DrawItem { factor, cull, displacement, ..DrawItem::new(model, 1.0) };
+    let view: View = draw.view;
+    // SAFETY: outside rendering, and inside what fits the target.
+    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+    // SAFETY: likewise.
+    let pixels = target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, 0, &view, &[item]) })?;
+    Ok(pixels.chunks_exact(4).filter(|pixel| pixel[0] != pixel[1]).count() as u64)
+}
