@@ -11,7 +11,6 @@ use ash_subdiv::limit::{LimitSurface, refine};
 use ash_subdiv::patch::fitted::{Fit, fitted_frame, fitted_transversal};
 use ash_subdiv::patch::gregory::{PatchCorner, gregory_points};
 use ash_subdiv::patch::{RingValues, Scheme};
-use ash_subdiv::table::PatchPlan;
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData, MeshError};
 use glam::DVec3;
@@ -103,21 +102,18 @@ impl Training {
     fn new(mesh: &ControlMesh) -> Result<Self, MeshError> {
         let topology = Topology::new(mesh);
         let limit = LimitSurface::new(mesh)?;
-        let patch = |patch: &ash_subdiv::table::Patch| {
+        let patch = |face: u32| {
+            let kind = topology.patch_kind(face).filter(|&kind| kind != PatchKind::Regular)?;
             let corner = |h: usize| {
                 let place = topology.place(h as u32);
                 let ring = &topology.rings()[place.ring as usize];
                 (RingValues::new(&topology, ring, |v| mesh.position(v)), place.index as usize)
             };
-            Patch {
-                kind: patch.kind,
-                corners: mesh.face_corners(patch.face).map(corner).collect(),
-                targets: targets(&limit, patch.face, patch.kind),
-            }
+            let corners = mesh.face_corners(face).map(corner).collect();
+            Some(Patch { kind, corners, targets: targets(&limit, face, kind) })
         };
-        let plan = PatchPlan::new(&topology);
-        let irregular = plan.patches().par_iter().filter(|patch| patch.kind != PatchKind::Regular);
-        let mut training = Self { patches: irregular.map(patch).collect(), before: [0.0; 2] };
+        let faces = (0..mesh.face_count() as u32).into_par_iter();
+        let mut training = Self { patches: faces.filter_map(patch).collect(), before: [0.0; 2] };
         training.before = errors(&training, &of_numbers([0.0; N]));
         Ok(training)
     }

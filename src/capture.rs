@@ -8,8 +8,8 @@ use crate::gpu::{
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::mesh::ControlMesh;
 use crate::renderer::{
-    Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Factor, ModelOptions, ModelTables, Options, Renderer,
-    Style, Target, View,
+    Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Factor, ModelOptions, ModelTables, Options,
+    Renderer, Style, Target, View,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -20,7 +20,7 @@ use std::ops::Range;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct CapturedVertex {
-    /// (u, v, 0) of a quad, (u, v, w) of a triangle.
+    /// (u, v, 0) of a quad, (u, v, w) of a triangle or a piece of a pentagon.
     pub coordinate: [f32; 3],
     /// The number of the patch in the order of [`ModelTables::plan`].
     pub patch: u32,
@@ -169,11 +169,10 @@ impl<'h> Captured<'h> {
     pub fn control_points(&self) -> Result<Vec<Vec<[f32; 3]>>, Error> {
         let words = self.capture_patches(&CaptureDraw::new(1.0))?;
         let patches = self.tables.plan().patches().iter();
-        let scheme = self.options.scheme;
         let points = patches.zip(words.chunks_exact(CONTROL_POINT_WORDS + FACTOR_WORDS)).map(|(patch, words)| {
-            let mut points = vec![[0.0; 3]; scheme.points(patch.kind)];
+            let mut points = vec![[0.0; 3]; patch.scheme.points(patch.kind)];
             // The shaders count them corner by corner.
-            let slots = (0..patch.kind.corners()).flat_map(|k| scheme.corner_slots(patch.kind, k));
+            let slots = (0..patch.kind.corners()).flat_map(|k| patch.scheme.corner_slots(patch.kind, k));
             slots.zip(words.chunks_exact(3)).for_each(|(slot, p)| points[slot] = [p[0], p[1], p[2]]);
             points
         });
@@ -214,7 +213,7 @@ impl<'h> Captured<'h> {
         if !(2..=max).contains(&n) {
             return Err(Error::BadGrid { given: n, max });
         }
-        let places = |kind| if kind == PatchKind::Triangle { n * (n + 1) / 2 } else { n * n };
+        let places = |kind: PatchKind| if kind.is_triangular() { n * (n + 1) / 2 } else { n * n };
         let bytes = |kind| u64::from(places(kind)) * RECORD_BYTES;
         let captured = self.capture(Capture::Grid, &CaptureDraw::new((n - 1) as f32), bytes, |patches| Head {
             first_patch: patches.start,
@@ -252,8 +251,8 @@ impl<'h> Captured<'h> {
             Factor::Pixels(_) | Factor::Curvature(_) => max as f32,
             Factor::Edges(scale) => draw.edge_factors.iter().fold(1.0, |most, &factor| (scale * factor).max(most)),
         };
-        let bytes = |kind| {
-            let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
+        let bytes = |kind: PatchKind| {
+            let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
             let vertices = match which {
                 Which::All => tessellated_vertices(domain, self.options.spacing, most, max),
                 Which::OnEdges => 4 * (self.options.spacing.segments(most, max) + 1),

@@ -11,8 +11,8 @@
 //!
 //! 1. [`mesh`]: a [`ControlMesh`], from a file ([`mesh::read`]) or from arrays ([`MeshData`]), is checked once:
 //!    manifold, oriented, finite. From here on nothing about it can fail but its size.
-//! 2. [`table::prepare`]: a mesh with faces of five or more corners is refined once ([`limit::refine`]), so that
-//!    every face is a triangle or a quad. The caller may ask for more steps.
+//! 2. [`table::prepare_patches`]: a mesh with faces of five or more corners is refined once ([`limit::refine`]), so that
+//!    every face is a triangle or a quad; [`Scheme::Pm`] takes pentagons as they are. The caller may ask for more steps.
 //! 3. [`topology`]: every vertex gets its ordered one-ring, every face its [`PatchKind`](topology::PatchKind).
 //! 4. [`patch`]: the control points of a patch are sums of the control vertices in the one-rings of its corners.
 //!    The code that makes them is written once, over values that can be summed: points give control points, rows of
@@ -81,7 +81,9 @@
 //!   2e-5 to 4e-5 of the diagonal (nearest distance) and half a degree (normal).
 //! * Neighbouring patches share their edge curve and tangent planes along it (G1; [`Scheme::Acc`]: shading normals).
 //!   The GPU evaluates the curve once for each patch: to the same bits with Gregory patches made by
-//!   [`Construction::TwoStage`], else to rounding. Normals agree to rounding.
+//!   [`Construction::TwoStage`], else to rounding. Normals agree to rounding. Where faces fall back to Gregory patches
+//!   ([`Fallback`]), they share their edge curves with patches of another scheme, too, but not all tangent planes
+//!   ([`patch::FallbackRings`]).
 //! * The two constructions on the GPU ([`Construction`]) make the same control points but for rounding.
 //!
 //! # Where the formulas come from
@@ -127,7 +129,7 @@ pub use mesh::read;
 pub use mesh::{
     ControlMesh, MeshData, MeshError, ObjOptions, ReadOptions, ShapeInfo, grid_torus, replicate, shape, shapes,
 };
-pub use patch::Scheme;
+pub use patch::{Fallback, Scheme};
 pub use renderer::{
     Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
 };

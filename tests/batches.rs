@@ -45,7 +45,7 @@ fn herd(copies: u32) -> ControlMesh {
 struct Picture {
     statistics: Statistics,
     pixels: Vec<u8>,
-    counts: [u64; 3],
+    counts: [u64; 4],
 }
 
 /// Draws every patch as it covers pixels: each adds one to the red of the pixels it covers.

@@ -11,7 +11,8 @@ use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
 use ash_subdiv::renderer::{Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Scheme, Style, Target, View, shape, shapes,
+    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Style, Target, View, shape,
+    shapes,
 };
 use common::golden;
 use common::render_pass::{Moment, RenderPassTarget};
@@ -27,20 +28,20 @@ const INK: [f32; 4] = [0.02, 0.03, 0.1, 0.6];
 #[derive(Clone)]
 struct Layer {
     style: Style,
-    colors: [[f32; 4]; 3],
+    colors: [[f32; 4]; 4],
 }
 
 fn surface(fragment: Fragment) -> Layer {
-    Layer { style: Style { fragment, ..Style::default() }, colors: [CLAY; 3] }
+    Layer { style: Style { fragment, ..Style::default() }, colors: [CLAY; 4] }
 }
 
 fn lines(style: Style) -> Layer {
-    Layer { style: Style { blend: Blend::Alpha, ..style }, colors: [INK; 3] }
+    Layer { style: Style { blend: Blend::Alpha, ..style }, colors: [INK; 4] }
 }
 
 /// Opaque lines: the constructions draw patches in different orders, and an edge of two triangles is drawn twice.
 fn wire() -> Vec<Layer> {
-    let wire = Layer { style: Style::wireframe(), colors: [[0.02, 0.03, 0.1, 1.0]; 3] };
+    let wire = Layer { style: Style::wireframe(), colors: [[0.02, 0.03, 0.1, 1.0]; 4] };
     vec![surface(Fragment::Lit), wire]
 }
 
@@ -91,7 +92,7 @@ impl Picture {
 
 fn pictures() -> Vec<Picture> {
     let mut pictures: Vec<Picture> = shapes().iter().map(|info| Picture::lit(info.name)).collect();
-    let kinds = [[0.9, 0.5, 0.05, 1.0], [0.25, 0.1, 0.5, 1.0], [0.05, 0.4, 0.1, 1.0]];
+    let kinds = [[0.9, 0.5, 0.05, 1.0], [0.25, 0.1, 0.5, 1.0], [0.05, 0.4, 0.1, 1.0], [0.5, 0.05, 0.05, 1.0]];
     let faces = Style {
         geometry: Geometry::ControlFaces,
         // Behind the edges, which are lines and so not moved.
@@ -111,7 +112,7 @@ fn pictures() -> Vec<Picture> {
         Picture { layers: wire(), name: "wireframe-cube".into(), ..Picture::lit("cube") },
         Picture { layers: wire(), name: "wireframe-fan".into(), ..Picture::lit("fan") },
         Picture::of_style("cage", vec![surface(Fragment::Lit), lines(Style::cage())]),
-        Picture::of_style("control-mesh", vec![Layer { style: faces, colors: [CLAY; 3] }, lines(edges)]),
+        Picture::of_style("control-mesh", vec![Layer { style: faces, colors: [CLAY; 4] }, lines(edges)]),
         Picture { name: "samples-4".into(), samples: vk::SampleCountFlags::TYPE_4, ..Picture::lit("machine-part") },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
         Picture::of_scheme(Scheme::GregoryFitted, "creature-mixed", Some(0.2)),
@@ -119,6 +120,10 @@ fn pictures() -> Vec<Picture> {
         Picture::of_scheme(Scheme::Pm, "valences", Some(0.15)),
         Picture::of_scheme(Scheme::Pm, "creature-mixed", None),
         Picture::of_scheme(Scheme::CPatch, "creature", Some(0.2)),
+        Picture::of_scheme(Scheme::Pm, "pentagons", None),
+        Picture { layers: wire(), name: "wireframe-pentagons".into(), scheme: Scheme::Pm, ..Picture::lit("pentagons") },
+        // Its triangles fall back to Gregory patches.
+        Picture::of_scheme(Scheme::Acc, "creature-mixed", Some(0.15)),
     ]);
     pictures
 }
@@ -138,7 +143,10 @@ fn close_up(point: Vec3, towards: Vec3, half: f32) -> View {
 }
 
 fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_render_pass: bool) -> Vec<u8> {
-    let mesh = shape(picture.shape).expect("built in");
+    let mesh = match picture.shape {
+        "pentagons" => common::pentagons(),
+        name => shape(name).expect("built in"),
+    };
     let styles = picture.layers.iter().map(|layer| layer.style.clone()).collect();
     let options = Options { styles, ..Options::default() };
     let towards = [-0.6, 0.5, 1.0];
@@ -154,7 +162,8 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     };
     // SAFETY: the render pass outlives the renderer, and every submission is waited for.
     let mut renderer = unsafe { Renderer::new(headless.context(), &target, &options) }.expect("a renderer");
-    let model_options = ModelOptions { construction, scheme: picture.scheme, ..ModelOptions::default() };
+    let fallback = Fallback::Gregory;
+    let model_options = ModelOptions { construction, fallback, scheme: picture.scheme, ..ModelOptions::default() };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
     let item = |(style, layer): (usize, &Layer)| DrawItem { style, colors: layer.colors, ..DrawItem::new(model, 6.0) };
     let items: Vec<_> = picture.layers.iter().enumerate().map(item).collect();
@@ -222,7 +231,7 @@ fn goldens_of_schemes_fail_with_other_schemes() {
         for picture in pictures().into_iter().filter(|picture| picture.scheme != Scheme::Gregory) {
             let golden = golden::load(&golden::folder().join(&picture.name).with_extension("png"));
             let others: &[_] = match (picture.shape, picture.scheme) {
-                ("creature-mixed", _) => &[Scheme::Gregory],
+                ("creature-mixed" | "pentagons", _) => &[Scheme::Gregory],
                 (_, Scheme::Acc) => &[Scheme::Gregory, Scheme::Pm],
                 _ => &[Scheme::Gregory, Scheme::Acc],
             };

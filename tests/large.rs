@@ -1,10 +1,9 @@
 //! A million faces through both tables.
 
-use ash_subdiv::Scheme;
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::table::{PatchPlan, RingTable, StencilTable};
 use ash_subdiv::topology::{PatchKind, Topology};
-use ash_subdiv::{Construction, ControlMesh, ModelOptions, grid_torus};
+use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme, grid_torus};
 
 const SIDE: u32 = 1000;
 const FACES: u32 = SIDE * SIDE;
@@ -17,7 +16,7 @@ fn a_million_faces() {
     for construction in Construction::ALL {
         let tables =
             ModelTables::new(&mesh, &ModelOptions { construction, ..ModelOptions::default() }).expect("tables");
-        assert_eq!(PatchKind::ALL.map(|kind| tables.patch_count(kind)), [FACES, 0, 0]);
+        assert_eq!(PatchKind::ALL.map(|kind| tables.patch_count(kind)), [FACES, 0, 0, 0]);
         assert_eq!(tables.type_count(), 1, "{construction:?}");
         assert!(tables.notices().is_empty());
         assert!(tables.origins().iter().zip(0..).all(|(origin, face)| origin.face == face && origin.sub == -1));
@@ -29,9 +28,9 @@ fn a_million_faces() {
 fn the_tables_of_a_million_faces() {
     let mesh = ControlMesh::new(grid_torus(SIDE, SIDE)).expect("a torus");
     let topology = Topology::new(&mesh);
-    let mut plan = PatchPlan::new(&topology);
+    let mut plan = PatchPlan::new(&topology, Scheme::Gregory, Fallback::Refuse).expect("defined everywhere");
 
-    let rings = RingTable::new(&topology, &plan, Scheme::Gregory);
+    let rings = RingTable::new(&topology, &plan);
     assert_eq!((rings.headers.len(), rings.corners.len()), (FACES as usize, 4 * FACES as usize));
     assert_eq!(rings.entries.len(), 8 * FACES as usize);
     for (h, &[ring, index]) in rings.corners.iter().enumerate() {
@@ -44,7 +43,7 @@ fn the_tables_of_a_million_faces() {
         assert_eq!([at(0), at(1), at(2)], [corner(1), corner(2), corner(3)]);
     }
 
-    let stencils = StencilTable::new(&topology, &mut plan, Scheme::Gregory).expect("addressable");
+    let stencils = StencilTable::new(&topology, &mut plan).expect("addressable");
     assert_eq!((stencils.patches.len(), stencils.largest_ring), (FACES as usize, 16));
     assert_eq!(stencils.vertices.len(), (4 + 16) * FACES as usize);
     for (patch, &[vertices, kind]) in plan.patches().iter().zip(&stencils.patches) {

@@ -52,12 +52,8 @@ impl Stage {
     }
 
     fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Picture, Error> {
-        let view = View {
-            view_projection: orthographic(),
-            eye: [0.0, 0.0, 10.0],
-            light: [0.0, 0.0, 1.0],
-            viewport: [0.0; 2],
-        };
+        let view =
+            View { view_projection: orthographic(), eye: [0.0, 0.0, 10.0], light: [0.0, 0.0, 1.0], viewport: [0.0; 2] };
         // SAFETY: as above, inside rendering.
         let pixels =
             self.target.draw(&self.headless, BLACK, |cmd| unsafe { renderer.cmd_draw(cmd, frame, &view, items) })?;

@@ -5,7 +5,7 @@ mod common;
 use ash_subdiv::mesh::{BoundaryRule, Corner, Crease};
 use ash_subdiv::table::{Notice, PatchPlan, prepare};
 use ash_subdiv::topology::{PatchKind, Ring, RingKind, Topology};
-use ash_subdiv::{ControlMesh, MeshData, shape, shapes};
+use ash_subdiv::{ControlMesh, Fallback, MeshData, Scheme, shape, shapes};
 use common::random::{random_creased_mesh, random_mesh};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -180,14 +180,18 @@ fn vertices_where_fans_touch_are_split() {
     assert_eq!([topology.vertex(0), topology.vertex(4)], [0, 9]);
     assert_eq!([topology.source(0), topology.source(9)], [0, 0]);
     assert_eq!(shapes_of(&rings_at(&mesh, 0)), [(RingKind::Corner, 1, true); 2]);
-    assert_eq!(prepare(&mesh, 0).unwrap().notices(&topology), [Notice::SplitVertices { count: 1 }]);
+    assert_eq!(prepare(&mesh, 0).unwrap().notices(&topology, &plan(&mesh)), [Notice::SplitVertices { count: 1 }]);
+}
+
+fn plan(mesh: &ControlMesh) -> PatchPlan {
+    PatchPlan::new(&Topology::new(mesh), Scheme::Gregory, Fallback::Refuse).unwrap()
 }
 
 #[test]
 fn holes_and_faces_at_a_free_boundary_are_not_drawn() {
     let drawn = |data: MeshData| -> Vec<u32> {
         let mesh = ControlMesh::new(data).unwrap();
-        PatchPlan::new(&Topology::new(&mesh)).patches().iter().map(|patch| patch.face).collect()
+        plan(&mesh).patches().iter().map(|patch| patch.face).collect()
     };
     assert_eq!(drawn(MeshData { holes: vec![1, 3], ..grid(2, 2) }), [0, 2]);
     assert_eq!(drawn(MeshData { boundary: BoundaryRule::None, ..grid(4, 3) }), [5, 6]);
@@ -195,7 +199,7 @@ fn holes_and_faces_at_a_free_boundary_are_not_drawn() {
     assert_eq!(drawn(MeshData { boundary: BoundaryRule::None, ..grid(2, 2) }), [0; 0]);
     // A hole is no boundary: its neighbours are as regular as without it.
     let mesh = ControlMesh::new(MeshData { holes: vec![4], ..grid(3, 3) }).unwrap();
-    assert_eq!(PatchPlan::new(&Topology::new(&mesh)).count(PatchKind::Regular), 8);
+    assert_eq!(plan(&mesh).count(PatchKind::Regular), 8);
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! The shaders against their CPU twins: control points and evaluated vertices, captured.
 #![cfg(feature = "headless")]
 
-use ash_subdiv::Scheme;
+mod common;
+
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
-use ash_subdiv::table::CpuSurface;
-use ash_subdiv::topology::PatchKind;
+use ash_subdiv::table::{CpuSurface, Patch};
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Spacing, shape};
+use ash_subdiv::{Fallback, Scheme};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
@@ -35,23 +36,24 @@ fn tolerance(mesh: &ControlMesh) -> f64 {
     8.0 * f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element()
 }
 
-/// The shapes with the schemes that have patches for them.
+/// Every shape with every scheme; faces without patches fall back.
 fn cases() -> impl Iterator<Item = (&'static str, ControlMesh, Scheme)> {
-    SHAPES.into_iter().flat_map(|name| {
-        let mesh = shape(name).expect("built in");
-        let has_patches = |scheme: &Scheme| CpuSurface::new(&mesh, *scheme, 0).is_ok();
-        let schemes: Vec<_> = Scheme::ALL.into_iter().filter(has_patches).collect();
-        schemes.into_iter().map(move |scheme| (name, mesh.clone(), scheme))
-    })
+    let shapes = SHAPES.map(|name| (name, shape(name).expect("built in")));
+    shapes
+        .into_iter()
+        .chain([("pentagons", common::pentagons())])
+        .flat_map(|(name, mesh)| Scheme::ALL.map(|scheme| (name, mesh.clone(), scheme)))
 }
 
+const FALLBACK: Fallback = Fallback::Gregory;
+
 /// The control points of the twin by face and part, since each construction sorts patches in its own way.
-fn reference(mesh: &ControlMesh, scheme: Scheme) -> HashMap<(u32, i64), (PatchKind, Vec<DVec3>)> {
-    let surface = CpuSurface::new(mesh, scheme, 0).expect("small");
+fn reference(mesh: &ControlMesh, scheme: Scheme) -> HashMap<(u32, i64), (Patch, Vec<DVec3>)> {
+    let surface = CpuSurface::with_fallback(mesh, scheme, FALLBACK, 0).expect("small");
     // The GPU starts from f32 positions.
     let points = surface.control_points(|position| position.as_vec3().as_dvec3());
     let patches = surface.plan().patches().iter().zip(surface.origins()).zip(points);
-    patches.map(|((patch, origin), points)| ((origin.face, origin.sub), (patch.kind, points))).collect()
+    patches.map(|((patch, origin), points)| ((origin.face, origin.sub), (*patch, points))).collect()
 }
 
 #[test]
@@ -60,19 +62,19 @@ fn control_points() {
     for (name, mesh, scheme) in cases() {
         let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
-            let options = ModelOptions { scheme, construction, ..ModelOptions::default() };
+            let options = ModelOptions { scheme, fallback: FALLBACK, construction, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let points = captured.control_points().expect("a capture");
             let tables = captured.tables();
             assert_eq!(points.len(), expected.len(), "{name}");
             for ((patch, origin), points) in tables.plan().patches().iter().zip(tables.origins()).zip(points) {
-                let (kind, expected) = &expected[&(origin.face, origin.sub)];
-                assert_eq!((patch.kind, points.len()), (*kind, expected.len()), "{name} {origin:?}");
+                let (twin, expected) = &expected[&(origin.face, origin.sub)];
+                assert_eq!((patch, points.len()), (twin, expected.len()), "{name} {origin:?}");
                 for (i, (ours, expected)) in points.iter().zip(expected).enumerate() {
                     let error = (Vec3::from(*ours).as_dvec3() - *expected).length();
                     assert!(
                         error < tolerance(&mesh),
-                        "{name} {scheme:?} {construction:?} {origin:?} {kind:?} point {i}: {ours:?}, not {expected}"
+                        "{name} {scheme:?} {construction:?} {twin:?} point {i}: {ours:?}, not {expected}"
                     );
                 }
             }
@@ -87,15 +89,15 @@ fn grids() {
     for (name, mesh, scheme) in cases() {
         let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
-            let options = ModelOptions { scheme, construction, ..ModelOptions::default() };
+            let options = ModelOptions { scheme, fallback: FALLBACK, construction, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let tables = captured.tables();
             for (origin, samples) in tables.origins().iter().zip(captured.grid(6).expect("a capture")) {
-                let (kind, points) = &expected[&(origin.face, origin.sub)];
-                let parameters = ash_subdiv::table::grid_parameters(*kind, 6);
+                let (patch, points) = &expected[&(origin.face, origin.sub)];
+                let parameters = ash_subdiv::table::grid_parameters(patch.kind, 6);
                 assert_eq!(samples.len(), parameters.len());
                 for (sample, [u, v]) in samples.iter().zip(parameters) {
-                    let twin = scheme.evaluate(*kind, points, u, v);
+                    let twin = patch.scheme.evaluate(patch.kind, points, u, v);
                     check(name, &mesh, sample.position, sample.normal, twin);
                 }
             }
@@ -116,7 +118,9 @@ fn check(name: &str, mesh: &ControlMesh, position: [f32; 3], normal: [f32; 3], t
 #[test]
 fn evaluated_vertices() {
     let headless = headless();
-    for (name, mesh, scheme) in cases().filter(|(name, ..)| ["creature", "creature-mixed", "cloth"].contains(name)) {
+    for (name, mesh, scheme) in
+        cases().filter(|(name, ..)| ["creature", "creature-mixed", "cloth", "pentagons"].contains(name))
+    {
         let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
             for (spacing, factor) in [
@@ -125,7 +129,8 @@ fn evaluated_vertices() {
                 (Spacing::FractionalOdd, 4.3),
                 (Spacing::FractionalEven, 4.3),
             ] {
-                let options = ModelOptions { scheme, construction, spacing, ..ModelOptions::default() };
+                let options =
+                    ModelOptions { scheme, fallback: FALLBACK, construction, spacing, ..ModelOptions::default() };
                 let captured = Captured::new(&headless, &mesh, &options).expect("a model");
                 let tables = captured.tables();
                 let vertices = captured.vertices(factor).expect("a capture");
@@ -133,15 +138,15 @@ fn evaluated_vertices() {
                 for vertex in &vertices {
                     seen[vertex.patch as usize] += 1;
                     let origin = tables.origins()[vertex.patch as usize];
-                    let (kind, points) = &expected[&(origin.face, origin.sub)];
+                    let (patch, points) = &expected[&(origin.face, origin.sub)];
                     let [u, v, _] = vertex.coordinate.map(f64::from);
-                    let twin = scheme.evaluate(*kind, points, u, v);
+                    let twin = patch.scheme.evaluate(patch.kind, points, u, v);
                     check(name, &mesh, vertex.position, vertex.normal, twin);
                 }
                 for (patch, seen) in tables.plan().patches().iter().zip(seen) {
-                    let domain = match patch.kind {
-                        PatchKind::Triangle => ash_subdiv::gpu::Domain::Triangles,
-                        _ => ash_subdiv::gpu::Domain::Quads,
+                    let domain = match patch.kind.is_triangular() {
+                        true => ash_subdiv::gpu::Domain::Triangles,
+                        false => ash_subdiv::gpu::Domain::Quads,
                     };
                     let count = ash_subdiv::gpu::tessellated_vertices(domain, spacing, factor, 64);
                     assert!(seen >= count, "{name} {spacing:?} {factor}: {seen} vertices of {count}");

@@ -24,7 +24,7 @@ vec3 acc_inner(Ring ring, uint i, vec3 centre, vec3 first, vec3 second) {
     return (n * centre + 2.0 * (first + second) + diagonal) / (n + 5.0);
 }
 
-// The point of the geometry patch along ring edge j.
+// The point between the faces of ring edge j.
 vec3 acc_edge(Ring ring, uint j, vec3 centre) {
     vec3 here = edge_neighbour(ring, j);
     if (ring.open && (j == 0u || j == ring.faces)) {
@@ -38,9 +38,9 @@ vec3 acc_edge(Ring ring, uint j, vec3 centre) {
     return edge;
 }
 
-// x+ or x-: `near` and `far` are the geometry's points along the edge.
-vec3 acc_across(vec3 inner, vec3 near, vec3 far, vec3 tangent, float cos_near, float cos_far) {
-    return 2.0 * cos_near * (far - near) - (cos_far / 3.0) * tangent + 3.0 * (inner - near);
+// x+ or x-: `near` and `far` are the geometry's points along the edge, `middle` is that between its faces.
+vec3 acc_across(vec3 inner, vec3 middle, vec3 near, vec3 far, vec3 tangent, float cos_near, float cos_far) {
+    return 2.0 * cos_near * (far - near) - (cos_far / 3.0) * tangent + 3.0 * (inner - middle);
 }
 
 void main() {
@@ -50,12 +50,17 @@ void main() {
     Corner corner = corner_at(k);
     vec3 centre = in_centre[k];
     vec3 p = in_limit[k].xyz;
-    vec3 along_plus = acc_edge(corner.ring, corner.plus, centre);
-    vec3 along_minus = acc_edge(corner.ring, corner.minus, centre);
+    vec3 middle_plus = acc_edge(corner.ring, corner.plus, centre);
+    vec3 middle_minus = acc_edge(corner.ring, corner.minus, centre);
+    vec3 e_plus = corner_edge_point(corner, k, corner.plus);
+    vec3 e_minus = corner_edge_point(corner, k, corner.minus);
+    // Where a face falls back, the curve along the edge is the frame's.
+    vec3 along_plus = corner.ring.fallback ? e_plus : middle_plus;
+    vec3 along_minus = corner.ring.fallback ? e_minus : middle_minus;
     vec3 inner = acc_inner(corner.ring, corner.plus, centre, edge_neighbour(corner.ring, corner.plus),
                            edge_neighbour(corner.ring, corner.minus));
-    vec3 t_plus = 3.0 * (corner_edge_point(corner, k, corner.plus) - p);
-    vec3 t_minus = 3.0 * (corner_edge_point(corner, k, corner.minus) - p);
+    vec3 t_plus = 3.0 * (e_plus - p);
+    vec3 t_minus = 3.0 * (e_minus - p);
     owned[gl_InvocationID][0] = p;
     owned[gl_InvocationID][1] = along_plus;
     owned[gl_InvocationID][2] = along_minus;
@@ -64,8 +69,10 @@ void main() {
     owned[gl_InvocationID][5] = t_minus;
     barrier();
     float cosine = in_limit[k].w;
-    owned[gl_InvocationID][6] = acc_across(inner, along_plus, owned[next][2], t_plus, cosine, in_limit[next].w);
-    owned[gl_InvocationID][7] = acc_across(inner, along_minus, owned[before][1], t_minus, cosine, in_limit[before].w);
+    owned[gl_InvocationID][6] = acc_across(inner, middle_plus, along_plus, owned[next][2], t_plus, cosine,
+                                           in_limit[next].w);
+    owned[gl_InvocationID][7] = acc_across(inner, middle_minus, along_minus, owned[before][1], t_minus, cosine,
+                                           in_limit[before].w);
     finish_corner(in_patch_number[0]);
     barrier();
     finish_patch(in_patch_number[0]);

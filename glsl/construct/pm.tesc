@@ -1,6 +1,7 @@
 // Second stage of the two-stage construction: a Pm-patch (of a quad: a c-patch) from its corners' rings. Each corner k owns
 // v, t+, t-, b211 of sector k, b121 of sector k - 1 and b112 of sector k. Rust twin: `pm_points` in src/patch/pm.rs.
 // variants: TRIANGLE, CAPTURE, TRIANGLE+CAPTURE, CAPTURE_POINTS, TRIANGLE+CAPTURE_POINTS, TEXCOORD, TRIANGLE+TEXCOORD
+// variants: PENTAGON, PENTAGON+CAPTURE, PENTAGON+CAPTURE_POINTS, PENTAGON+TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 6
@@ -12,20 +13,51 @@
 // What each corner gives to the centre of the patch.
 layout(location = 10) patch out vec3 centre_share[CORNERS];
 
+// 1 - cos(2 pi / CORNERS)
+const float MU = CORNERS == 3u ? 1.5 : CORNERS == 4u ? 1.0 : 0.690983005625;
+
 // f_i of ring face i; `first` and `second` are the ends of its edges.
 vec3 pm_face(Ring ring, uint i, vec3 centre, vec3 first, vec3 second) {
     uint entry = ring_entries[ring.entries + 2u * i + 1u];
-    vec3 diagonal = (entry & TRIANGLE_BIT) != 0u ? 0.5 * (first + second) : vertex_position(entry);
+    vec3 diagonal = (entry & TRIANGLE_BIT) != 0u ? 0.5 * (first + second) : entry_position(entry);
     return (4.0 * centre + 2.0 * (first + second) + diagonal) / 9.0;
 }
 
 // b211 at the near end of an edge, or b121 at its far end, seen from there; `across` is f - e.
 vec3 pm_beside(vec3 v, vec3 t0, vec3 t1, vec3 across, float cos_near, float cos_far) {
-    const float mu = CORNERS == 3u ? 1.5 : 1.0;
     float sines = sqrt(max(1.0 - cos_near * cos_near, 0.0)) + sqrt(max(1.0 - cos_far * cos_far, 0.0));
-    return 0.25 * (v + 3.0 * t0) + (1.0 + cos_near) / (4.0 * mu) * (t1 - t0) +
-        (2.0 * mu - 1.0 - cos_far) / (8.0 * mu) * (t0 - v) + 3.0 / (4.0 * mu * sines) * across;
+    return 0.25 * (v + 3.0 * t0) + (1.0 + cos_near) / (4.0 * MU) * (t1 - t0) +
+        (2.0 * MU - 1.0 - cos_far) / (8.0 * MU) * (t0 - v) + 3.0 / (4.0 * MU * sines) * across;
 }
+
+#ifdef PENTAGON
+// The sum of b112 of sectors i - 1 and i.
+layout(location = 15) patch out vec3 b112_sum[CORNERS];
+
+// b202 of the spoke from corner k.
+vec3 pm_b202(uint k) {
+    const float c = 1.0 - MU;
+    vec3 b301 = (0.5 * owned[k][0] + 0.75 * (owned[k][1] + owned[k][2]) - 2.0 * c * owned[k][0]) / (2.0 * MU);
+    return (owned[k][3] + owned[k][4] - 2.0 * c * b301) / (2.0 * MU);
+}
+
+// What `pm_centre_of_pentagon` in src/patch/pm.rs sums for the spoke from corner i.
+vec3 pm_b112_sum(uint i, vec3 q) {
+    const float c = 1.0 - MU;
+    const float theta = 1.2566370614359172;
+    vec3 sum = 2.0 * MU * q + 2.0 * c * pm_b202(i);
+    for (uint j = 0u; j < 5u; ++j) {
+        uint next = j == 4u ? 0u : j + 1u;
+        uint before = j == 0u ? 4u : j - 1u;
+        float angle = theta * (float(i) - float(j));
+        float turn = sin(angle) / (5.0 * MU * tan(0.5 * theta));
+        // b211 of sector j is owned[j][3], b121 of sector j is owned[j + 1][4].
+        sum += turn * (owned[next][4] - owned[before][3] + 2.0 * c * (owned[j][4] - owned[j][3])) -
+            0.8 * c * cos(angle) * pm_b202(j);
+    }
+    return sum;
+}
+#endif
 
 void main() {
     uint k = uint(gl_InvocationID);
@@ -48,8 +80,9 @@ void main() {
     owned[gl_InvocationID][0] = v;
     owned[gl_InvocationID][1] = corner_edge_point(corner, k, corner.plus);
     owned[gl_InvocationID][2] = corner_edge_point(corner, k, corner.minus);
+    const float weight = CORNERS == 3u ? 2.0 : 1.0;
     centre_share[gl_InvocationID] =
-        CORNERS == 3u ? (2.0 * v + 3.0 * (e_plus + e_minus) + 9.0 * f) / 51.0 : (v + 3.0 * (e_plus + e_minus) + 9.0 * f) / 64.0;
+        (weight * v + 3.0 * (e_plus + e_minus) + 9.0 * f) / (float(CORNERS) * (15.0 + weight));
     barrier();
     float cosine = in_limit[k].w;
     owned[gl_InvocationID][3] =
@@ -62,6 +95,12 @@ void main() {
     vec3 q = centre_share[0] + centre_share[1] + centre_share[2];
     owned[gl_InvocationID][5] = 1.5 * q - owned[before][0] / 12.0 - (owned[before][1] + owned[before][2]) / 24.0 -
         (owned[before][3] + owned[before][4]) / 6.0;
+#elif defined(PENTAGON)
+    vec3 q = (centre_share[0] + centre_share[1]) + (centre_share[2] + centre_share[3]) + centre_share[4];
+    b112_sum[gl_InvocationID] = pm_b112_sum(k, q);
+    barrier();
+    uint opposite = (k + 3u) % 5u;
+    owned[gl_InvocationID][5] = 0.5 * (b112_sum[k] + b112_sum[next] - b112_sum[(k + 2u) % 5u] + b112_sum[opposite] - b112_sum[before]);
 #else
     uint opposite = k ^ 2u;
     vec3 q = (centre_share[0] + centre_share[1]) + (centre_share[2] + centre_share[3]);

@@ -19,6 +19,9 @@
 #ifdef TRIANGLE
 const uint CORNERS = 3u;
 layout(vertices = 3) out;
+#elif defined(PENTAGON)
+const uint CORNERS = 5u;
+layout(vertices = 5) out;
 #else
 const uint CORNERS = 4u;
 layout(vertices = 4) out;
@@ -57,28 +60,31 @@ void finish_patch(uint patch_number) {
         return;
     }
     bool culled = (draw.flags & CULL_FLAGS) != 0u && is_culled();
-    vec4 asked, outer;
+    float asked[CORNERS], outer[CORNERS];
+    float largest = 1.0;
     for (uint k = 0u; k < CORNERS; ++k) {
         asked[k] = plus_factor(patch_number, k, k + 1u == CORNERS ? 0u : k + 1u);
         // What is no number counts as 1.
         outer[k] = min(max(1.0, asked[k]), MAX_FACTOR);
+        largest = max(largest, outer[k]);
     }
-#ifdef TRIANGLE
-    float largest = max(max(outer[0], outer[1]), outer[2]);
-#else
-    float largest = max(max(outer[0], outer[2]), max(outer[1], outer[3]));
-#endif
     // With fractional spacing an inner factor of nearly 1 would put vertices of the inside on the edge.
     float least = largest > 1.0 && metric() != METRIC_UNIFORM ? min(1.5, MAX_FACTOR) : 1.0;
-#ifdef TRIANGLE
     vec2 inner = vec2(max(least, largest));
+#if defined(PENTAGON)
+    // One of five pieces: the edge from its first corner, and two spokes, for which all pieces have the same factor.
+    gl_TessLevelOuter[0] = largest;
+    gl_TessLevelOuter[1] = largest;
+    gl_TessLevelOuter[2] = outer[0];
+    gl_TessLevelOuter[3] = largest;
+#elif defined(TRIANGLE)
     gl_TessLevelOuter[0] = culled ? 0.0 : outer[1];
     gl_TessLevelOuter[1] = culled ? 0.0 : outer[2];
     gl_TessLevelOuter[2] = culled ? 0.0 : outer[0];
     // Of no use but where a grid is captured, which is laid over a quad domain.
     gl_TessLevelOuter[3] = outer[0];
 #else
-    vec2 inner = max(vec2(least), vec2(max(outer[0], outer[2]), max(outer[1], outer[3])));
+    inner = max(vec2(least), vec2(max(outer[0], outer[2]), max(outer[1], outer[3])));
     gl_TessLevelOuter[0] = culled ? 0.0 : outer[3];
     gl_TessLevelOuter[1] = culled ? 0.0 : outer[0];
     gl_TessLevelOuter[2] = culled ? 0.0 : outer[1];
@@ -90,7 +96,12 @@ void finish_patch(uint patch_number) {
     captured_patch = draw.first_patch + patch_number;
 #endif
 #ifdef CAPTURE_POINTS
-    capture_factors(draw.first_patch + patch_number, asked, inner, culled);
+#ifdef TRIANGLE
+    vec4 of_edges = vec4(asked[0], asked[1], asked[2], 0.0);
+#else
+    vec4 of_edges = vec4(asked[0], asked[1], asked[2], asked[3]);
+#endif
+    capture_factors(draw.first_patch + patch_number, of_edges, inner, culled);
 #endif
 }
 

@@ -10,9 +10,11 @@ layout(set = 1, binding = 3, std430) readonly buffer RingTypes { float ring_type
 layout(set = 1, binding = 4, std430) readonly buffer PatchCorners { uvec2 patch_corners[]; };
 
 const uint TRIANGLE_BIT = 1u << 31;
+const uint PENTAGON_BIT = 1u << 30;
 const uint OPEN_BIT = 1u << 31;
 const uint CONE_BIT = 1u << 30;
-const uint FITTED_BIT = 1u << 29;
+const uint FITTED_BIT = 1u << 28;
+const uint FALLBACK_BIT = 1u << 29;
 
 struct Ring {
     uint vertex;
@@ -22,15 +24,16 @@ struct Ring {
     uint edges;
     bool open;
     bool cone;
+    bool fallback;
     bool fitted;
 };
 
 Ring ring_at(uint index) {
     uvec4 header = ring_headers[index];
     bool open = (header.w & OPEN_BIT) != 0u;
-    uint faces = header.w & ~(OPEN_BIT | CONE_BIT | FITTED_BIT);
+    uint faces = header.w & ~(OPEN_BIT | CONE_BIT | FALLBACK_BIT | FITTED_BIT);
     return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u,
-                (header.w & FITTED_BIT) != 0u);
+                (header.w & FALLBACK_BIT) != 0u, (header.w & FITTED_BIT) != 0u);
 }
 
 // cos_k: of the angle between neighbouring edges.
@@ -50,6 +53,15 @@ vec3 edge_neighbour(Ring ring, uint j) {
     return vertex_position(ring_entries[ring.entries + 2u * wrapped]);
 }
 
+// What a ring entry stands for: a vertex, or the middle of the far edge of a pentagon.
+vec3 entry_position(uint entry) {
+    if ((entry & PENTAGON_BIT) != 0u) {
+        uint at = entry & ~PENTAGON_BIT;
+        return 0.5 * (vertex_position(ring_entries[at]) + vertex_position(ring_entries[at + 1u]));
+    }
+    return vertex_position(entry & ~TRIANGLE_BIT);
+}
+
 // Limit point and tangent frame.
 void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3 b_out) {
     uint first = ring.type + 1u + 2u * ring.edges;
@@ -57,7 +69,7 @@ void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3
     // The first entry and the last before all else: at a crease these are its ends, which the ring on the other side has
     // the other way round, and so both get the same bits.
     vec3 x0 = vertex_position(ring_entries[ring.entries]);
-    vec3 x1 = vertex_position(ring_entries[ring.entries + count - 1u] & ~TRIANGLE_BIT);
+    vec3 x1 = entry_position(ring_entries[ring.entries + count - 1u]);
     uint last = first + 3u * count;
     precise vec3 p = ring_types[first + 3u] * x0 + ring_types[last] * x1;
     precise vec3 a = ring_types[first + 4u] * x0 + ring_types[last + 1u] * x1;
@@ -66,7 +78,7 @@ void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3
     a += ring_types[first + 1u] * centre;
     b += ring_types[first + 2u] * centre;
     for (uint i = 1u; i + 1u < count; ++i) {
-        vec3 x = vertex_position(ring_entries[ring.entries + i] & ~TRIANGLE_BIT);
+        vec3 x = entry_position(ring_entries[ring.entries + i]);
         uint weight = first + 3u + 3u * i;
         p += ring_types[weight] * x;
         a += ring_types[weight + 1u] * x;

@@ -100,6 +100,8 @@ struct SchemeOut {
     #[serde(flatten)]
     all: ErrorsOut,
     irregular: Option<ErrorsOut>,
+    /// Faces measured with the patches of the fallback.
+    fallen_back: usize,
 }
 
 #[derive(Serialize)]
@@ -143,7 +145,12 @@ pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
         }
     }
     progress.now("measuring");
-    let options = ErrorOptions { refine: args.mesh.refine, samples: args.samples, nearest: args.nearest };
+    let options = ErrorOptions {
+        fallback: args.mesh.fallback(),
+        refine: args.mesh.refine,
+        samples: args.samples,
+        nearest: args.nearest,
+    };
     let report = surface_errors(&mesh, &schemes, &options)?;
     let undefined = report.schemes.iter().filter_map(|(_, result)| result.as_ref().err());
     if !args.scheme.is_empty()
@@ -241,7 +248,11 @@ fn plot(prefix: &Path, args: &ErrorArgs, schemes: &[Scheme], refinements: &[Refi
 }
 
 fn out(args: &ErrorArgs, report: &ErrorReport, refinements: Vec<RefinementOut>) -> ReportOut {
-    let scheme = |error: &SchemeError| SchemeOut { all: error.all.into(), irregular: error.irregular.map(Into::into) };
+    let scheme = |error: &SchemeError| SchemeOut {
+        all: error.all.into(),
+        irregular: error.irregular.map(Into::into),
+        fallen_back: error.fallen_back,
+    };
     let undefined =
         report.schemes.iter().filter_map(|(s, result)| Some((s.name(), result.as_ref().err()?.to_string())));
     ReportOut {
@@ -310,6 +321,14 @@ fn print_table(report: &ErrorReport) -> Result<(), CliError> {
         if let Some(floor) = report.nearest_floor {
             write!(out, "; nearest of the exact surface itself {}", output::short(floor.rms))?;
         }
-        Ok(writeln!(out)?)
+        writeln!(out)?;
+        for (scheme, error) in measured(report).filter(|(_, error)| error.fallen_back > 0) {
+            let (name, faces) = (scheme.name(), error.fallen_back);
+            writeln!(
+                out,
+                "{name} has no patches for {faces} of the irregular faces: those of the fallback are measured"
+            )?;
+        }
+        Ok(())
     })
 }

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 #[command(after_help = "\
 JSON: vertices, edges, faces, face_sizes{corners: faces}, ngons, holes, boundary_edges, creased_edges,
 sharp_corners, valence{valence: vertices}, bounds[low, high], refine, patches{regular, irregular_quad,
-triangle}, construction, connectivity_types, bytes{table: bytes, total}, notices[text].
+triangle, pentagon}, construction, connectivity_types, bytes{table: bytes, total}, notices[text].
 
 Examples:
   subdiv info --shape creature
@@ -60,6 +60,8 @@ pub(super) struct Patches {
     regular: u32,
     irregular_quad: u32,
     triangle: u32,
+    /// Five for each face of five corners.
+    pentagon: u32,
 }
 
 impl Patches {
@@ -68,18 +70,23 @@ impl Patches {
             regular: tables.patch_count(PatchKind::Regular),
             irregular_quad: tables.patch_count(PatchKind::IrregularQuad),
             triangle: tables.patch_count(PatchKind::Triangle),
+            pentagon: tables.patch_count(PatchKind::Pentagon),
         }
     }
 
     pub(super) fn total(self) -> u32 {
-        self.regular + self.irregular_quad + self.triangle
+        self.regular + self.irregular_quad + self.triangle + self.pentagon
     }
 }
 
 impl std::fmt::Display for Patches {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { regular, irregular_quad, triangle } = self;
-        write!(f, "{} patches ({regular} regular, {irregular_quad} irregular, {triangle} triangles)", self.total())
+        let Self { regular, irregular_quad, triangle, pentagon } = self;
+        write!(f, "{} patches ({regular} regular, {irregular_quad} irregular, {triangle} triangles", self.total())?;
+        if *pentagon > 0 {
+            write!(f, ", {pentagon} of pentagons")?;
+        }
+        write!(f, ")")
     }
 }
 
@@ -141,6 +148,7 @@ impl Info {
         table.row([&"  regular", &self.patches.regular]);
         table.row([&"  irregular quads", &self.patches.irregular_quad]);
         table.row([&"  triangles", &self.patches.triangle]);
+        table.row([&"  of pentagons", &self.patches.pentagon]);
         table.row([&"connectivity types", &self.connectivity_types]);
         table.row([&format!("bytes, {}", self.construction), &self.bytes["total"]]);
         for (name, bytes) in self.bytes.iter().filter(|(name, _)| **name != "total") {

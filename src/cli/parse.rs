@@ -1,6 +1,6 @@
 //! Values of options.
 
-use ash_subdiv::{Construction, Scheme, Spacing};
+use ash_subdiv::{Construction, Fallback, Scheme, Spacing};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 
@@ -18,6 +18,11 @@ where
 /// A scheme by its name.
 pub(super) fn scheme() -> impl TypedValueParser<Value = Scheme> {
     named(Scheme::ALL.map(|scheme| (scheme.name(), scheme)))
+}
+
+/// A scheme to fall back to, by its name.
+pub(super) fn fallback() -> impl TypedValueParser<Value = Fallback> {
+    named([(Scheme::Gregory.name(), Fallback::Gregory)])
 }
 
 /// A scheme by its name, or the limit surface as [`LIMIT`].

@@ -6,7 +6,7 @@ use super::source::{DeviceArgs, MeshArgs, tell_notices};
 use ash_subdiv::capture::Captured;
 use ash_subdiv::table::{FaceOrigin, Patch};
 use ash_subdiv::topology::PatchKind;
-use ash_subdiv::{Construction, ControlMesh};
+use ash_subdiv::{Construction, ControlMesh, Scheme};
 use clap::{Args, ValueEnum};
 use serde::{Serialize, Serializer};
 use std::fmt::Display;
@@ -38,10 +38,12 @@ const EXAMPLES: &str = "\
 Order of points: a regular patch has 4 x 4 Bezier points, row-major with rows along u.
 Others have, by scheme: gregory p0.., then e0+ e0- e1+ e1-.., then f0+ f0-..: 20 of a quad, 15 of a
 triangle; acc 4 x 4 Bezier points, then the vectors t+ t- x+ x- of each corner: 32; pm and c-patch v0..,
-then t0+ t0-.., then b211, b121 and b112 of all sectors: 24 of a quad, 18 of a triangle.
+then t0+ t0-.., then b211, b121 and b112 of all sectors: 24 of a quad, 18 of a triangle, 30 of a pentagon. A pentagon
+is five patches, one a sector, each of which counts the corners from its own edge on.
 
-JSON: construction, patches[{face, sub, kind, points[[x, y, z]]}]: face of the input; sub is -1, or the
-corner of the face around which refinement made the patch; kind is regular, irregular_quad or triangle.
+JSON: construction, patches[{face, sub, kind, scheme, points[[x, y, z]]}]: face of the input; sub is -1, or the
+corner of the face around which refinement made the patch, or at which the edge of a pentagon's sector starts;
+kind is regular, irregular_quad, triangle or pentagon; scheme is the one asked for, or the fallback.
 
 Examples:
   subdiv patches --shape cube
@@ -52,9 +54,10 @@ Examples:
 struct PatchOut<'p, T> {
     /// The face of the input.
     face: u32,
-    /// -1, or the corner of the face around which refinement made this part.
+    /// As in [`FaceOrigin`].
     sub: i64,
     kind: &'static str,
+    scheme: &'static str,
     points: &'p [[T; 3]],
 }
 
@@ -72,6 +75,7 @@ impl<T: Serialize> Serialize for Made<'_, T> {
             face: self.origins[i].face,
             sub: self.origins[i].sub,
             kind: self.patches[i].kind.name(),
+            scheme: self.patches[i].scheme.name(),
             points: &self.points[i],
         }))
     }
@@ -135,11 +139,12 @@ fn write<T: Serialize + Display>(args: &PatchesArgs, json: bool, made: Made<T>) 
     }
     output::with_stdout(|out| {
         for i in by_origin(made.origins) {
-            let (origin, kind) = (made.origins[i], made.patches[i].kind);
-            writeln!(out, "{}{}", heading(origin), kind.name())?;
+            let (origin, Patch { kind, scheme, .. }) = (made.origins[i], made.patches[i]);
+            let fallback = if scheme == args.mesh.scheme { "" } else { " of the fallback" };
+            writeln!(out, "{}{}{fallback}", heading(origin), kind.name())?;
             for (number, point) in made.points[i].iter().enumerate() {
                 let [x, y, z] = point.each_ref().map(ToString::to_string);
-                writeln!(out, "  {:<4}{x:>24}{y:>24}{z:>24}", label(kind, number))?;
+                writeln!(out, "  {:<7}{x:>24}{y:>24}{z:>24}", label(scheme, kind, number))?;
             }
         }
         Ok(())
@@ -155,14 +160,19 @@ pub(super) fn heading(origin: FaceOrigin) -> String {
 }
 
 /// What a control point is called.
-fn label(kind: PatchKind, number: usize) -> String {
+fn label(scheme: Scheme, kind: PatchKind, number: usize) -> String {
     let n = kind.corners();
     let sign = if (number - number.min(n)).is_multiple_of(2) { '+' } else { '-' };
-    match number {
-        _ if kind == PatchKind::Regular => format!("b{}{}", number / 4, number % 4),
-        k if k < n => format!("p{k}"),
-        k if k < 3 * n => format!("e{}{sign}", (k - n) / 2),
-        k => format!("f{}{sign}", (k - 3 * n) / 2),
+    match (number, scheme) {
+        (b, _) if kind == PatchKind::Regular => format!("b{}{}", b / 4, b % 4),
+        (b, Scheme::Acc) if b < 16 => format!("b{}{}", b / 4, b % 4),
+        (k, Scheme::Acc) => format!("{}{}{sign}", if k % 4 < 2 { 't' } else { 'x' }, k / 4 - 4),
+        (k, Scheme::Pm | Scheme::CPatch) if k < n => format!("v{k}"),
+        (k, Scheme::Pm | Scheme::CPatch) if k < 3 * n => format!("t{}{sign}", (k - n) / 2),
+        (k, Scheme::Pm | Scheme::CPatch) => format!("{}_{}", ["b211", "b121", "b112"][k / n - 3], k % n),
+        (k, Scheme::Gregory | Scheme::GregoryFitted) if k < n => format!("p{k}"),
+        (k, Scheme::Gregory | Scheme::GregoryFitted) if k < 3 * n => format!("e{}{sign}", (k - n) / 2),
+        (k, Scheme::Gregory | Scheme::GregoryFitted) => format!("f{}{sign}", (k - 3 * n) / 2),
     }
 }
 
@@ -172,9 +182,19 @@ mod tests {
 
     #[test]
     fn points_have_the_names_of_the_paper() {
-        let labels = |kind, n| (0..n).map(|i| label(kind, i)).collect::<Vec<_>>().join(" ");
-        assert_eq!(labels(PatchKind::Triangle, 15), "p0 p1 p2 e0+ e0- e1+ e1- e2+ e2- f0+ f0- f1+ f1- f2+ f2-");
-        assert!(labels(PatchKind::IrregularQuad, 20).ends_with("e3+ e3- f0+ f0- f1+ f1- f2+ f2- f3+ f3-"));
-        assert!(labels(PatchKind::Regular, 16).starts_with("b00 b01 b02 b03 b10"));
+        let of = |scheme, kind| (0..Scheme::points(scheme, kind)).map(move |i| label(scheme, kind, i));
+        let labels = |scheme, kind| of(scheme, kind).collect::<Vec<_>>().join(" ");
+        assert_eq!(
+            labels(Scheme::Gregory, PatchKind::Triangle),
+            "p0 p1 p2 e0+ e0- e1+ e1- e2+ e2- f0+ f0- f1+ f1- f2+ f2-"
+        );
+        assert!(labels(Scheme::Gregory, PatchKind::IrregularQuad).ends_with("e3+ e3- f0+ f0- f1+ f1- f2+ f2- f3+ f3-"));
+        assert!(labels(Scheme::Pm, PatchKind::Regular).starts_with("b00 b01 b02 b03 b10"));
+        assert!(
+            labels(Scheme::Acc, PatchKind::IrregularQuad)
+                .ends_with("b33 t0+ t0- x0+ x0- t1+ t1- x1+ x1- t2+ t2- x2+ x2- t3+ t3- x3+ x3-")
+        );
+        let pm = labels(Scheme::Pm, PatchKind::Pentagon);
+        assert!(pm.starts_with("v0 v1 v2 v3 v4 t0+ t0- t1+") && pm.ends_with("b112_3 b112_4"), "{pm}");
     }
 }

@@ -62,8 +62,8 @@ pub(super) struct RenderArgs {
 }
 
 const EXAMPLES: &str = "\
-JSON: file, size[width, height], patches{regular, irregular_quad, triangle}, construction, factor, spacing,
-shading, samples, device, error{top, largest} (null unless an error is shown).
+JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, construction, factor,
+spacing, shading, samples, device, error{top, largest} (null unless an error is shown).
 
 Examples:
   subdiv render --shape creature -o creature.png
@@ -206,7 +206,9 @@ impl RenderArgs {
             points.extend(mesh.data().positions.iter().copied().map(DVec3::from));
         }
         if points.is_empty() {
-            points = CpuSurface::new(mesh, self.mesh.scheme, self.mesh.source.refine)?.control_points(|p| p).concat();
+            let (source, scheme) = (&self.mesh.source, self.mesh.scheme);
+            let surface = CpuSurface::with_fallback(mesh, scheme, source.fallback(), source.refine)?;
+            points = surface.control_points(|p| p).concat();
         }
         // Where nothing is drawn, such as where all faces are holes.
         if points.is_empty() {

@@ -10,7 +10,7 @@ use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::patch::Sample;
 use ash_subdiv::table::{FaceOrigin, Patch, grid_parameters};
 use ash_subdiv::topology::PatchKind;
-use ash_subdiv::{Construction, ControlMesh, Scheme};
+use ash_subdiv::{Construction, ControlMesh, Fallback, Scheme};
 use clap::Args;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ pub(super) struct SampleArgs {
 const EXAMPLES: &str = "\
 Order of samples: of a quad, u = i/(N-1) and v = j/(N-1) at index j*N+i, with corners 0 to 3 of the face at (0,0),
 (1,0), (1,1) and (0,1). Of a triangle, rows r = 0..N-1 with u = 1-r/(N-1) at corner 0, in each row w = k/(N-1) for
-k = 0..r towards corner 2.
+k = 0..r towards corner 2. A pentagon is five such triangles, sub k from corner k to k + 1 and the centre.
 The limit surface has quads whole (sub -1); of any other face, triangles too, the part around each corner (sub): (0,0)
 is the corner, (1,0) the middle of the edge after it, (1,1) the centre, (0,1) the middle of the edge before it.
 
@@ -88,7 +88,30 @@ struct SamplesOut<'o, L: Lattice> {
     grid: u32,
     construction: &'static str,
     #[serde(serialize_with = "in_order")]
-    faces: (&'o [FaceOrigin], &'o [Vec<L>]),
+    faces: Parts<'o, L>,
+}
+
+/// Where each part of the surface comes from, what it is, and its samples.
+type Parts<'o, L> = (&'o [FaceOrigin], &'o [Part], &'o [Vec<L>]);
+
+/// What a part of the surface is.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    /// The scheme that draws it.
+    scheme: &'static str,
+    /// What it is called in text.
+    name: &'static str,
+    /// As what it is sampled.
+    kind: PatchKind,
+}
+
+impl Part {
+    /// Sampled as quads are.
+    const LIMIT: Self = Self { scheme: parse::LIMIT, name: parse::LIMIT, kind: PatchKind::Regular };
+
+    fn of(patch: &Patch) -> Self {
+        Self { scheme: patch.scheme.name(), name: patch.kind.name(), kind: patch.kind }
+    }
 }
 
 #[derive(Serialize)]
@@ -96,6 +119,7 @@ struct SamplesOut<'o, L: Lattice> {
 struct FaceOut<'o, L: Lattice> {
     face: u32,
     sub: i64,
+    scheme: &'static str,
     #[serde(serialize_with = "positions")]
     positions: &'o [L],
     #[serde(serialize_with = "normals")]
@@ -103,13 +127,11 @@ struct FaceOut<'o, L: Lattice> {
 }
 
 /// Writes the patches one by one, sorted by their origins.
-fn in_order<L: Lattice, S: Serializer>(
-    (origins, samples): &(&[FaceOrigin], &[Vec<L>]),
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
+fn in_order<L: Lattice, S: Serializer>((origins, parts, samples): &Parts<L>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(by_origin(origins).into_iter().map(|i| FaceOut {
         face: origins[i].face,
         sub: origins[i].sub,
+        scheme: parts[i].scheme,
         positions: &samples[i],
         normals: &samples[i],
     }))
@@ -132,6 +154,10 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
             let message = "--scheme limit: refinement does not change the limit surface: leave out --refine";
             return Err(CliError::Usage(message.into()));
         }
+        if args.mesh.fallback() != Fallback::Refuse {
+            let message = "--scheme limit: the limit surface has no faces without patches: leave out --fallback";
+            return Err(CliError::Usage(message.into()));
+        }
     }
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
@@ -141,18 +167,16 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
             progress.now("sampling");
             let (origins, samples) = sample_limit(&mesh, args.grid)?;
             drop(progress);
-            // Sampled as quads are.
-            let kind = |_| (parse::LIMIT, PatchKind::Regular);
-            return write(args, json, kind, &origins, &samples);
+            return write(args, json, (&origins, &vec![Part::LIMIT; origins.len()], &samples));
         }
     };
-    let named = |patch: Patch| (patch.kind.name(), patch.kind);
+    let parts = |patches: &[Patch]| patches.iter().map(Part::of).collect::<Vec<_>>();
     if args.cpu {
         progress.now("sampling");
         let surface = args.mesh.cpu_surface(&mesh, scheme, &progress)?;
         let samples = surface.grid(&surface.control_points(|p| p), args.grid);
         drop(progress);
-        return write(args, json, |i| named(surface.plan().patches()[i]), &surface.origins(), &samples);
+        return write(args, json, (&surface.origins(), &parts(surface.plan().patches()), &samples));
     }
     let (tables, samples) = args.device.run(|headless| {
         let max = headless.properties().max_tessellation_level + 1;
@@ -169,7 +193,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
         Ok((captured.tables().clone(), samples))
     })?;
     drop(progress);
-    write(args, json, |i| named(tables.plan().patches()[i]), tables.origins(), &samples)
+    write(args, json, (tables.origins(), &parts(tables.plan().patches()), &samples))
 }
 
 /// Parts of a surface, and the samples of each.
@@ -190,20 +214,15 @@ fn sample_limit(mesh: &ControlMesh, n: u32) -> Result<Sampled, CliError> {
     Ok(faces.flat_map_iter(|face| limit.subs(face).map(move |sub| (face, sub))).map(of_part).unzip())
 }
 
-fn write<L: Lattice>(
-    args: &SampleArgs,
-    json: bool,
-    kind: impl Fn(usize) -> (&'static str, PatchKind),
-    origins: &[FaceOrigin],
-    samples: &[Vec<L>],
-) -> Result<(), CliError> {
+fn write<L: Lattice>(args: &SampleArgs, json: bool, faces: Parts<L>) -> Result<(), CliError> {
     if json {
         let construction = if args.cpu { "cpu" } else { args.construction.name() };
-        return output::json(&SamplesOut { grid: args.grid, construction, faces: (origins, samples) });
+        return output::json(&SamplesOut { grid: args.grid, construction, faces });
     }
+    let (origins, parts, samples) = faces;
     output::with_stdout(|out| {
         for i in by_origin(origins) {
-            let (name, kind) = kind(i);
+            let Part { name, kind, .. } = parts[i];
             writeln!(out, "{}{name}", heading(origins[i]))?;
             for ([u, v], sample) in grid_parameters(kind, args.grid).into_iter().zip(&samples[i]) {
                 let [x, y, z] = sample.position();

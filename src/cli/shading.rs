@@ -15,7 +15,7 @@ pub(super) enum Shading {
     Lit,
     /// The direction of the normal as a colour.
     Normals,
-    /// The kinds of patches: regular gold, irregular quads purple, triangles green.
+    /// The kinds of patches: regular gold, irregular quads purple, triangles green, pentagons red.
     Patches,
     /// The tessellated triangles as lines over the surface.
     Wireframe,
@@ -36,8 +36,8 @@ mod shaders {
 }
 
 const CLAY: Colour = Colour::rgb(0xddd3c6);
-/// Regular patches, irregular quads, triangles.
-const KINDS: [Colour; 3] = [Colour::rgb(0xe3b448), Colour::rgb(0x8a63b8), Colour::rgb(0x5aa469)];
+/// Regular patches, irregular quads, triangles, pentagons.
+const KINDS: [Colour; 4] = [Colour::rgb(0xe3b448), Colour::rgb(0x8a63b8), Colour::rgb(0x5aa469), Colour::rgb(0xc8553d)];
 const WIRE: Colour = Colour([0x1c, 0x20, 0x28, 110]);
 const CAGE: Colour = Colour::rgb(0x1f5fae);
 /// Where it runs inside the surface or behind it.
@@ -47,16 +47,16 @@ const EDGES: Colour = Colour::rgb(0x2a2d33);
 /// One style and the colours it is drawn in, by kind of patch.
 struct Layer {
     style: Style,
-    colours: [Colour; 3],
+    colours: [Colour; 4],
 }
 
 impl Layer {
-    fn surface(fragment: Fragment, colours: [Colour; 3]) -> Self {
+    fn surface(fragment: Fragment, colours: [Colour; 4]) -> Self {
         Self { style: Style { fragment, ..Style::default() }, colours }
     }
 
     fn lines(style: Style, colour: Colour) -> Self {
-        Self { style: Style { blend: Blend::Alpha, ..style }, colours: [colour; 3] }
+        Self { style: Style { blend: Blend::Alpha, ..style }, colours: [colour; 4] }
     }
 }
 
@@ -88,13 +88,13 @@ impl Shading {
     fn layers(self) -> Vec<Layer> {
         let lit = |colours| Layer::surface(Fragment::Lit, colours);
         match self {
-            Self::Lit => vec![lit([CLAY; 3])],
-            Self::Normals => vec![Layer::surface(Fragment::Normals, [CLAY; 3])],
+            Self::Lit => vec![lit([CLAY; 4])],
+            Self::Normals => vec![Layer::surface(Fragment::Normals, [CLAY; 4])],
             Self::Patches => vec![lit(KINDS)],
-            Self::Wireframe => vec![lit([CLAY; 3]), Layer::lines(Style::wireframe(), WIRE)],
+            Self::Wireframe => vec![lit([CLAY; 4]), Layer::lines(Style::wireframe(), WIRE)],
             Self::Cage => {
                 let cage = Style { depth: Some(DepthState::LESS_OR_EQUAL), ..Style::cage() };
-                vec![lit([CLAY; 3]), Layer::lines(Style::cage(), HIDDEN_CAGE), Layer::lines(cage, CAGE)]
+                vec![lit([CLAY; 4]), Layer::lines(Style::cage(), HIDDEN_CAGE), Layer::lines(cage, CAGE)]
             }
             Self::ControlMesh => {
                 let faces = Style {
@@ -104,10 +104,10 @@ impl Shading {
                     ..Style::default()
                 };
                 let edges = Style { depth: Some(DepthState::LESS_OR_EQUAL), ..Style::cage() };
-                vec![Layer { style: faces, colours: [CLAY; 3] }, Layer::lines(edges, EDGES)]
+                vec![Layer { style: faces, colours: [CLAY; 4] }, Layer::lines(edges, EDGES)]
             }
             Self::ErrorPosition | Self::ErrorNormal => {
-                vec![Layer::surface(Fragment::Spirv(shaders::ERROR_FRAG.to_vec()), [CLAY; 3])]
+                vec![Layer::surface(Fragment::Spirv(shaders::ERROR_FRAG.to_vec()), [CLAY; 4])]
             }
         }
     }

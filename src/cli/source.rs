@@ -6,8 +6,7 @@ use super::parse;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, read, shape};
 use ash_subdiv::table::{CpuSurface, Notice};
-use ash_subdiv::topology::Topology;
-use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme};
+use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -38,6 +37,9 @@ pub(super) struct SourceArgs {
     /// Steps of Catmull-Clark refinement before patches are made; each makes four times as many faces.
     #[arg(long, value_name = "STEPS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub refine: u32,
+    /// Draw faces that the scheme has no patches for with those of this one, instead of refusing the mesh.
+    #[arg(long, value_name = "SCHEME", value_parser = parse::fallback())]
+    fallback: Option<Fallback>,
 }
 
 impl MeshArgs {
@@ -71,7 +73,14 @@ impl SourceArgs {
     /// How the mesh is to be drawn, with this scheme and construction.
     pub(super) fn model_options(&self, scheme: Scheme, construction: Construction) -> ModelOptions {
         let name = self.shape.clone().unwrap_or_else(|| "mesh".into());
-        ModelOptions { name, scheme, construction, refine: self.refine, ..ModelOptions::default() }
+        ModelOptions {
+            name,
+            scheme,
+            construction,
+            fallback: self.fallback(),
+            refine: self.refine,
+            ..ModelOptions::default()
+        }
     }
 
     /// The patches of the mesh on the CPU; tells the notices about it.
@@ -81,10 +90,14 @@ impl SourceArgs {
         scheme: Scheme,
         progress: &Progress,
     ) -> Result<CpuSurface<'m>, CliError> {
-        let surface = CpuSurface::new(mesh, scheme, self.refine)?;
-        let prepared = surface.prepared();
-        tell_notices(&prepared.notices(&Topology::new(&prepared.mesh)), progress);
+        let surface = CpuSurface::with_fallback(mesh, scheme, self.fallback(), self.refine)?;
+        tell_notices(&surface.notices(), progress);
         Ok(surface)
+    }
+
+    /// What becomes of faces that a scheme has no patches for.
+    pub(super) fn fallback(&self) -> Fallback {
+        self.fallback.unwrap_or_default()
     }
 
     /// Reads the file, or makes the shape.

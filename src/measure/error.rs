@@ -4,9 +4,9 @@ use super::nearest::{self, Nearest};
 use super::sums::Sums;
 use crate::limit::{LimitSample, LimitSurface};
 use crate::mesh::{ControlMesh, MeshError};
-use crate::patch::{Sample, Scheme, Undefined};
+use crate::patch::{Fallback, Sample, Scheme, Undefined};
 use crate::table::{Patch, PatchPlan, prepare};
-use crate::topology::{PatchKind, Topology};
+use crate::topology::{PatchKind, Topology, draws_face};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -16,6 +16,8 @@ const CHUNK: usize = 4096;
 /// How to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ErrorOptions {
+    /// What becomes of faces that a scheme has no patches for.
+    pub fallback: Fallback,
     /// Steps of refinement before patches are made, at least.
     pub refine: u32,
     /// Samples along each side of a quad, and of each of the three parts of a triangle; at least 1.
@@ -25,9 +27,9 @@ pub struct ErrorOptions {
 }
 
 impl Default for ErrorOptions {
-    /// Nothing is refined; 33 by 33 samples a patch, 60 000 for the nearest distance.
+    /// Nothing falls back or is refined; 33 by 33 samples a patch, 60 000 for the nearest distance.
     fn default() -> Self {
-        Self { refine: 0, samples: 33, nearest: 60_000 }
+        Self { fallback: Fallback::Refuse, refine: 0, samples: 33, nearest: 60_000 }
     }
 }
 
@@ -61,6 +63,8 @@ pub struct SchemeError {
     pub all: FaceErrors,
     /// Over irregular quads and triangles; `None` if there are none.
     pub irregular: Option<FaceErrors>,
+    /// How many faces the scheme has no patches for, so that they were measured with those of the fallback.
+    pub fallen_back: usize,
 }
 
 /// What [`surface_errors`] found.
@@ -88,7 +92,8 @@ pub struct ErrorReport {
 /// ([`LimitSurface`]); (u, v) of the part around corner k is taken to be the point of the triangle that is bilinear
 /// between corner k, the middles of its edges and the centre. That is a convention: other ways to lay the parameters of
 /// a triangle over those of the limit surface give other distances, and slightly other angles. Where the mesh is refined
-/// before patches are made, samples are those of the refined faces.
+/// before patches are made, samples are those of the refined faces. A mesh with faces of five or more corners is refined
+/// once for every scheme, [`Scheme::Pm`] too, so that all are measured on the same faces.
 ///
 /// **Nearest distance.** As many points of both surfaces, spread evenly over the area, each against the other surface
 /// as a mesh of triangles (about two million, at least 32 a patch, at most 2048). Chords of such a mesh are off the
@@ -131,24 +136,28 @@ pub fn surface_errors(
     let diagonal = low.distance(high);
     let prepared = prepare(mesh, options.refine)?;
     let topology = Topology::new(&prepared.mesh);
-    let plan = PatchPlan::new(&topology);
-    let surfaces = Surfaces { mesh: &prepared.mesh, topology: &topology, patches: plan.patches() };
-    let checks: Vec<_> = schemes.iter().map(|scheme| (*scheme, plan.check(&topology, *scheme))).collect();
-    let defined: Vec<Scheme> = checks.iter().filter(|(_, check)| check.is_ok()).map(|(scheme, _)| *scheme).collect();
+    let plan = |scheme: &Scheme| (*scheme, PatchPlan::new(&topology, *scheme, options.fallback));
+    let plans: Vec<_> = schemes.iter().map(plan).collect();
+    let defined = plans.iter().filter_map(|(_, plan)| plan.as_ref().ok());
+    let surfaces = Surfaces {
+        mesh: &prepared.mesh,
+        topology: &topology,
+        faces: drawn_faces(&topology),
+        schemes: defined.map(SchemePatches::new).collect(),
+    };
 
     // All distances are over the diagonal. A mesh without extent is as good as its patches, which are the same point.
     let scale = if diagonal > 0.0 { diagonal.recip() } else { 0.0 };
-    let measured =
-        surfaces.for_each(|limit, patch| measure_patch(&surfaces, limit, patch, &defined, options.samples))?;
-    let areas: Vec<f64> = measured.iter().map(|patch| patch.area).collect();
+    let measured = surfaces.for_each(|limit, face| measure_face(&surfaces, limit, face, options.samples))?;
+    let areas: Vec<f64> = measured.iter().map(|face| face.area).collect();
     let near = match options.nearest {
         0 => None,
-        samples => Some(nearest::measure(&surfaces, &defined, &areas, samples)?),
+        samples => Some(nearest::measure(&surfaces, &areas, samples)?),
     };
     let errors = |number: usize, only_irregular: bool| {
         let (mut position, mut normal, mut nearest) = (Sums::default(), Sums::default(), Sums::default());
-        for (i, patch) in plan.patches().iter().enumerate() {
-            if only_irregular && patch.kind == PatchKind::Regular {
+        for (i, &(_, kind)) in surfaces.faces.iter().enumerate() {
+            if only_irregular && kind == PatchKind::Regular {
                 continue;
             }
             position.merge(&measured[i].schemes[number].position);
@@ -163,20 +172,20 @@ pub fn surface_errors(
             normal: normal.deviation(),
         }
     };
-    let irregular_patches = plan.patches().len() - plan.count(PatchKind::Regular) as usize;
+    let patches = surfaces.faces.len();
+    let irregular_patches = surfaces.faces.iter().filter(|(_, kind)| *kind != PatchKind::Regular).count();
     let mut number = 0..;
-    let mut of_scheme = || {
+    let mut of_scheme = |plan: &PatchPlan| {
         let number = number.next().unwrap_or(0);
         let irregular = (irregular_patches > 0).then(|| errors(number, true));
-        SchemeError { all: errors(number, false), irregular }
+        SchemeError { all: errors(number, false), irregular, fallen_back: plan.fallen_back().count() }
     };
-    let schemes = checks.into_iter().map(|(scheme, check)| (scheme, check.map(|()| of_scheme()))).collect();
+    let schemes = plans.iter().map(|(s, plan)| (*s, plan.as_ref().map(&mut of_scheme).map_err(Clone::clone))).collect();
     let nearest_floor = near.as_ref().map(|near| {
         let mut sums = Sums::default();
         near.floor.iter().for_each(|patch| sums.merge(patch));
         sums.deviation().scaled(scale)
     });
-    let patches = plan.patches().len();
     Ok(ErrorReport { diagonal, area: areas.iter().sum(), patches, irregular_patches, nearest_floor, schemes })
 }
 
@@ -186,41 +195,66 @@ impl Deviation {
     }
 }
 
-/// The patches, and the surface they approximate.
+fn drawn_faces(topology: &Topology) -> Vec<(u32, PatchKind)> {
+    let faces = (0..).zip(draws_face(topology)).filter(|(_, draws)| *draws);
+    // The prepared mesh has no larger faces than these.
+    faces.filter_map(|(face, _)| Some((face, topology.patch_kind(face)?))).collect()
+}
+
+/// The patches of a scheme.
+pub(super) struct SchemePatches<'p> {
+    plan: &'p PatchPlan,
+    /// In the order of their faces.
+    patches: Vec<Patch>,
+}
+
+impl<'p> SchemePatches<'p> {
+    fn new(plan: &'p PatchPlan) -> Self {
+        let mut patches = plan.patches().to_vec();
+        patches.sort_unstable_by_key(|patch| patch.face);
+        Self { plan, patches }
+    }
+}
+
+/// The patches of all schemes that have them, and the surface they approximate.
 pub(super) struct Surfaces<'s> {
     pub mesh: &'s ControlMesh,
     pub topology: &'s Topology<'s>,
-    pub patches: &'s [Patch],
+    /// Those that are drawn, and what they become.
+    pub faces: Vec<(u32, PatchKind)>,
+    pub schemes: Vec<SchemePatches<'s>>,
 }
 
 impl Surfaces<'_> {
-    /// Does something for each patch, in parallel.
+    /// Does something for each of the faces, in parallel.
     pub(super) fn for_each<R: Send>(
         &self,
         work: impl Fn(&LimitSurface, usize) -> R + Sync,
     ) -> Result<Vec<R>, MeshError> {
-        let mut results = Vec::with_capacity(self.patches.len());
-        for start in (0..self.patches.len()).step_by(CHUNK) {
+        let mut results = Vec::with_capacity(self.faces.len());
+        for start in (0..self.faces.len()).step_by(CHUNK) {
             let limit = LimitSurface::new(self.mesh)?;
-            let chunk = start..(start + CHUNK).min(self.patches.len());
-            results.par_extend(chunk.into_par_iter().map(|patch| work(&limit, patch)));
+            let chunk = start..(start + CHUNK).min(self.faces.len());
+            results.par_extend(chunk.into_par_iter().map(|face| work(&limit, face)));
         }
         Ok(results)
     }
 
-    pub(super) fn control_points(&self, scheme: Scheme, patch: usize) -> Vec<DVec3> {
-        let Patch { face, kind } = self.patches[patch];
-        scheme.control_points(self.topology, face, kind, |vertex| self.mesh.position(vertex))
+    /// Those of one of the schemes over one of the faces.
+    pub(super) fn control_points(&self, scheme: usize, face: usize) -> Vec<DVec3> {
+        let SchemePatches { plan, patches } = &self.schemes[scheme];
+        patches[face].control_points(self.topology, plan.fallback_rings(), |vertex| self.mesh.position(vertex))
     }
 
     /// The patch at parameters of a part of the limit surface.
-    pub(super) fn evaluate(&self, scheme: Scheme, patch: usize, points: &[DVec3], at: Parameters) -> Sample<DVec3> {
+    pub(super) fn evaluate(&self, scheme: usize, face: usize, points: &[DVec3], at: Parameters) -> Sample<DVec3> {
+        let Patch { kind, scheme, .. } = self.schemes[scheme].patches[face];
         let [u, v] = at.of_patch();
-        scheme.evaluate(self.patches[patch].kind, points, u, v)
+        scheme.evaluate(kind, points, u, v)
     }
 
-    pub(super) fn limit(&self, limit: &LimitSurface, patch: usize, at: Parameters) -> LimitSample {
-        limit.evaluate(self.patches[patch].face, at.sub, at.u, at.v)
+    pub(super) fn limit(&self, limit: &LimitSurface, face: usize, at: Parameters) -> LimitSample {
+        limit.evaluate(self.faces[face].0, at.sub, at.u, at.v)
     }
 }
 
@@ -251,9 +285,19 @@ impl Parameters {
     }
 
     /// The other way: where the point of a patch is.
-    pub(super) fn of_point(kind: PatchKind, [u, v]: [f64; 2]) -> Self {
-        if kind != PatchKind::Triangle {
-            return Self { sub: -1, u, v };
+    pub(super) fn of_point(patch: Patch, [u, v]: [f64; 2]) -> Self {
+        match patch.kind {
+            PatchKind::Regular | PatchKind::IrregularQuad => return Self { sub: -1, u, v },
+            PatchKind::Pentagon => {
+                // A piece is half of the parts at either end of its edge.
+                let (here, next) = (patch.first as i32, (patch.first as i32 + 1) % 5);
+                let centre = 1.0 - u - v;
+                return match u >= v {
+                    true => Self { sub: here, u: 2.0 * v + centre, v: centre },
+                    false => Self { sub: next, u: centre, v: 2.0 * u + centre },
+                };
+            }
+            PatchKind::Triangle => {}
         }
         let corners = [u, v, 1.0 - u - v];
         let nearest = (1..3).fold(0, |best, k| if corners[k] > corners[best] { k } else { best });
@@ -282,27 +326,22 @@ struct ParametricSums {
     normal: Sums,
 }
 
-fn measure_patch(
-    surfaces: &Surfaces,
-    limit: &LimitSurface,
-    patch: usize,
-    schemes: &[Scheme],
-    samples: u32,
-) -> PatchErrors {
+fn measure_face(surfaces: &Surfaces, limit: &LimitSurface, face: usize, samples: u32) -> PatchErrors {
     let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(samples);
     let cell = f64::from(samples).powi(-2);
-    let points: Vec<_> = schemes.iter().map(|&scheme| surfaces.control_points(scheme, patch)).collect();
+    let schemes = 0..surfaces.schemes.len();
+    let points: Vec<_> = schemes.clone().map(|scheme| surfaces.control_points(scheme, face)).collect();
     let mut errors = PatchErrors { area: 0.0, schemes: Vec::new() };
     errors.schemes.resize_with(schemes.len(), Default::default);
-    for sub in parts(surfaces.patches[patch].kind) {
+    for sub in parts(surfaces.faces[face].1) {
         for (i, j) in (0..samples).flat_map(|j| (0..samples).map(move |i| (i, j))) {
             let at = Parameters { sub, u: middle(i), v: middle(j) };
-            let truth = surfaces.limit(limit, patch, at);
+            let truth = surfaces.limit(limit, face, at);
             let area = cell * truth.du.cross(truth.dv).length();
             errors.area += area;
-            for (number, &scheme) in schemes.iter().enumerate() {
-                let sample = surfaces.evaluate(scheme, patch, &points[number], at);
-                let sums = &mut errors.schemes[number];
+            for scheme in schemes.clone() {
+                let sample = surfaces.evaluate(scheme, face, &points[scheme], at);
+                let sums = &mut errors.schemes[scheme];
                 sums.position.add(area, sample.position.distance(truth.position));
                 if let Some(angle) = angle(sample.normal, truth.normal) {
                     sums.normal.add(area, angle);
@@ -326,7 +365,8 @@ mod tests {
     fn points_of_triangles_are_found_in_their_parts() {
         for (sub, i, j) in (0..3).flat_map(|sub| (0..8).flat_map(move |i| (0..8).map(move |j| (sub, i, j)))) {
             let at = Parameters { sub, u: f64::from(i) / 8.0, v: f64::from(j) / 8.0 };
-            let back = Parameters::of_point(PatchKind::Triangle, at.of_patch());
+            let patch = Patch { face: 0, kind: PatchKind::Triangle, scheme: Scheme::Gregory, first: 0 };
+            let back = Parameters::of_point(patch, at.of_patch());
             assert_eq!(back.sub, sub);
             assert!((back.u - at.u).abs().max((back.v - at.v).abs()) < 1e-12, "{at:?} {back:?}");
         }

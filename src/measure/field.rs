@@ -17,7 +17,7 @@ pub enum Quantity {
 /// How far the patches of a surface are from the limit surface: for each patch, in the order of
 /// [`CpuSurface::plan`], the error at each of its [`grid_parameters`], `n` along a side.
 ///
-/// On triangles "the same parameters" are a convention, that of [`surface_errors`](super::surface_errors).
+/// On triangles and pentagons "the same parameters" are a convention, that of [`surface_errors`](super::surface_errors).
 ///
 /// ```
 /// use ash_subdiv::measure::{Quantity, error_field};
@@ -39,12 +39,13 @@ pub fn error_field(surface: &CpuSurface, quantity: Quantity, n: u32) -> Result<V
     let mesh = &*surface.prepared().mesh;
     let topology = Topology::new(mesh);
     let patches = surface.plan().patches();
-    let surfaces = Surfaces { mesh, topology: &topology, patches };
+    let faces = patches.iter().map(|patch| (patch.face, patch.kind)).collect();
+    let surfaces = Surfaces { mesh, topology: &topology, faces, schemes: Vec::new() };
     let samples = surface.grid(&surface.control_points(|p| p), n);
     surfaces.for_each(|limit, patch| {
         let kind = patches[patch].kind;
         let error = |(&point, sample): (&[f64; 2], &crate::patch::Sample<_>)| {
-            let truth = surfaces.limit(limit, patch, Parameters::of_point(kind, point));
+            let truth = surfaces.limit(limit, patch, Parameters::of_point(patches[patch], point));
             match quantity {
                 Quantity::Position => truth.position.distance(sample.position),
                 Quantity::Normal => angle(truth.normal, sample.normal).unwrap_or(0.0),

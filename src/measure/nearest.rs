@@ -4,7 +4,7 @@ use super::dense::{Dense, lattice};
 use super::error::{Parameters, Surfaces, angle, parts};
 use super::sums::Sums;
 use crate::mesh::MeshError;
-use crate::patch::{Sample, Scheme};
+use crate::patch::Sample;
 use crate::topology::PatchKind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -34,13 +34,8 @@ struct LimitPatch {
 }
 
 /// Measures both ways from about `samples` points of each surface. `areas` are those of the patches.
-pub(super) fn measure(
-    surfaces: &Surfaces,
-    schemes: &[Scheme],
-    areas: &[f64],
-    samples: u32,
-) -> Result<Nearest, MeshError> {
-    let kinds: Vec<_> = surfaces.patches.iter().map(|patch| patch.kind).collect();
+pub(super) fn measure(surfaces: &Surfaces, areas: &[f64], samples: u32) -> Result<Nearest, MeshError> {
+    let kinds: Vec<_> = surfaces.faces.iter().map(|&(_, kind)| kind).collect();
     let ranges = spread(areas, samples);
     let limits = surfaces.for_each(|limit, patch| {
         let kind = kinds[patch];
@@ -64,7 +59,7 @@ pub(super) fn measure(
         sums
     };
     let floor = probes.par_iter().map(own).collect();
-    let of_scheme = |&scheme: &Scheme| {
+    let of_scheme = |scheme: usize| {
         let of_patch = |patch: usize| {
             let points = surfaces.control_points(scheme, patch);
             let evaluate = |at| surfaces.evaluate(scheme, patch, &points, at);
@@ -84,7 +79,7 @@ pub(super) fn measure(
         };
         probes.par_iter().zip(&samples).map(sums).collect()
     };
-    Ok(Nearest { distances: schemes.par_iter().map(of_scheme).collect(), floor })
+    Ok(Nearest { distances: (0..surfaces.schemes.len()).into_par_iter().map(of_scheme).collect(), floor })
 }
 
 /// Numbers of samples for each patch, as many as its area is worth.

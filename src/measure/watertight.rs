@@ -7,7 +7,7 @@ use crate::mesh::{ControlMesh, FaceVarying, MeshData};
 use crate::renderer::{
     DrawItem, Edges, Error, Factor, Fragment, ModelOptions, ModelTables, Options, Renderer, Style, Target, View,
 };
-use crate::table::{PatchPlan, prepare};
+use crate::table::{Patch, prepare};
 use crate::topology::{PatchKind, Topology};
 use ash::vk;
 use rayon::prelude::*;
@@ -55,7 +55,9 @@ pub struct Mismatch {
 
 /// Who meets whom: for the evaluated vertices of one model.
 pub struct Seams {
-    plan: PatchPlan,
+    patches: Vec<Patch>,
+    /// The number of the first corner of each patch.
+    first_corners: Vec<usize>,
     edges: Edges,
     /// Whether each edge has two patches, and whether they are to have one normal.
     paired: Vec<bool>,
@@ -72,17 +74,12 @@ impl Seams {
     pub fn new(mesh: &ControlMesh, refine: u32, tables: &ModelTables) -> Result<Self, Error> {
         let prepared = prepare(mesh, refine)?;
         let topology = Topology::new(&prepared.mesh);
-        let plan = tables.plan().clone();
-        let edges = Edges::new(&topology, &plan);
+        let plan = tables.plan();
+        let edges = Edges::new(&topology, plan);
         let mut patches = vec![0; edges.vertices.len()];
         edges.of_corners.iter().for_each(|&edge| patches[edge as usize] += 1);
         let mut smooth = vec![true; edges.vertices.len()];
-        let half_edges: Vec<u32> = plan
-            .patches()
-            .iter()
-            .flat_map(|patch| prepared.mesh.face_corners(patch.face))
-            .map(|h| h as u32)
-            .collect();
+        let half_edges = plan.corners(&topology);
         let one_ring = |h: u32| {
             topology.twin(h).is_none_or(|twin| {
                 topology.place(h).ring == topology.place(topology.next(twin)).ring
@@ -97,7 +94,15 @@ impl Seams {
             (vertex, topology.place(h).ring, vertex > next)
         };
         let corners = half_edges.iter().map(corner).collect();
-        Ok(Self { paired: patches.into_iter().map(|count| count == 2).collect(), plan, edges, smooth, corners })
+        let paired = patches.into_iter().map(|count| count == 2).collect();
+        let patches = plan.patches().to_vec();
+        let first_corner = |sum: &mut usize, patch: &Patch| {
+            let first = *sum;
+            *sum += patch.kind.corners();
+            Some(first)
+        };
+        let first_corners = patches.iter().scan(0, first_corner).collect();
+        Ok(Self { patches, first_corners, edges, paired, smooth, corners })
     }
 
     /// How many edges have two patches.
@@ -128,7 +133,7 @@ impl Seams {
         let first = vertices[group[0].index as usize];
         let mut tally = Tally::default();
         let note = |tally: &mut Tally, other: CapturedVertex| {
-            let faces = [first, other].map(|vertex| self.plan.patches()[vertex.patch as usize].face);
+            let faces = [first, other].map(|vertex| self.patches[vertex.patch as usize].face);
             let vertices = if key.is_edge { self.edges.vertices[key.number as usize] } else { [key.number; 2] };
             let mismatch = Mismatch { vertices, at: f32::from_bits(key.at), faces, captured: [first, other] };
             tally.first.get_or_insert(mismatch);
@@ -143,11 +148,8 @@ impl Seams {
         for place in &group[1..] {
             let other = vertices[place.index as usize];
             tally.samples += 1;
-            let smooth = if key.is_edge {
-                self.smooth[key.number as usize]
-            } else {
-                self.ring(&first) == self.ring(&other)
-            };
+            let smooth =
+                if key.is_edge { self.smooth[key.number as usize] } else { self.ring(&first) == self.ring(&other) };
             if bits(first.position) != bits(other.position) {
                 tally.position_mismatches += 1;
                 note(&mut tally, other);
@@ -159,24 +161,19 @@ impl Seams {
         tally
     }
 
-    fn first_corner(&self, patch: usize) -> usize {
-        let kind = self.plan.patches()[patch].kind;
-        self.plan.first_corner(kind) as usize + (patch - self.plan.range(kind).start) * kind.corners()
-    }
-
     /// The ring at the corner of a patch that a captured vertex is at.
     fn ring(&self, captured: &CapturedVertex) -> Option<u32> {
         let patch = captured.patch as usize;
-        let on = on_edges(self.plan.patches()[patch].kind, captured.coordinate);
+        let on = on_edges(self.patches[patch].kind, captured.coordinate);
         let (k, _) = on.into_iter().flatten().find(|(_, t)| *t == 0.0)?;
-        Some(self.corners[self.first_corner(patch) + k].1)
+        Some(self.corners[self.first_corners[patch] + k].1)
     }
 
     /// Which edge, or which vertex, a captured vertex lies on, if any.
     fn place(&self, captured: &CapturedVertex) -> Option<Key> {
         let patch = captured.patch as usize;
-        let kind = self.plan.patches()[patch].kind;
-        let first = self.first_corner(patch);
+        let kind = self.patches[patch].kind;
+        let first = self.first_corners[patch];
         let on = on_edges(kind, captured.coordinate);
         if let Some((k, _)) = on.into_iter().flatten().find(|(_, t)| *t == 0.0) {
             return Some(Key { is_edge: false, number: self.corners[first + k].0, at: 0 });
@@ -242,7 +239,8 @@ pub fn with_seams_everywhere(mesh: &ControlMesh) -> Result<ControlMesh, Error> {
 pub fn random_factors(edges: usize, most: f32, seed: u64) -> Vec<f32> {
     let factor = |edge: u64| {
         // SplitMix64 (Steele, Lea and Flood 2014).
-        let mut x = (edge + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
+        let mut x =
+            (edge + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
         x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         1.0 + (most - 1.0) * ((x ^ (x >> 31)) >> 40) as f32 / (1u64 << 24) as f32

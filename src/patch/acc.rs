@@ -41,7 +41,12 @@ pub fn acc_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> Vec<T> {
     let mut points = vec![T::default(); POINTS];
     let cosines = corners.each_ref().map(|c| c.ring.shape.cosine());
     let inner = corners.each_ref().map(|c| c.ring.acc_inner(c.index));
-    let along = corners.each_ref().map(|c| [c.index, c.minus_index()].map(|j| c.ring.acc_edge(j)));
+    let middle = corners.each_ref().map(|c| [c.index, c.minus_index()].map(|j| c.ring.acc_edge(j)));
+    // The points of the geometry along the edges. Where a face falls back, the curve is the frame's.
+    let along: [[T; 2]; 4] = std::array::from_fn(|k| {
+        let corner = &corners[k];
+        if corner.ring.shape.fallback { [corner.plus(), corner.minus()] } else { middle[k].clone() }
+    });
     for (k, corner) in corners.iter().enumerate() {
         let [p, plus, minus, inside, ..] = corner_slots(k);
         points[p] = corner.frame.p.clone();
@@ -57,7 +62,7 @@ pub fn acc_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> Vec<T> {
                 (-2.0 * cosines[k], near_edge),
                 (-cosines[far] / 3.0, &tangent),
                 (3.0, &inner[k]),
-                (-3.0, near_edge),
+                (-3.0, &middle[k][side]),
             ]);
             points[16 + 4 * k + side] = tangent;
         }
@@ -94,8 +99,8 @@ impl<T: Blend> RingValues<T> {
         point
     }
 
-    /// The point of the geometry patch along edge j: the mean of the inner points on both sides; on a boundary or sharp
-    /// edge that of the cubic curve.
+    /// The point between the faces of edge j: the mean of the inner points on both sides; on a boundary or sharp edge that
+    /// of the cubic curve.
     fn acc_edge(&self, j: usize) -> T {
         if self.shape.open && (j == 0 || j == self.shape.faces()) {
             return T::sum([(2.0 / 3.0, &self.centre), (1.0 / 3.0, &self.edges[j])]);

@@ -13,6 +13,7 @@ pub mod acc;
 pub mod bicubic;
 mod blend;
 pub mod edge;
+mod fallback;
 pub mod fitted;
 pub mod gregory;
 pub mod pm;
@@ -21,6 +22,7 @@ mod ring;
 mod scheme;
 
 pub use blend::{Blend, Row};
+pub use fallback::{Fallback, FallbackRings};
 pub(crate) use point::scalar;
 pub use point::{Point, Sample};
 pub use ring::{Frame, RingShape, RingValues};

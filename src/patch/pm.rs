@@ -1,11 +1,13 @@
-//! Pm-patches for quads and triangles: Myles, Ni and Peters, *Fast Parallel Construction of Smooth Surfaces from Meshes with
+//! Pm-patches for triangles, quads and pentagons: Myles, Ni and Peters, *Fast Parallel Construction of Smooth Surfaces from Meshes with
 //! Tri/Quad/Pent Facets* (2008), and c-patches, which are those of quads: Ni, Yeo, Myles, Goel and Peters, *GPU smoothing of
-//! quad meshes* (2008). As corrected in patch_maths D and E.
+//! quad meshes* (2008). As corrected in patch_maths D and E; the centre of a pentagon is ours (patch_maths D).
 //!
 //! A face of m corners is m triangular pieces of degree four around its centre, C1 inside and G1 across the edges of the
 //! face; sector i lies between corners i and i + 1. 6 m control points: the corners `v_0..`; the edge points `t_0+, t_0-,
 //! t_1+, ..`; then for each sector its inner points `b211_i` (near corner i), then all `b121_i` (near corner i + 1), then all
 //! `b112_i` (near the centre). Everything else follows from them.
+//!
+//! A patch is a whole face, or one sector of a pentagon: the first, where the corners begin with those of the sector.
 //!
 //! There is no rule at boundaries, creases and corners.
 
@@ -13,6 +15,7 @@ use super::gregory::PatchCorner;
 use super::point::{scalar, unit_normal};
 use super::{Blend, Frame, Point, RingValues, Sample};
 use crate::topology::RingKind;
+use std::f64::consts::TAU;
 
 /// Where the points that corner k of n owns stand: `v`, `t+`, `t-`, `b211_k`, `b121_{k-1}` and `b112_k`.
 pub fn corner_slots(n: usize, k: usize) -> [usize; 6] {
@@ -41,7 +44,7 @@ pub fn pm_frame<T: Blend>(ring: &RingValues<T>) -> Frame<T> {
 }
 
 impl<T: Blend> RingValues<T> {
-    /// The vertex opposite in face i; a triangle's is the middle of its far edge.
+    /// The vertex opposite in face i; of a triangle and a pentagon the middle of the far edge.
     fn pm_diagonal(&self, i: usize) -> T {
         if self.shape.triangles[i] {
             T::sum([(0.5, &self.edges[i]), (0.5, &self.edges[(i + 1) % self.edges.len()])])
@@ -71,10 +74,52 @@ impl<T: Blend> RingValues<T> {
 
 /// `1 - cos(2 pi / m)`.
 fn mu(m: usize) -> f64 {
-    if m == 3 { 1.5 } else { 1.0 }
+    match m {
+        3 => 1.5,
+        4 => 1.0,
+        _ => 1.0 - (TAU / m as f64).cos(),
+    }
 }
 
-/// The control points of the face with these three or four corners, whose frames are [`pm_frame`]s.
+/// b202, the point of a spoke beside b211 and b121: C1 across the spoke, as is b301 beside the two b310.
+fn pm_b202<T: Blend>(m: usize, v: &T, [plus, minus]: &[T; 2], b211: &T, b121_before: &T) -> T {
+    let (c, across) = (1.0 - mu(m), 1.0 / (2.0 * mu(m)));
+    let b301 = T::sum([(across * (0.5 - 2.0 * c), v), (0.75 * across, plus), (0.75 * across, minus)]);
+    T::sum([(across, b211), (across, b121_before), (-2.0 * c * across, &b301)])
+}
+
+/// The points b112 of a pentagon with this centre.
+///
+/// Their sums over neighbours give the points b103 of the spokes, which have to be an affine image of a regular pentagon for
+/// C1 at the centre. Which one is free: it is the one with the least jump of second derivatives across the spokes.
+fn pm_centre_of_pentagon<T: Blend>(centre: &T, b202: &[T], b211: &[T], b121: &[T]) -> Vec<T> {
+    let m = 5;
+    let (mu, theta) = (mu(m), TAU / m as f64);
+    let c = 1.0 - mu;
+    // b112_i + b112_{i-1}
+    let sum = |i: usize| {
+        let mut sum = T::sum([(2.0 * mu, centre), (2.0 * c, &b202[i])]);
+        for j in 0..m {
+            let (sin, cos) = (theta * ((i + m - j) % m) as f64).sin_cos();
+            let turn = sin / (5.0 * mu * (0.5 * theta).tan());
+            let before = (j + m - 1) % m;
+            sum.add_scaled(-0.8 * c * cos, &b202[j]);
+            sum.add_scaled(turn, &b121[j]);
+            sum.add_scaled(-turn, &b211[before]);
+            sum.add_scaled(2.0 * c * turn, &b121[before]);
+            sum.add_scaled(-2.0 * c * turn, &b211[j]);
+        }
+        sum
+    };
+    let sums: Vec<T> = (0..m).map(sum).collect();
+    let of = |i: usize| {
+        let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|step| &sums[(i + step) % m]);
+        T::sum([(0.5, a), (0.5, b), (-0.5, c), (0.5, d), (-0.5, e)])
+    };
+    (0..m).map(of).collect()
+}
+
+/// The control points of the face with these three, four or five corners, whose frames are [`pm_frame`]s.
 ///
 /// GLSL twin: `glsl/construct/pm.tesc`.
 pub fn pm_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
@@ -102,7 +147,8 @@ pub fn pm_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
     let b211: Vec<T> = (0..m).map(|i| beside(i, (i + 1) % m, 0)).collect();
     let b121: Vec<T> = (0..m).map(|i| beside((i + 1) % m, i, 1)).collect();
     let mut centre = T::default();
-    let (own, all) = if m == 3 { (2.0, 51.0) } else { (1.0, 64.0) };
+    let own = if m == 3 { 2.0 } else { 1.0 };
+    let all = m as f64 * (15.0 + own);
     for k in 0..m {
         centre.add_scaled(own / all, v[k]);
         centre.add_scaled(3.0 / all, &e[k][0]);
@@ -135,7 +181,12 @@ pub fn pm_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
             (-1.0 / 16.0, &b211[opposite]),
         ])
     };
-    let b112: Vec<T> = (0..m).map(b112).collect();
+    let b112: Vec<T> = if m == 5 {
+        let b202 = |k: usize| pm_b202(m, v[k], &t[k], &b211[k], &b121[(k + m - 1) % m]);
+        pm_centre_of_pentagon(&centre, &(0..m).map(b202).collect::<Vec<_>>(), &b211, &b121)
+    } else {
+        (0..m).map(b112).collect()
+    };
     v.into_iter().cloned().chain(t.into_iter().flatten()).chain(b211).chain(b121).chain(b112).collect()
 }
 
@@ -167,6 +218,14 @@ pub fn evaluate_pm_triangle<P: Point>(points: &[P; 18], u: P::Scalar, v: P::Scal
     } else {
         evaluate_sector(points, 2, w - v, u - v, three * v)
     }
+}
+
+/// The first sector of a pentagon at barycentric (u, v, 1 - u - v): u = 1 at corner 0, v = 1 at corner 1, w = 1 at the
+/// centre.
+///
+/// GLSL twin: `glsl/evaluate/pm_pentagon.tese`.
+pub fn evaluate_pm_pentagon<P: Point>(points: &[P; 30], u: P::Scalar, v: P::Scalar) -> Sample<P> {
+    evaluate_sector(points, 0, u, v, scalar::<P>(1.0) - u - v)
 }
 
 /// Sector i at barycentric (x, y, z): x = 1 at corner i, y = 1 at corner i + 1, z = 1 at the centre.

@@ -13,17 +13,21 @@ pub struct RingShape {
     pub open: bool,
     /// For each face of the ring, whether it is a triangle (else a quad).
     pub triangles: Vec<bool>,
+    /// Whether the edges have the curves of Gregory patches, whichever scheme draws the faces: one of
+    /// [`FallbackRings`](super::FallbackRings).
+    pub fallback: bool,
 }
 
 impl RingShape {
-    /// The shape of a ring of `topology` whose faces are triangles and quads.
+    /// The shape of a ring of `topology` whose faces are triangles and quads, or for Pm-patches pentagons, which then count as
+    /// quads.
     pub fn of(topology: &Topology, ring: &Ring) -> Self {
         let triangles = if ring.quads {
             vec![false; ring.faces as usize]
         } else {
             topology.ring_half_edges(ring).map(|h| topology.face_size(h) == 3).collect()
         };
-        Self { kind: ring.kind, open: ring.open, triangles }
+        Self { kind: ring.kind, open: ring.open, triangles, fallback: false }
     }
 
     /// Number of faces.
@@ -82,7 +86,7 @@ pub struct RingValues<T> {
     pub centre: T,
     /// `a_j`, at the other end of edge j.
     pub edges: Vec<T>,
-    /// `d_i`, at the vertex of quad i opposite the centre. Not used for triangles.
+    /// `d_i`, at the vertex of quad i opposite the centre; of a pentagon the middle of the far edge. Not used for triangles.
     pub diagonals: Vec<T>,
 }
 
@@ -98,26 +102,42 @@ pub struct Frame<T> {
 }
 
 impl<T> RingValues<T> {
-    /// The ring with the value of `vertex(v)` at mesh vertex `v`.
-    pub fn new(topology: &Topology, ring: &Ring, vertex: impl Fn(u32) -> T) -> Self {
+    /// The ring with the values of `vertex(h)`, at the vertex from which half-edge `h` starts, and of `opposite(h)` as
+    /// diagonal of the face in which `h` starts from the opposite vertex, or of a pentagon its far edge.
+    pub(crate) fn collect(
+        topology: &Topology,
+        ring: &Ring,
+        vertex: impl Fn(u32) -> T,
+        opposite: impl Fn(u32) -> T,
+    ) -> Self {
         let mut edges = Vec::with_capacity(ring.edges() as usize);
         let mut diagonals = Vec::with_capacity(ring.faces as usize);
         let mut last = ring.start;
         for h in topology.ring_half_edges(ring) {
             let head = topology.next(h);
-            edges.push(vertex(topology.mesh_vertex(head)));
-            diagonals.push(vertex(topology.mesh_vertex(topology.next(head))));
+            edges.push(vertex(head));
+            diagonals.push(opposite(topology.next(head)));
             last = h;
         }
         if ring.open {
-            edges.push(vertex(topology.mesh_vertex(topology.prev(last))));
+            edges.push(vertex(topology.prev(last)));
         }
-        let centre = vertex(topology.mesh_vertex(ring.start));
+        let centre = vertex(ring.start);
         Self { shape: RingShape::of(topology, ring), centre, edges, diagonals }
     }
 }
 
 impl<T: Blend> RingValues<T> {
+    /// The ring with the value of `vertex(v)` at mesh vertex `v`.
+    pub fn new(topology: &Topology, ring: &Ring, vertex: impl Fn(u32) -> T) -> Self {
+        let at = |h: u32| vertex(topology.mesh_vertex(h));
+        let opposite = |h: u32| match topology.face_size(h) {
+            5 => T::sum([(0.5, &at(h)), (0.5, &at(topology.next(h)))]),
+            _ => at(h),
+        };
+        Self::collect(topology, ring, at, opposite)
+    }
+
     fn edge(&self, j: usize) -> &T {
         &self.edges[j % self.edges.len()]
     }

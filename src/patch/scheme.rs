@@ -6,11 +6,11 @@
 
 use super::fitted::Fit;
 use super::gregory::PatchCorner;
-use super::{Blend, Frame, Point, RingShape, RingValues, Sample, acc, bicubic, fitted, gregory, pm};
+use super::{Blend, FallbackRings, Frame, Point, RingShape, RingValues, Sample, acc, bicubic, fitted, gregory, pm};
 use crate::topology::{PatchKind, RingKind, Topology};
 
 /// A way to approximate the Catmull-Clark surface by patches, one a face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Scheme {
     /// Gregory patches for irregular faces ([`gregory`]): quads and triangles, boundaries, G1 everywhere.
     #[default]
@@ -21,7 +21,8 @@ pub enum Scheme {
     /// A geometry patch and two tangent patches for irregular faces ([`acc`]): quads only; the shading is smooth, the
     /// surface has a faint kink at the edges of irregular faces.
     Acc,
-    /// Quartic pieces around the centre of each irregular face ([`pm`]): quads and triangles, no boundaries or creases; G1.
+    /// Quartic pieces around the centre of each irregular face ([`pm`]): triangles, quads and pentagons, no boundaries or
+    /// creases; G1.
     Pm,
     /// The Pm-patches of quads, as first published ([`pm`]): no triangles.
     CPatch,
@@ -29,7 +30,7 @@ pub enum Scheme {
 
 /// A face that a scheme has no patch for.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("face {face}: the scheme {} has no patches for {what}: choose the scheme gregory, which has", scheme.name())]
+#[error("face {face}: the scheme {} has no patches for {what}: choose the scheme gregory, which has, or name it as fallback", scheme.name())]
 pub struct Undefined {
     /// The scheme that was asked for.
     pub scheme: Scheme,
@@ -54,18 +55,31 @@ impl Scheme {
         }
     }
 
-    /// Tells whether the scheme has a patch for a face.
+    /// Tells whether the scheme has a patch for a face, and of which kind.
     ///
     /// # Errors
     /// [`Undefined`] says why it has none.
-    pub fn check(self, topology: &Topology, face: u32, kind: PatchKind) -> Result<(), Undefined> {
+    pub fn check(self, topology: &Topology, face: u32) -> Result<PatchKind, Undefined> {
+        let kind = topology.patch_kind(face);
         let what = match (kind, self) {
-            (PatchKind::Regular, _) | (_, Self::Gregory | Self::GregoryFitted) => None,
-            (PatchKind::Triangle, Self::Acc | Self::CPatch) => Some("triangles"),
+            (None, _) => Some("faces of six or more corners"),
+            (Some(PatchKind::Pentagon), Self::Gregory | Self::GregoryFitted | Self::Acc | Self::CPatch) => {
+                Some("faces of five corners")
+            }
+            (Some(PatchKind::Regular), _) | (_, Self::Gregory | Self::GregoryFitted) => None,
+            (Some(PatchKind::Triangle), Self::Acc | Self::CPatch) => Some("triangles"),
             (_, Self::Acc) => None,
             (_, Self::Pm | Self::CPatch) => pm_lacks(topology, face),
         };
-        what.map_or(Ok(()), |what| Err(Undefined { scheme: self, face, what }))
+        match (kind, what) {
+            (Some(kind), None) => Ok(kind),
+            (_, what) => Err(Undefined { scheme: self, face, what: what.unwrap_or_default() }),
+        }
+    }
+
+    /// Whether the scheme has patches for faces of five corners; the others have such meshes refined.
+    pub fn has_pentagons(self) -> bool {
+        self == Self::Pm
     }
 
     /// How many control points each corner of a patch owns.
@@ -98,9 +112,10 @@ impl Scheme {
     }
 
     /// What the first stage of the two-stage construction makes of a one-ring. For regular rings it is the same in all
-    /// schemes.
+    /// schemes, and so it is where some of the faces fall back ([`RingShape::fallback`](super::RingShape::fallback)).
     pub fn frame<T: Blend>(self, ring: &RingValues<T>) -> Frame<T> {
         match self {
+            _ if ring.shape.fallback => ring.frame(),
             Self::Gregory => ring.frame(),
             Self::GregoryFitted => fitted::fitted_frame(ring, &Fit::GREGORY),
             Self::Acc => acc::acc_frame(ring),
@@ -141,8 +156,7 @@ impl Scheme {
     /// [`bicubic`] for regular faces, else of the scheme's own module.
     ///
     /// # Panics
-    /// If `kind` is not the face's own ([`Topology::patch_kind`]), a face beside it has more than four corners, or the
-    /// scheme is not defined there ([`Scheme::check`]).
+    /// As [`Scheme::control_points_beside`].
     pub fn control_points<T: Blend>(
         self,
         topology: &Topology,
@@ -150,12 +164,29 @@ impl Scheme {
         kind: PatchKind,
         vertex: impl Fn(u32) -> T,
     ) -> Vec<T> {
-        let half_edges = topology.mesh().face_corners(face);
+        let half_edges = topology.mesh().face_corners(face).map(|h| h as u32);
+        self.control_points_beside(topology, kind, half_edges, &FallbackRings::default(), vertex)
+    }
+
+    /// As [`Scheme::control_points`], in a mesh some of whose faces fall back, and given the half-edges of all corners of
+    /// the patch, in order: those of the face, from any of them on.
+    ///
+    /// # Panics
+    /// If `kind` is not the face's own ([`Topology::patch_kind`]), a face beside it has more corners than the scheme
+    /// has patches for, or the scheme is not defined there ([`Scheme::check`]).
+    pub fn control_points_beside<T: Blend>(
+        self,
+        topology: &Topology,
+        kind: PatchKind,
+        half_edges: impl Iterator<Item = u32>,
+        fallback: &FallbackRings,
+        vertex: impl Fn(u32) -> T,
+    ) -> Vec<T> {
         let rings: Vec<_> = half_edges
-            .clone()
             .map(|h| {
-                let place = topology.place(h as u32);
-                let ring = RingValues::new(topology, &topology.rings()[place.ring as usize], &vertex);
+                let place = topology.place(h);
+                let mut ring = RingValues::new(topology, &topology.rings()[place.ring as usize], &vertex);
+                ring.shape.fallback = fallback.contains(place.ring);
                 let frame = self.frame(&ring);
                 (ring, frame, place.index as usize)
             })
@@ -173,7 +204,8 @@ impl Scheme {
         }
     }
 
-    /// A patch evaluated at parameters: (u, v) of a quad, the first two barycentric coordinates of a triangle.
+    /// A patch evaluated at parameters: (u, v) of a quad, the first two barycentric coordinates of a triangle. A piece of a
+    /// pentagon is a triangle of its first corner, the next, and the centre of the face.
     ///
     /// # Panics
     /// If there are not as many points as [`Scheme::points`] says.
@@ -194,6 +226,7 @@ impl Scheme {
             (PatchKind::Triangle, Self::Pm | Self::CPatch) => {
                 pm::evaluate_pm_triangle(points.try_into().expect(COUNT), u, v)
             }
+            (PatchKind::Pentagon, _) => pm::evaluate_pm_pentagon(points.try_into().expect(COUNT), u, v),
         }
     }
 }

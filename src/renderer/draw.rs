@@ -6,7 +6,6 @@ use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::{Error, Geometry, ModelId, Renderer, View};
 use crate::gpu::{Domain, tessellated_vertices};
-use crate::topology::PatchKind;
 use ash::vk;
 
 /// One model drawn once.
@@ -22,8 +21,9 @@ pub struct DrawItem {
     pub cull: Cull,
     /// Index into [`Options::styles`](super::Options::styles).
     pub style: usize,
-    /// Linear RGBA of regular patches, irregular quads and triangles.
-    pub colors: [[f32; 4]; 3],
+    /// Linear RGBA of regular patches, irregular quads, triangles and pentagons: in the order of
+    /// [`PatchKind::ALL`](crate::topology::PatchKind::ALL).
+    pub colors: [[f32; 4]; 4],
     /// For a model with a displacement map: what its values are multiplied with, and what is added then. Object space.
     pub displacement: [f32; 2],
 }
@@ -37,14 +37,14 @@ impl DrawItem {
             factor: factor.into(),
             cull: Cull::NONE,
             style: 0,
-            colors: [[0.7, 0.7, 0.7, 1.0]; 3],
+            colors: [[0.7, 0.7, 0.7, 1.0]; 4],
             displacement: [0.0; 2],
         }
     }
 
     /// All patches in one colour.
     pub fn color(self, color: [f32; 4]) -> Self {
-        Self { colors: [color; 3], ..self }
+        Self { colors: [color; 4], ..self }
     }
 }
 
@@ -140,17 +140,16 @@ impl Renderer {
                 }
                 return Ok(());
             }
-            let plan = model.tables.plan();
-            for &stages in &model.stages {
+            for (&stages, group) in model.stages.iter().zip(model.tables.plan().groups()) {
                 let (kind, spacing) = (stages.kind, stages.spacing);
                 self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
-                let domain = if kind == PatchKind::Triangle { Domain::Triangles } else { Domain::Quads };
+                let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
                 let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
                 let points = stages.input_points();
                 constants.colour = item.colors[kind as usize];
-                constants.first_corner = plan.first_corner(kind);
-                constants.first_patch = plan.range(kind).start as u32;
-                for draw in properties.patch_batch.draws(plan.count(kind), points, vertices) {
+                constants.first_corner = group.first_corner as u32;
+                constants.first_patch = group.patches.start as u32;
+                for draw in properties.patch_batch.draws(group.patches.len() as u32, points, vertices) {
                     if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
                         constants.patches_per_instance = draw.patches_per_instance;
                         self.push(cmd, &constants);

@@ -5,7 +5,7 @@ use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
 use super::{DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
-use crate::topology::PatchKind;
+use crate::table::PatchGroup;
 use ash::vk;
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ const ALIGNMENT: u64 = 256;
 pub(super) struct Model {
     pub id: ModelId,
     pub tables: ModelTables,
-    /// How each kind of patch that the model has is drawn.
+    /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
     pub set: vk::DescriptorSet,
     _pool: Owned<vk::DescriptorPool>,
@@ -63,11 +63,7 @@ impl Model {
             (_, false) => &[],
             (Some(texcoords), true) => texcoords,
             (None, true) => {
-                zeros = vec![
-                    [0.0; 2];
-                    tables.plan.first_corner(PatchKind::Triangle) as usize
-                        + 3 * tables.plan.count(PatchKind::Triangle) as usize
-                ];
+                zeros = vec![[0.0; 2]; tables.plan.patches().iter().map(|patch| patch.kind.corners()).sum()];
                 &zeros
             }
         };
@@ -132,12 +128,12 @@ impl Model {
         // Every descriptor has to be written; without factors of its own a model's edges never read any.
         buffers.push(corner_factors.as_ref().map_or(positions.descriptor(), Streamed::descriptor));
         write_set(context, set, &buffers, map);
-        let ModelOptions { scheme, construction, spacing, .. } = *model_options;
+        let ModelOptions { construction, spacing, .. } = *model_options;
         let sharing = tables.sharing();
-        let stages = |kind| PatchStages { scheme, kind, construction, spacing, sharing };
+        let stages = |g: &PatchGroup| PatchStages { scheme: g.scheme, kind: g.kind, construction, spacing, sharing };
         Ok(Self {
             id,
-            stages: PatchKind::ALL.into_iter().filter(|&kind| tables.plan.count(kind) > 0).map(stages).collect(),
+            stages: tables.plan.groups().iter().map(stages).collect(),
             tables,
             set,
             _pool: pool,

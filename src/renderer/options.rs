@@ -2,7 +2,7 @@
 
 use super::{DisplacementId, Error};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, Spacing};
-use crate::patch::Scheme;
+use crate::patch::{Fallback, Scheme};
 use ash::vk;
 
 /// What the renderer draws into.
@@ -231,6 +231,8 @@ pub struct ModelOptions {
     pub name: String,
     /// Which patches faces become.
     pub scheme: Scheme,
+    /// What becomes of faces that the scheme has no patches for.
+    pub fallback: Fallback,
     /// How the control points are made.
     pub construction: Construction,
     /// Where the tessellator puts its vertices along an edge.

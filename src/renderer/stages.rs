@@ -46,6 +46,7 @@ fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
         (_, Scheme::Acc) => ["ACC", "ACC"],
         (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_QUAD"],
         (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_TRIANGLE"],
+        (PatchKind::Pentagon, _) => ["PM", "PM_PENTAGON"],
     }
 }
 
@@ -65,9 +66,11 @@ impl PatchStages {
             Construction::TwoStage => format!("CONSTRUCT_{file}_TESC"),
             Construction::Stencil => format!("CONSTRUCT_STENCIL_TESC_OWNED_{}", self.scheme.owned(self.kind)),
         };
-        if self.kind == PatchKind::Triangle {
-            name += "_TRIANGLE";
-        }
+        name += match self.kind {
+            PatchKind::Triangle => "_TRIANGLE",
+            PatchKind::Pentagon => "_PENTAGON",
+            PatchKind::Regular | PatchKind::IrregularQuad => "",
+        };
         name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Points => "_CAPTURE_POINTS",
@@ -127,7 +130,9 @@ mod tests {
     fn every_patch_has_its_shaders() {
         let modes = [Capture::Off, Capture::Points, Capture::Vertices, Capture::Grid];
         for (scheme, kind) in Scheme::ALL.into_iter().flat_map(|scheme| PatchKind::ALL.map(|kind| (scheme, kind))) {
-            if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle {
+            if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle
+                || kind == PatchKind::Pentagon && !scheme.has_pentagons()
+            {
                 continue;
             }
             for construction in Construction::ALL {

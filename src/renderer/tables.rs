@@ -4,7 +4,9 @@ use super::stages::Sharing;
 use super::{Construction, ModelOptions};
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
-use crate::table::{FaceOrigin, Notice, PatchPlan, RingTable, SharedTable, StencilTable, TableError, bytes, prepare};
+use crate::table::{
+    FaceOrigin, Notice, PatchPlan, RingTable, SharedTable, StencilTable, TableError, bytes, prepare_patches,
+};
 use crate::topology::{PatchKind, Topology};
 use glam::Vec3;
 use std::borrow::Cow;
@@ -72,15 +74,13 @@ impl ModelTables {
     /// A refined mesh or a table that cannot be addressed; faces that the scheme has no patch for; shared normals of a
     /// scheme whose patches share no edges.
     pub fn new(mesh: &ControlMesh, options: &ModelOptions) -> Result<Self, TableError> {
-        let prepared = prepare(mesh, options.refine)?;
+        let ModelOptions { scheme, fallback, refine, .. } = *options;
+        let (prepared, mut plan) = prepare_patches(mesh, scheme, fallback, refine)?;
         let topology = Topology::new(&prepared.mesh);
-        let mut plan = PatchPlan::new(&topology);
-        let scheme = options.scheme;
-        plan.check(&topology, scheme)?;
         // The stencil table puts the patches in its own order, so it comes first.
         let stencils = match options.construction {
             Construction::TwoStage => None,
-            Construction::Stencil => Some(StencilTable::new(&topology, &mut plan, scheme)?),
+            Construction::Stencil => Some(StencilTable::new(&topology, &mut plan)?),
         };
         let shared = match (options.displacement, options.shared_normals) {
             (Some(_), _) => Some(SharedTable::with_texcoords(&topology, &plan).ok_or(TableError::NoTexcoords)?),
@@ -90,11 +90,12 @@ impl ModelTables {
         if shared.is_some() && !scheme.is_watertight() {
             return Err(TableError::NothingShared { scheme });
         }
-        let rings = (stencils.is_none() || shared.is_some()).then(|| RingTable::new(&topology, &plan, scheme));
+        let rings = (stencils.is_none() || shared.is_some()).then(|| RingTable::new(&topology, &plan));
         Ok(Self {
             texcoords: plan.texcoords(&topology),
-            origins: plan.patches().iter().map(|patch| prepared.origin(patch.face)).collect(),
             edges: options.edge_factors.then(|| Edges::new(&topology, &plan)),
+            origins: prepared.origins(&plan),
+            notices: prepared.notices(&topology, &plan),
             plan,
             rings,
             stencils,
@@ -103,7 +104,6 @@ impl ModelTables {
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
             patch_vertices: prepared.mesh.vertex_count(),
-            notices: prepared.notices(&topology),
             steps: prepared.steps,
         })
     }

@@ -1,8 +1,8 @@
 //! The CPU twin: every patch of a mesh, constructed and evaluated on the host.
 
-use super::{FaceOrigin, PatchPlan, Prepared, TableError, prepare};
+use super::{FaceOrigin, Notice, PatchPlan, Prepared, TableError, prepare_patches};
 use crate::mesh::ControlMesh;
-use crate::patch::{Blend, Point, Sample, Scheme};
+use crate::patch::{Blend, Fallback, Point, Sample, Scheme};
 use crate::topology::{PatchKind, Topology};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -22,21 +22,29 @@ use rayon::prelude::*;
 pub struct CpuSurface<'m> {
     prepared: Prepared<'m>,
     plan: PatchPlan,
-    scheme: Scheme,
 }
 
 impl<'m> CpuSurface<'m> {
-    /// Prepares `mesh` as [`prepare`] does, with at least `refine` steps of refinement.
+    /// Prepares `mesh` as [`prepare_patches`] does, with at least `refine` steps of refinement.
     ///
     /// # Errors
     /// A refined mesh that cannot be addressed; faces that the scheme has no patch for.
     pub fn new(mesh: &'m ControlMesh, scheme: Scheme, refine: u32) -> Result<Self, TableError> {
-        let prepared = prepare(mesh, refine)?;
-        let topology = Topology::new(&prepared.mesh);
-        let plan = PatchPlan::new(&topology);
-        plan.check(&topology, scheme)?;
-        drop(topology);
-        Ok(Self { prepared, plan, scheme })
+        Self::with_fallback(mesh, scheme, Fallback::Refuse, refine)
+    }
+
+    /// As [`CpuSurface::new`], but for what becomes of faces that the scheme has no patch for.
+    ///
+    /// # Errors
+    /// As [`CpuSurface::new`].
+    pub fn with_fallback(
+        mesh: &'m ControlMesh,
+        scheme: Scheme,
+        fallback: Fallback,
+        refine: u32,
+    ) -> Result<Self, TableError> {
+        let (prepared, plan) = prepare_patches(mesh, scheme, fallback, refine)?;
+        Ok(Self { prepared, plan })
     }
 
     /// The patches, in the order of the tables.
@@ -49,9 +57,14 @@ impl<'m> CpuSurface<'m> {
         &self.prepared
     }
 
+    /// What a user will want to know about how the mesh is drawn.
+    pub fn notices(&self) -> Vec<Notice> {
+        self.prepared.notices(&Topology::new(&self.prepared.mesh), &self.plan)
+    }
+
     /// Where each patch comes from.
     pub fn origins(&self) -> Vec<FaceOrigin> {
-        self.plan.patches().iter().map(|patch| self.prepared.origin(patch.face)).collect()
+        self.prepared.origins(&self.plan)
     }
 
     /// The control points of every patch, combined from `value` of each position.
@@ -59,7 +72,7 @@ impl<'m> CpuSurface<'m> {
         let mesh = &*self.prepared.mesh;
         let topology = Topology::new(mesh);
         let of_patch = |patch: &super::Patch| {
-            self.scheme.control_points(&topology, patch.face, patch.kind, |vertex| value(mesh.position(vertex)))
+            patch.control_points(&topology, self.plan.fallback_rings(), |vertex| value(mesh.position(vertex)))
         };
         self.plan.patches().par_iter().map(of_patch).collect()
     }
@@ -75,7 +88,7 @@ impl<'m> CpuSurface<'m> {
         let scalar = crate::patch::scalar::<P>;
         let sample = |(patch, points): (&super::Patch, &Vec<P>)| {
             let parameters = grids[patch.kind as usize].iter();
-            parameters.map(|&[u, v]| self.scheme.evaluate(patch.kind, points, scalar(u), scalar(v))).collect()
+            parameters.map(|&[u, v]| patch.scheme.evaluate(patch.kind, points, scalar(u), scalar(v))).collect()
         };
         patches.map(sample).collect()
     }
@@ -83,7 +96,7 @@ impl<'m> CpuSurface<'m> {
 
 /// A grid of parameters on a patch, `n` along each side.
 ///
-/// Quads: `n * n` of them, number `j * n + i` at u = i / (n - 1), v = j / (n - 1). Triangles: `n (n + 1) / 2`, in rows
+/// Quads: `n * n` of them, number `j * n + i` at u = i / (n - 1), v = j / (n - 1). Triangles, and pieces of pentagons: `n (n + 1) / 2`, in rows
 /// r = 0..n with u = 1 - r / (n - 1), in each row w = k / (n - 1) for k = 0..=r; given are (u, v).
 ///
 /// # Panics
@@ -91,8 +104,9 @@ impl<'m> CpuSurface<'m> {
 pub fn grid_parameters(kind: PatchKind, n: u32) -> Vec<[f64; 2]> {
     assert!(n >= 2, "a grid has at least two samples along a side");
     let at = |i: u32| f64::from(i) / f64::from(n - 1);
-    match kind {
-        PatchKind::Triangle => (0..n).flat_map(|r| (0..=r).map(move |k| [at(n - 1 - r), at(r - k)])).collect(),
-        _ => (0..n).flat_map(|j| (0..n).map(move |i| [at(i), at(j)])).collect(),
+    if kind.is_triangular() {
+        (0..n).flat_map(|r| (0..=r).map(move |k| [at(n - 1 - r), at(r - k)])).collect()
+    } else {
+        (0..n).flat_map(|j| (0..n).map(move |i| [at(i), at(j)])).collect()
     }
 }

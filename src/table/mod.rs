@@ -17,8 +17,8 @@ mod stencils;
 
 pub use cpu::{CpuSurface, grid_parameters};
 pub use error::TableError;
-pub use plan::{Patch, PatchPlan};
-pub use prepare::{FaceOrigin, Notice, Prepared, prepare};
+pub use plan::{Patch, PatchGroup, PatchPlan};
+pub use prepare::{FaceOrigin, Notice, Prepared, prepare, prepare_patches};
 pub use rings::RingTable;
 pub use shared::{SharedCorner, SharedTable, SharedTexcoord};
 pub use stencils::StencilTable;

@@ -1,44 +1,104 @@
 //! Which faces become which patches, in the order in which they are stored and drawn.
 
-use crate::patch::{Scheme, Undefined};
+use crate::patch::{Blend, Fallback, FallbackRings, Scheme, Undefined};
 use crate::topology::{PatchKind, Topology, draws_face};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A patch and the face of the prepared mesh it covers.
+/// A patch and the face of the prepared mesh that it covers, whole or in part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Patch {
     /// The face of the prepared mesh.
     pub face: u32,
     /// What it becomes.
     pub kind: PatchKind,
+    /// The scheme that draws it: the one asked for, or the one fallen back to.
+    pub scheme: Scheme,
+    /// The corner of the face that is the patch's first: 0 but for the pieces of a pentagon, of which piece k lies between
+    /// the edge from corner k and the centre of the face.
+    pub first: u32,
 }
 
-/// All patches of a mesh: the regular ones, then irregular quads, then triangles, each in the order of their faces.
+impl Patch {
+    /// The control points, as [`Scheme::control_points_beside`] makes them.
+    pub fn control_points<T: Blend>(
+        self,
+        topology: &Topology,
+        fallback: &FallbackRings,
+        vertex: impl Fn(u32) -> T,
+    ) -> Vec<T> {
+        self.scheme.control_points_beside(topology, self.kind, self.corners(topology), fallback, vertex)
+    }
+
+    /// The half-edges of its corners, in order.
+    pub(crate) fn corners(self, topology: &Topology) -> impl Iterator<Item = u32> + Clone {
+        let face = topology.mesh().face_corners(self.face);
+        let (start, end) = (face.start as u32, face.end as u32);
+        (start + self.first..end).chain(start..start + self.first)
+    }
+
+    /// What patches are sorted by.
+    pub(crate) fn group(self) -> (PatchKind, Scheme) {
+        (self.kind, self.scheme)
+    }
+}
+
+/// Patches of one kind and scheme, which stand together and are drawn together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PatchGroup {
+    /// The kind of all of them.
+    pub kind: PatchKind,
+    /// The scheme of all of them.
+    pub scheme: Scheme,
+    /// Where they stand among [`PatchPlan::patches`].
+    pub patches: Range<usize>,
+    /// The number of the first corner of the first, when the corners of all patches are counted in order.
+    pub first_corner: usize,
+}
+
+/// All patches of a mesh: the regular ones, then irregular quads, triangles, pieces of pentagons; in each kind by scheme, and
+/// then in the order of their faces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PatchPlan {
     patches: Vec<Patch>,
-    counts: [u32; 3],
+    groups: Vec<PatchGroup>,
+    scheme: Scheme,
+    fallback_rings: FallbackRings,
 }
 
 impl PatchPlan {
-    /// Plans the patches of a mesh of triangles and quads. Holes get none.
-    pub fn new(topology: &Topology) -> Self {
-        let draws = draws_face(topology);
-        let kinds: Vec<Option<PatchKind>> = draws
-            .par_iter()
-            .enumerate()
-            .map(|(face, &draws)| if draws { topology.patch_kind(face as u32) } else { None })
-            .collect();
-        let mut patches = Vec::with_capacity(kinds.len());
-        let mut counts = [0; 3];
-        for (kind, count) in PatchKind::ALL.into_iter().zip(&mut counts) {
-            let before = patches.len();
-            let of_kind = kinds.iter().enumerate().filter(|(_, k)| **k == Some(kind));
-            patches.extend(of_kind.map(|(face, _)| Patch { face: face as u32, kind }));
-            *count = (patches.len() - before) as u32;
+    /// Plans the patches of a mesh. Holes get none.
+    ///
+    /// # Errors
+    /// [`Undefined`] names the first face that the scheme has no patch for, unless such faces fall back; then the first that
+    /// there is no patch for at all, which has five or more corners: see [`prepare`](super::prepare()).
+    pub fn new(topology: &Topology, scheme: Scheme, fallback: Fallback) -> Result<Self, Undefined> {
+        let of_face = |face: u32| {
+            let (kind, scheme) = match (scheme.check(topology, face), fallback.scheme()) {
+                (Err(_), Some(fallback)) => (fallback.check(topology, face)?, fallback),
+                (kind, _) => (kind?, scheme),
+            };
+            Ok(Patch { face, kind, scheme, first: 0 })
+        };
+        let faces = draws_face(topology).into_par_iter().enumerate();
+        let faces = faces.map(|(face, draws)| draws.then(|| of_face(face as u32)));
+        // The first error is that of the first face: collected before it is looked for.
+        let faces: Vec<Option<Result<Patch, Undefined>>> = faces.collect();
+        let pieces = |patch: Patch| (0..patch.kind.pieces()).map(move |first| Patch { first, ..patch });
+        let faces: Vec<Patch> = faces.into_iter().flatten().collect::<Result<_, _>>()?;
+        let mut patches: Vec<Patch> = faces.into_iter().flat_map(pieces).collect();
+        let fallen = patches.iter().filter(|patch| patch.scheme != scheme).map(|patch| patch.face);
+        let fallback_rings = FallbackRings::new(topology, fallen);
+        patches.sort_by_key(|patch| patch.group());
+        let mut groups = Vec::new();
+        let (mut first, mut first_corner) = (0, 0);
+        for same in patches.chunk_by(|a, b| a.group() == b.group()) {
+            let (kind, scheme) = same[0].group();
+            groups.push(PatchGroup { kind, scheme, patches: first..first + same.len(), first_corner });
+            first += same.len();
+            first_corner += same.len() * kind.corners();
         }
-        Self { patches, counts }
+        Ok(Self { patches, groups, scheme, fallback_rings })
     }
 
     /// All patches, in order.
@@ -46,43 +106,47 @@ impl PatchPlan {
         &self.patches
     }
 
+    /// The patches of each kind and scheme that there are, in order.
+    pub fn groups(&self) -> &[PatchGroup] {
+        &self.groups
+    }
+
     /// How many patches of a kind there are.
     pub fn count(&self, kind: PatchKind) -> u32 {
-        self.counts[kind as usize]
-    }
-
-    /// Tells whether a scheme has a patch for every face.
-    ///
-    /// # Errors
-    /// [`Undefined`] names the first face that has none.
-    pub fn check(&self, topology: &Topology, scheme: Scheme) -> Result<(), Undefined> {
-        let lacking = self.patches.iter().filter_map(|patch| scheme.check(topology, patch.face, patch.kind).err());
-        lacking.min_by_key(|undefined| undefined.face).map_or(Ok(()), Err)
-    }
-
-    /// Puts the same patches in another order within their kinds.
-    pub(crate) fn reorder(&mut self, patches: Vec<Patch>) {
-        debug_assert!(patches.len() == self.patches.len() && patches.is_sorted_by_key(|p| p.kind));
-        self.patches = patches;
+        self.range(kind).len() as u32
     }
 
     /// Where the patches of a kind stand among [`PatchPlan::patches`].
     pub fn range(&self, kind: PatchKind) -> Range<usize> {
-        let start: u32 = self.counts[..kind as usize].iter().sum();
-        start as usize..(start + self.count(kind)) as usize
+        let start = self.patches.partition_point(|patch| patch.kind < kind);
+        start..self.patches.partition_point(|patch| patch.kind <= kind)
     }
 
-    /// The number of the first corner of the patches of a kind, when all corners are counted in order.
-    pub fn first_corner(&self, kind: PatchKind) -> u32 {
-        PatchKind::ALL[..kind as usize].iter().map(|&k| self.count(k) * k.corners() as u32).sum()
+    /// The scheme that was asked for.
+    pub fn scheme(&self) -> Scheme {
+        self.scheme
     }
 
-    /// The half-edges of all patch corners, in order: four each for quads, three for triangles.
+    /// The patches that another scheme draws than the one asked for.
+    pub fn fallen_back(&self) -> impl Iterator<Item = &Patch> {
+        self.patches.iter().filter(|patch| patch.scheme != self.scheme)
+    }
+
+    /// The rings around those.
+    pub fn fallback_rings(&self) -> &FallbackRings {
+        &self.fallback_rings
+    }
+
+    /// Puts the same patches in another order within their groups.
+    pub(crate) fn reorder(&mut self, patches: Vec<Patch>) {
+        debug_assert!(patches.len() == self.patches.len() && patches.is_sorted_by_key(|patch| patch.group()));
+        self.patches = patches;
+    }
+
+    /// The half-edges of all patch corners, in order.
     pub(crate) fn corners(&self, topology: &Topology) -> Vec<u32> {
-        let face_offsets = topology.mesh().face_offsets();
-        let corners_of = |patch: &Patch| face_offsets[patch.face as usize]..face_offsets[patch.face as usize + 1];
         let mut corners = Vec::with_capacity(4 * self.patches.len());
-        self.patches.iter().for_each(|patch| corners.extend(corners_of(patch)));
+        self.patches.iter().for_each(|patch| corners.extend(patch.corners(topology)));
         corners
     }
 

@@ -1,9 +1,11 @@
-//! From any control mesh to one whose faces are patches: refinement where faces have five or more corners, or where
-//! the caller asks for it.
+//! From any control mesh to one whose faces are patches: refinement where faces have more corners than the scheme has patches
+//! for, or where the caller asks for it.
 
 use crate::limit::{Stencils, refine};
 use crate::mesh::{ControlMesh, MeshError, SHARPNESS_INFINITE};
-use crate::topology::{SHARP_FROM, Topology};
+use crate::patch::{Fallback, Scheme};
+use crate::table::{Patch, PatchPlan, TableError};
+use crate::topology::{PatchKind, SHARP_FROM, Topology};
 use std::borrow::Cow;
 use std::fmt;
 
@@ -12,8 +14,8 @@ use std::fmt;
 pub struct FaceOrigin {
     /// The face of the caller's mesh.
     pub face: u32,
-    /// -1 for the whole face; else the corner of the face around which refinement made this part of it. After several
-    /// steps, four times the number of the first step's part plus the corner within that, and so on.
+    /// -1 for the whole face; else the corner of the face around which refinement made this part of it, or from which the
+    /// edge of this piece of a pentagon starts. After several steps, four times the number of the first step's part plus the corner within that, and so on.
     pub sub: i64,
 }
 
@@ -32,6 +34,17 @@ pub enum Notice {
     SplitVertices {
         /// How many vertices that added.
         count: usize,
+    },
+    /// Faces that the scheme has no patches for, drawn with those of another.
+    FellBack {
+        /// How many such faces there are, of the prepared mesh.
+        faces: usize,
+        /// The first of them in the caller's mesh.
+        first: u32,
+        /// The scheme asked for.
+        scheme: Scheme,
+        /// The scheme that draws them.
+        fallback: Scheme,
     },
     /// Creases or corners of finite sharpness that patches cannot follow.
     SemiSharp {
@@ -52,6 +65,12 @@ impl fmt::Display for Notice {
             Self::SplitVertices { count } => {
                 write!(f, "{count} vertices were split off where fans of faces touch in a point")
             }
+            Self::FellBack { faces, first, scheme, fallback } => write!(
+                f,
+                "{faces} faces have no {} patches (the first is face {first}): they are drawn with {} patches",
+                scheme.name(),
+                fallback.name()
+            ),
             Self::SemiSharp { sharp, smooth } => write!(
                 f,
                 "{} creases and corners have finite sharpness: {sharp} (from {SHARP_FROM} up) are drawn infinitely sharp, {smooth} smooth; refine the mesh first to come closer",
@@ -61,10 +80,10 @@ impl fmt::Display for Notice {
     }
 }
 
-/// A mesh of triangles and quads, and the way there from the caller's mesh.
+/// A mesh whose faces are patches, and the way there from the caller's mesh.
 #[derive(Debug, Clone)]
 pub struct Prepared<'m> {
-    /// Triangles and quads only.
+    /// Triangles and quads only, or pentagons too where the scheme has patches for them.
     pub mesh: Cow<'m, ControlMesh>,
     /// The refinement steps, in order. Each step's inputs are the outputs of the one before.
     pub steps: Vec<Stencils>,
@@ -75,18 +94,70 @@ pub struct Prepared<'m> {
     split_vertices: usize,
 }
 
-impl Prepared<'_> {
+impl<'m> Prepared<'m> {
+    /// The mesh as it is.
+    fn of(mesh: &'m ControlMesh) -> Self {
+        Self {
+            mesh: Cow::Borrowed(mesh),
+            steps: Vec::new(),
+            origins: Vec::new(),
+            refined_polygons: None,
+            split_vertices: 0,
+        }
+    }
+
     /// Where a face comes from.
     pub fn origin(&self, face: u32) -> FaceOrigin {
         self.origins.get(face as usize).copied().unwrap_or(FaceOrigin { face, sub: -1 })
     }
 
-    /// What a user will want to know; `topology` is that of the prepared mesh.
-    pub fn notices(&self, topology: &Topology) -> Vec<Notice> {
+    /// Where each patch comes from.
+    pub fn origins(&self, plan: &PatchPlan) -> Vec<FaceOrigin> {
+        let origin = |patch: &Patch| match patch.kind {
+            PatchKind::Pentagon => FaceOrigin { sub: patch.first.into(), ..self.origin(patch.face) },
+            _ => self.origin(patch.face),
+        };
+        plan.patches().iter().map(origin).collect()
+    }
+
+    /// What a user will want to know; `topology` and `plan` are those of the prepared mesh.
+    pub fn notices(&self, topology: &Topology, plan: &PatchPlan) -> Vec<Notice> {
         let splits = self.split_vertices + topology.split_count();
         let split = (splits > 0).then_some(Notice::SplitVertices { count: splits });
-        self.refined_polygons.clone().into_iter().chain(split).chain(semi_sharp(&self.mesh)).collect()
+        let fell_back = plan.fallen_back().min_by_key(|patch| patch.face).map(|patch| Notice::FellBack {
+            faces: plan.fallen_back().count(),
+            first: self.origin(patch.face).face,
+            scheme: plan.scheme(),
+            fallback: patch.scheme,
+        });
+        let refined = self.refined_polygons.clone();
+        refined.into_iter().chain(split).chain(fell_back).chain(semi_sharp(&self.mesh)).collect()
     }
+}
+
+/// Prepares `mesh` for the patches of a scheme, and plans them.
+///
+/// As [`prepare()`], but a scheme that has patches for pentagons ([`Scheme::has_pentagons`]) takes a mesh as it is, if it is
+/// defined on all of its faces. Where it is not, a mesh with faces of five or more corners can fall back only when refined.
+///
+/// # Errors
+/// A refined mesh that cannot be addressed; faces that the scheme has no patch for, unless they fall back.
+pub fn prepare_patches(
+    mesh: &ControlMesh,
+    scheme: Scheme,
+    fallback: Fallback,
+    levels: u32,
+) -> Result<(Prepared<'_>, PatchPlan), TableError> {
+    if levels == 0 && scheme.has_pentagons() {
+        match PatchPlan::new(&Topology::new(mesh), scheme, Fallback::Refuse) {
+            Ok(plan) => return Ok((Prepared::of(mesh), plan)),
+            Err(undefined) if fallback == Fallback::Refuse => return Err(undefined.into()),
+            Err(_) => {}
+        }
+    }
+    let prepared = prepare(mesh, levels)?;
+    let plan = PatchPlan::new(&Topology::new(&prepared.mesh), scheme, fallback)?;
+    Ok((prepared, plan))
 }
 
 /// Refines `mesh` at least `levels` times, and once if it has faces with five or more corners.
@@ -94,13 +165,7 @@ impl Prepared<'_> {
 /// # Errors
 /// [`MeshError::TooLarge`] if the refined mesh cannot be addressed.
 pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared<'_>, MeshError> {
-    let mut prepared = Prepared {
-        mesh: Cow::Borrowed(mesh),
-        steps: Vec::new(),
-        origins: Vec::new(),
-        refined_polygons: None,
-        split_vertices: 0,
-    };
+    let mut prepared = Prepared::of(mesh);
     let polygon = |&(_, &size): &(usize, &u32)| size > 4;
     let mut polygons = mesh.data().face_sizes.iter().enumerate().filter(polygon);
     let mut needed = levels;

@@ -8,19 +8,25 @@ use std::collections::HashMap;
 
 /// Bit of a ring entry's index: the face is a triangle, and the entry stands in for the diagonal it does not have.
 pub const TRIANGLE_BIT: u32 = 1 << 31;
+/// Bit of a ring entry's index: the face is a pentagon, and the entry stands for the middle of its far edge. The rest is the
+/// place among the entries where that edge's two vertices are.
+pub const PENTAGON_BIT: u32 = 1 << 30;
 /// Bit of [`RingTable::headers`]`[3]`: the first and the last edge differ.
 pub const OPEN_BIT: u32 = 1 << 31;
 /// Bit of [`RingTable::headers`]`[3]`: edge points go straight at the neighbours ([`RingShape::has_frame`] is false).
 pub const CONE_BIT: u32 = 1 << 30;
+/// Bit of [`RingTable::headers`]`[3]`: [`RingShape::fallback`].
+pub const FALLBACK_BIT: u32 = 1 << 29;
 /// Bit of [`RingTable::headers`]`[3]`: transversals are the scheme's own, with weights in the ring's type.
-pub const FITTED_BIT: u32 = 1 << 29;
+pub const FITTED_BIT: u32 = 1 << 28;
 
 /// One-rings as the shaders read them. GLSL twin: `glsl/lib/rings.glsl`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RingTable {
     /// A ring: its vertex; where its entries start; where its type starts; its number of faces and flag bits.
     pub headers: Vec<[u32; 4]>,
-    /// Vertices around a ring: `a_0, d_0, a_1, d_1, ..`, and the last edge's `a` where the ring is open.
+    /// Vertices around a ring: `a_0, d_0, a_1, d_1, ..`, and the last edge's `a` where the ring is open. After all rings the
+    /// vertices of each pentagon, with the first once more at the end.
     pub entries: Vec<u32>,
     /// For each type of ring: `cos_k`; cosine and sine of each edge's direction; then, for the vertex itself and
     /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame); then, for
@@ -34,15 +40,16 @@ pub struct RingTable {
 }
 
 impl RingTable {
-    /// The rings of a mesh of triangles and quads, and the corners of the patches in `plan`.
-    pub fn new(topology: &Topology, plan: &PatchPlan, scheme: Scheme) -> Self {
-        let mut types = RingTypes { scheme, ..RingTypes::default() };
+    /// The rings of a mesh, and the corners of the patches in `plan`.
+    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
+        let mut types = RingTypes { scheme: plan.scheme(), ..RingTypes::default() };
         let mut entries = 0;
         let headers: Vec<[u32; 4]> = topology
             .rings()
             .iter()
-            .map(|ring| {
-                let (kind, bits) = types.of(topology, ring);
+            .zip(0..)
+            .map(|(ring, number)| {
+                let (kind, bits) = types.of(topology, ring, plan.fallback_rings().contains(number));
                 let header = [topology.mesh_vertex(ring.start), entries, kind, ring.faces | bits];
                 entries += 2 * ring.faces + u32::from(ring.open);
                 header
@@ -50,13 +57,10 @@ impl RingTable {
             .collect();
         let corners = plan.corners(topology);
         let corners = corners.into_par_iter().map(|h| topology.place(h)).map(|place| [place.ring, place.index]);
-        Self {
-            entries: ring_entries(topology, entries as usize),
-            headers,
-            types: types.words,
-            type_count: types.count,
-            corners: corners.collect(),
-        }
+        let pentagons = Pentagons::new(topology, entries);
+        let mut entries = ring_entries(topology, &pentagons, entries as usize);
+        entries.extend(&pentagons.vertices);
+        Self { entries, headers, types: types.words, type_count: types.count, corners: corners.collect() }
     }
 
     /// Bytes of all arrays together.
@@ -65,7 +69,33 @@ impl RingTable {
     }
 }
 
-fn ring_entries(topology: &Topology, count: usize) -> Vec<u32> {
+/// The vertices of pentagons, as they stand after the entries of all rings.
+struct Pentagons {
+    vertices: Vec<u32>,
+    /// Where those of each face are among the entries.
+    places: HashMap<u32, u32>,
+}
+
+impl Pentagons {
+    fn new(topology: &Topology, first: u32) -> Self {
+        let mesh = topology.mesh();
+        let mut pentagons = Self { vertices: Vec::new(), places: HashMap::new() };
+        for face in (0..).zip(&mesh.data().face_sizes).filter(|(_, size)| **size == 5).map(|(face, _)| face) {
+            pentagons.places.insert(face, first + pentagons.vertices.len() as u32);
+            pentagons.vertices.extend(mesh.face(face).iter().chain(&mesh.face(face)[..1]));
+        }
+        pentagons
+    }
+
+    /// The entry for the edge opposite the corner from which a half-edge starts, if its face is a pentagon.
+    fn entry(&self, topology: &Topology, h: u32) -> Option<u32> {
+        let face = topology.face(h);
+        let corner = h - topology.mesh().face_corners(face).start as u32;
+        self.places.get(&face).map(|place| (place + (corner + 2) % 5) | PENTAGON_BIT)
+    }
+}
+
+fn ring_entries(topology: &Topology, pentagons: &Pentagons, count: usize) -> Vec<u32> {
     let mut entries = vec![0; count];
     let mut slices = Vec::with_capacity(topology.rings().len());
     let mut rest = entries.as_mut_slice();
@@ -81,7 +111,8 @@ fn ring_entries(topology: &Topology, count: usize) -> Vec<u32> {
             let vertex = topology.mesh_vertex(topology.next(head));
             // A triangle's would-be diagonal is its minus edge's neighbour.
             let triangle = topology.face_size(h) == 3;
-            pair.copy_from_slice(&[topology.mesh_vertex(head), if triangle { vertex | TRIANGLE_BIT } else { vertex }]);
+            let vertex = if triangle { vertex | TRIANGLE_BIT } else { vertex };
+            pair.copy_from_slice(&[topology.mesh_vertex(head), pentagons.entry(topology, h).unwrap_or(vertex)]);
             last = h;
         }
         if let (true, Some(end)) = (ring.open, slice.last_mut()) {
@@ -97,22 +128,23 @@ struct RingTypes {
     scheme: Scheme,
     words: Vec<f32>,
     count: usize,
-    /// Rings of quads only, by kind, openness and faces: no need to look at their faces one by one.
-    of_quads: HashMap<(RingKind, bool, u32), (u32, u32)>,
+    /// Rings of quads only, by kind, openness, faces and fallback: no need to look at their faces one by one.
+    of_quads: HashMap<(RingKind, bool, u32, bool), (u32, u32)>,
     mixed: HashMap<RingShape, (u32, u32)>,
 }
 
 impl RingTypes {
     /// Where the type of a ring starts, and the bits of its header.
-    fn of(&mut self, topology: &Topology, ring: &Ring) -> (u32, u32) {
+    fn of(&mut self, topology: &Topology, ring: &Ring, fallback: bool) -> (u32, u32) {
+        let shape = || RingShape { fallback, ..RingShape::of(topology, ring) };
         if !ring.quads {
-            return self.of_shape(RingShape::of(topology, ring));
+            return self.of_shape(shape());
         }
-        let key = (ring.kind, ring.open, ring.faces);
+        let key = (ring.kind, ring.open, ring.faces, fallback);
         if let Some(&found) = self.of_quads.get(&key) {
             return found;
         }
-        let found = self.of_shape(RingShape::of(topology, ring));
+        let found = self.of_shape(shape());
         self.of_quads.insert(key, found);
         found
     }
@@ -136,7 +168,12 @@ impl RingTypes {
             self.words.extend(transversals.iter().flatten().map(|&x| x as f32));
         }
         self.count += 1;
-        let bits = [(shape.open, OPEN_BIT), (!shape.has_frame(), CONE_BIT), (fitted, FITTED_BIT)];
+        let bits = [
+            (shape.open, OPEN_BIT),
+            (!shape.has_frame(), CONE_BIT),
+            (shape.fallback, FALLBACK_BIT),
+            (fitted, FITTED_BIT),
+        ];
         let found = (start, bits.into_iter().filter(|bit| bit.0).map(|bit| bit.1).sum());
         self.mixed.insert(shape, found);
         found

@@ -2,7 +2,7 @@
 
 use super::{PatchPlan, bytes};
 use crate::mesh::MeshError;
-use crate::patch::{RingShape, RingValues, Row, Scheme};
+use crate::patch::{FallbackRings, RingShape, RingValues, Row, Scheme};
 use crate::table::Patch;
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// Patches as weighted sums of the vertices around them. GLSL twin: `glsl/lib/stencils.glsl`.
 ///
-/// Within a kind, patches are sorted by type.
+/// Within a group of the plan, patches are sorted by type.
 ///
 /// What patches share (the limit point of a corner and its edge points) every one of them sums in the same order: that
 /// of the corner's one-ring, from where the ring starts. The weights are stored once a type, in the order in which
@@ -45,12 +45,12 @@ struct PatchRing {
 }
 
 impl StencilTable {
-    /// Builds the table and sorts the patches of each kind by type: `plan` becomes the order of the table.
+    /// Builds the table and sorts the patches of each group by type: `plan` becomes the order of the table.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the one-rings of all patches together have more vertices than can be addressed. A
     /// vertex of valence n alone takes n * n; the two-stage construction takes n.
-    pub fn new(topology: &Topology, plan: &mut PatchPlan, scheme: Scheme) -> Result<Self, MeshError> {
+    pub fn new(topology: &Topology, plan: &mut PatchPlan) -> Result<Self, MeshError> {
         let (count, max) = (largest_vertex_count(topology, plan), u32::MAX as usize);
         if count > max {
             return Err(MeshError::TooLarge { what: "vertices around its patches (stencil construction)", count, max });
@@ -64,7 +64,7 @@ impl StencilTable {
                 let mut keys: HashMap<Key, (u32, usize)> = HashMap::new();
                 let mut rings = Vec::with_capacity(patches.len());
                 for &patch in patches {
-                    let (vertices, key) = patch_ring(topology, patch);
+                    let (vertices, key) = patch_ring(topology, plan.fallback_rings(), patch);
                     let next = (keys.len() as u32, rings.len());
                     let (kind, _) = *keys.entry(key).or_insert(next);
                     rings.push(PatchRing { patch, vertices, kind });
@@ -74,7 +74,7 @@ impl StencilTable {
             .collect();
 
         let mut table = Self::default();
-        let mut shared = SharedRows { scheme, known: HashMap::new() };
+        let mut shared = SharedRows { scheme: plan.scheme(), fallback: plan.fallback_rings(), known: HashMap::new() };
         let mut types: HashMap<Key, (u32, u32)> = HashMap::new();
         let mut rings: Vec<(u32, u32, PatchRing)> = Vec::with_capacity(plan.patches().len());
         for (chunk, keys) in chunks {
@@ -93,11 +93,11 @@ impl StencilTable {
             }));
         }
         table.type_count = types.len();
-        rings.sort_by_key(|(number, _, ring)| (ring.patch.kind, *number));
+        rings.sort_by_key(|(number, _, ring)| (ring.patch.group(), *number));
         for (_, start, ring) in &rings {
             table.patches.push([table.vertices.len() as u32, *start]);
-            let corners = topology.mesh().face_corners(ring.patch.face);
-            table.vertices.extend(corners.map(|h| CornerRing::turn(topology, h as u32)));
+            let corners = ring.patch.corners(topology);
+            table.vertices.extend(corners.map(|h| CornerRing::turn(topology, h)));
             table.vertices.extend(&ring.vertices);
             table.largest_ring = table.largest_ring.max(ring.vertices.len());
         }
@@ -113,15 +113,15 @@ impl StencilTable {
     /// Appends the weights for patches connected like `ring`'s. Gives where they start.
     fn push_type(&mut self, topology: &Topology, shared: &mut SharedRows, ring: &PatchRing) -> u32 {
         let local: HashMap<u32, u32> = ring.vertices.iter().zip(0..).map(|(&vertex, i)| (vertex, i)).collect();
-        let (patch, scheme) = (ring.patch, shared.scheme);
-        let rows = scheme.control_points(topology, patch.face, patch.kind, |vertex| Row::unit(local[&vertex]));
+        let Patch { kind, scheme, .. } = ring.patch;
+        let rows = ring.patch.control_points(topology, shared.fallback, |vertex| Row::unit(local[&vertex]));
         let start = self.types.len();
-        self.types.resize(start + HEAD_WORDS * patch.kind.corners(), 0);
-        for (k, h) in topology.mesh().face_corners(patch.face).enumerate() {
-            let owned = scheme.corner_slots(patch.kind, k);
+        self.types.resize(start + HEAD_WORDS * kind.corners(), 0);
+        for (k, h) in ring.patch.corners(topology).enumerate() {
+            let owned = scheme.corner_slots(kind, k);
             let first = self.types.len();
-            let ring_of_corner = CornerRing::of(topology, h as u32);
-            let of_frame = if scheme.shares_frame(patch.kind) { shared.of(&ring_of_corner) } else { &[] };
+            let ring_of_corner = CornerRing::of(topology, shared.fallback, h);
+            let of_frame = if scheme.shares_frame(kind) { shared.of(&ring_of_corner) } else { &[] };
             // The other control points take each vertex once, wherever it is met first.
             let mut pending = vec![true; ring.vertices.len()];
             let around = ring_of_corner.entries.iter().map(|&(vertex, entry)| (local[&vertex], Some(entry)));
@@ -166,11 +166,12 @@ impl CornerRing {
     /// In a closed ring first the vertex itself, then around it from the plus edge of half-edge `h`. In an open ring the ends
     /// come first, as in `ring_frame` of `glsl/lib/rings.glsl`: the ring on the other side of a crease has them the other
     /// way round.
-    fn of(topology: &Topology, h: u32) -> Self {
+    fn of(topology: &Topology, fallback: &FallbackRings, h: u32) -> Self {
         let place = topology.place(h);
         let ring = &topology.rings()[place.ring as usize];
-        let RingValues { mut shape, centre, mut edges, mut diagonals } =
-            RingValues::new(topology, ring, |vertex| vertex);
+        let at = |h: u32| topology.mesh_vertex(h);
+        let RingValues { mut shape, centre, mut edges, mut diagonals } = RingValues::collect(topology, ring, at, at);
+        shape.fallback = fallback.contains(place.ring);
         let (faces, index) = (shape.faces(), place.index as usize);
         if !shape.open {
             shape.triangles.rotate_left(index);
@@ -212,13 +213,14 @@ impl CornerRing {
 ///
 /// All faces around a vertex get weights with the same bits: each row is made with the ring turned in a way that does not
 /// depend on the face that asks.
-struct SharedRows {
+struct SharedRows<'p> {
     scheme: Scheme,
+    fallback: &'p FallbackRings,
     /// By the shape of the ring and its plus edge.
     known: HashMap<(RingShape, usize), [Row; 3]>,
 }
 
-impl SharedRows {
+impl SharedRows<'_> {
     fn of(&mut self, ring: &CornerRing) -> &[Row] {
         let key = (ring.shape.clone(), ring.plus);
         let scheme = self.scheme;
@@ -264,32 +266,39 @@ fn closed_rows(scheme: Scheme, shape: &RingShape) -> [Row; 3] {
 fn largest_vertex_count(topology: &Topology, plan: &PatchPlan) -> usize {
     let around = |h: &u32| {
         let ring = &topology.rings()[topology.place(*h).ring as usize];
-        2 + ring.faces as usize + ring.edges() as usize
+        // Pentagons have one vertex more.
+        let others = if ring.quads { ring.faces } else { 2 * ring.faces };
+        2 + others as usize + ring.edges() as usize
     };
     plan.corners(topology).iter().map(around).sum()
 }
 
 /// The vertices of a patch's one-ring and its connectivity, from a walk around it that starts at its first corner.
 /// Patches with the same connectivity are of one type.
-fn patch_ring(topology: &Topology, patch: Patch) -> (Vec<u32>, Key) {
-    let half_edges = topology.mesh().face_corners(patch.face);
+fn patch_ring(topology: &Topology, fallback: &FallbackRings, patch: Patch) -> (Vec<u32>, Key) {
+    let half_edges = patch.corners(topology);
     let mut walk = Walk { vertices: Vec::with_capacity(16), numbers: HashMap::new(), key: Vec::with_capacity(48) };
-    walk.key.push(patch.kind as u32);
+    walk.key.extend([patch.kind as u32, patch.scheme as u32]);
     for h in half_edges.clone() {
-        walk.visit(topology.mesh_vertex(h as u32));
+        walk.visit(topology.mesh_vertex(h));
     }
     for h in half_edges {
-        let place = topology.place(h as u32);
+        let place = topology.place(h);
         let ring = &topology.rings()[place.ring as usize];
         let from = if ring.open { 0 } else { place.index };
-        walk.key.extend([ring.kind as u32 * 2 + u32::from(ring.open), ring.faces, place.index - from]);
+        let rule = [ring.kind as u32, ring.open.into(), fallback.contains(place.ring).into()];
+        walk.key.extend(rule.into_iter().chain([ring.faces, place.index - from]));
         // From the patch itself around a closed ring; along an open one.
-        let (mut at, mut faces) = (if ring.open { ring.start } else { h as u32 }, ring.faces);
+        let (mut at, mut faces) = (if ring.open { ring.start } else { h }, ring.faces);
         loop {
             let head = topology.next(at);
             walk.key.push(topology.face_size(at));
             walk.visit(topology.mesh_vertex(head));
-            walk.visit(topology.mesh_vertex(topology.next(head)));
+            let opposite = topology.next(head);
+            walk.visit(topology.mesh_vertex(opposite));
+            if topology.face_size(at) == 5 {
+                walk.visit(topology.mesh_vertex(topology.next(opposite)));
+            }
             faces -= 1;
             let back = topology.prev(at);
             match topology.twin(back) {

@@ -12,15 +12,31 @@ pub enum PatchKind {
     IrregularQuad,
     /// A triangle, in whatever surroundings.
     Triangle,
+    /// A fifth of a face of five corners, in whatever surroundings: the triangle between an edge of it and its centre.
+    Pentagon,
 }
 
 impl PatchKind {
     /// In the order in which they are stored and drawn.
-    pub const ALL: [Self; 3] = [Self::Regular, Self::IrregularQuad, Self::Triangle];
+    pub const ALL: [Self; 4] = [Self::Regular, Self::IrregularQuad, Self::Triangle, Self::Pentagon];
 
-    /// Corners of the patch.
+    /// Corners of the patch. A fifth of a pentagon takes its control points from all five corners of the face.
     pub fn corners(self) -> usize {
-        if self == Self::Triangle { 3 } else { 4 }
+        match self {
+            Self::Triangle => 3,
+            Self::Pentagon => 5,
+            _ => 4,
+        }
+    }
+
+    /// How many patches of the kind make a face.
+    pub fn pieces(self) -> u32 {
+        if self == Self::Pentagon { 5 } else { 1 }
+    }
+
+    /// Whether the patch has barycentric parameters, those of a triangle.
+    pub fn is_triangular(self) -> bool {
+        matches!(self, Self::Triangle | Self::Pentagon)
     }
 
     /// The kind as it is called in the program's output.
@@ -29,18 +45,21 @@ impl PatchKind {
             Self::Regular => "regular",
             Self::IrregularQuad => "irregular_quad",
             Self::Triangle => "triangle",
+            Self::Pentagon => "pentagon",
         }
     }
 }
 
 impl Topology<'_> {
-    /// The patch that a face becomes; `None` for a face with five or more corners, which must be refined first.
+    /// The patch that a face becomes, or its pieces; `None` for a face with six or more corners, which must be refined
+    /// first.
     pub fn patch_kind(&self, face: u32) -> Option<PatchKind> {
         let corners = self.mesh.face_corners(face);
         match corners.len() {
             3 => Some(PatchKind::Triangle),
             4 if { corners }.all(|h| self.rings[self.places[h].ring as usize].is_regular()) => Some(PatchKind::Regular),
             4 => Some(PatchKind::IrregularQuad),
+            5 => Some(PatchKind::Pentagon),
             _ => None,
         }
     }

@@ -88,7 +88,7 @@ fn help_and_version_succeed() {
 fn info_counts() {
     let info = json("info --shape cube");
     assert_eq!((&info["vertices"], &info["edges"], &info["faces"]), (&8.into(), &12.into(), &6.into()));
-    assert_eq!(info["patches"], serde_json::json!({ "regular": 0, "irregular_quad": 6, "triangle": 0 }));
+    assert_eq!(info["patches"], serde_json::json!({ "regular": 0, "irregular_quad": 6, "triangle": 0, "pentagon": 0 }));
     assert_eq!(info["valence"], serde_json::json!({ "3": 8 }));
     assert_eq!((&info["boundary_edges"], &info["creased_edges"]), (&0.into(), &0.into()));
     assert_eq!(info["connectivity_types"], 1);
@@ -135,8 +135,9 @@ fn notices_go_to_standard_error() {
 
 #[test]
 fn patches_are_the_same_from_all_makers() {
-    for (shape, refine) in [("valences", 0), ("creature-mixed", 0), ("polygons", 0), ("fan", 1)] {
-        let of = |maker| json(&format!("patches --shape {shape} --refine {refine} --construction {maker}"));
+    let cases = [("valences", 0, ""), ("creature-mixed", 0, "--scheme acc --fallback gregory"), ("polygons", 0, "")];
+    for (shape, refine, more) in cases.into_iter().chain([("fan", 1, "")]) {
+        let of = |maker| json(&format!("patches --shape {shape} --refine {refine} {more} --construction {maker}"));
         let (cpu, two_stage, stencil) = (of("cpu"), of("two-stage"), of("stencil"));
         assert_eq!(keys(&cpu), ["construction", "patches"]);
         let patches = cpu["patches"].as_array().unwrap();
@@ -144,17 +145,18 @@ fn patches_are_the_same_from_all_makers() {
             patches.iter().map(|p| (p["face"].as_u64().unwrap(), p["sub"].as_i64().unwrap())).collect();
         assert!(places.is_sorted() && !places.is_empty());
         for (i, patch) in patches.iter().enumerate() {
-            assert_eq!(keys(patch), ["face", "kind", "points", "sub"]);
-            let count = match patch["kind"].as_str().unwrap() {
-                "regular" => 16,
-                "irregular_quad" => 20,
-                "triangle" => 15,
-                other => panic!("{other}"),
+            assert_eq!(keys(patch), ["face", "kind", "points", "scheme", "sub"]);
+            let count = match [&patch["kind"], &patch["scheme"]].map(|name| name.as_str().unwrap()) {
+                ["regular", _] => 16,
+                ["irregular_quad", "gregory"] => 20,
+                ["irregular_quad", "acc"] => 32,
+                ["triangle", "gregory"] => 15,
+                other => panic!("{other:?}"),
             };
             assert_eq!(length(&patch["points"]), count);
             for other in [&two_stage, &stencil] {
                 let other = &other["patches"][i];
-                for key in ["face", "sub", "kind"] {
+                for key in ["face", "sub", "kind", "scheme"] {
                     assert_eq!(patch[key], other[key]);
                 }
                 assert_close(&patch["points"], &other["points"], 1e-5);
@@ -166,9 +168,40 @@ fn patches_are_the_same_from_all_makers() {
     }
 }
 
+/// A pentagonal prism: with the scheme pm each of its pentagons is five patches, made and evaluated alike by all.
+#[test]
+fn pentagons_are_five_patches() {
+    let prism = folder("prism").join("prism.obj");
+    let at = |i: usize, y: f64| {
+        let (sin, cos) = (i as f64 * 72f64.to_radians()).sin_cos();
+        format!("v {cos} {y} {}\n", -sin)
+    };
+    let vertices: String = (0..10).map(|i| at(i % 5, (i / 5) as f64)).collect();
+    let sides: String = (1..6).map(|i| format!("f {i} {} {} {}\n", i % 5 + 1, i % 5 + 6, i + 5)).collect();
+    fs::write(&prism, format!("{vertices}f 6 7 8 9 10\nf 5 4 3 2 1\n{sides}")).unwrap();
+    let of = |command: &str| json(&format!("{command} {} --scheme pm", prism.display()));
+    let kinds = serde_json::json!({ "regular": 0, "irregular_quad": 5, "triangle": 0, "pentagon": 10 });
+    assert_eq!(of("info")["patches"], kinds);
+    let (cpu, gpu) = (of("patches --construction cpu"), of("patches --construction stencil"));
+    for (i, (a, b)) in cpu["patches"].as_array().unwrap().iter().zip(gpu["patches"].as_array().unwrap()).enumerate() {
+        let sub = if i < 10 { (i % 5) as i64 } else { -1 };
+        assert_eq!((&a["sub"], length(&a["points"])), (&sub.into(), if i < 10 { 30 } else { 24 }));
+        assert_close(&a["points"], &b["points"], 1e-5);
+    }
+    let (cpu, gpu) = (of("sample --grid 4 --cpu"), of("sample --grid 4"));
+    for (a, b) in cpu["faces"].as_array().unwrap().iter().zip(gpu["faces"].as_array().unwrap()) {
+        assert_close(&a["positions"], &b["positions"], 1e-5);
+    }
+    let text = String::from_utf8(
+        run(&format!("render {} --scheme pm -o {}", prism.display(), prism.with_extension("png").display())).stdout,
+    )
+    .unwrap();
+    assert!(text.contains("15 patches (0 regular, 5 irregular, 0 triangles, 10 of pentagons)"), "{text}");
+}
+
 #[test]
 fn samples_are_the_same_on_both_sides() {
-    for shape in ["creature-mixed", "cloth"] {
+    for shape in ["creature-mixed --scheme c-patch --fallback gregory", "cloth"] {
         let cpu = json(&format!("sample --shape {shape} --grid 4 --cpu"));
         let gpu = json(&format!("sample --shape {shape} --grid 4 --construction stencil"));
         assert_eq!(keys(&cpu), ["construction", "faces", "grid"]);
@@ -178,8 +211,8 @@ fn samples_are_the_same_on_both_sides() {
         );
         assert_eq!(length(&cpu["faces"]), length(&gpu["faces"]));
         for (a, b) in cpu["faces"].as_array().unwrap().iter().zip(gpu["faces"].as_array().unwrap()) {
-            assert_eq!(keys(a), ["face", "normals", "positions", "sub"]);
-            assert_eq!((&a["face"], &a["sub"]), (&b["face"], &b["sub"]));
+            assert_eq!(keys(a), ["face", "normals", "positions", "scheme", "sub"]);
+            assert_eq!((&a["face"], &a["sub"], &a["scheme"]), (&b["face"], &b["sub"], &b["scheme"]));
             assert!([10, 16].contains(&length(&a["positions"])));
             assert_close(&a["positions"], &b["positions"], 1e-5);
             assert_close(&a["normals"], &b["normals"], 2e-3);

@@ -26,12 +26,24 @@ fn error_measures_every_scheme_there_is() {
 }
 
 #[test]
+fn error_measures_the_fallback() {
+    let report = json("error --shape creature-mixed --samples 2 --nearest 0 --fallback gregory");
+    assert_eq!(keys(&report["schemes"]), ["acc", "c-patch", "gregory", "pm"]);
+    let triangles = json("info --shape creature-mixed")["patches"]["triangle"].clone();
+    let fallen = |scheme: &str| report["schemes"][scheme]["fallen_back"].clone();
+    assert_eq!([fallen("acc"), fallen("gregory"), fallen("pm")], [triangles, 0.into(), 0.into()]);
+    let text = String::from_utf8(run("error --shape fan --samples 2 --nearest 0 --fallback gregory").stdout).unwrap();
+    assert!(text.contains("\nacc has no patches for "), "{text}");
+}
+
+#[test]
 fn error_writes_tables() {
     let output = run("error --shape tetrahedron --samples 3 --nearest 0");
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.starts_with("scheme ") && text.ends_with("\n") && text.contains("\npm "), "{text}");
     let notes = String::from_utf8(output.stderr).unwrap();
-    let note = "note: face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has\n";
+    let note = "note: face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as \
+         fallback\n";
     assert!(notes.starts_with(note), "{notes}");
     let csv = String::from_utf8(run("error --shape tetrahedron --samples 3 --nearest 0 --csv").stdout).unwrap();
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
@@ -106,7 +118,7 @@ fn error_says_what_is_wrong() {
     fails(
         "error --shape tetrahedron --scheme acc",
         1,
-        "face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has",
+        "face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as fallback",
     );
     fails(
         "error --shape cube --scheme limit",
@@ -123,7 +135,7 @@ fn error_says_what_is_wrong() {
 fn the_limit_surface_is_sampled() {
     let limit = json("sample --shape polygons --scheme limit --cpu --grid 3");
     assert_eq!((&limit["grid"], &limit["construction"]), (&3.into(), &"cpu".into()));
-    assert_eq!(keys(&limit["faces"][0]), ["face", "normals", "positions", "sub"]);
+    assert_eq!(keys(&limit["faces"][0]), ["face", "normals", "positions", "scheme", "sub"]);
     let sizes = json("info --shape polygons")["face_sizes"].clone();
     let parts = |(size, count): (&String, &serde_json::Value)| match size.as_str() {
         "4" => count.as_u64().unwrap(),
@@ -145,6 +157,8 @@ fn the_limit_surface_is_sampled() {
     assert!(text.starts_with("face 0, part 0: limit\n") && text.lines().count() == 12 * 5, "{text}");
     let message = "--scheme limit: the limit surface is evaluated on the CPU: add --cpu";
     fails("sample --shape cube --scheme limit", 2, message);
+    let message = "--scheme limit: the limit surface has no faces without patches: leave out --fallback";
+    fails("sample --shape cube --scheme limit --cpu --fallback gregory", 2, message);
     let message = "--scheme limit: refinement does not change the limit surface: leave out --refine";
     fails("sample --shape cube --scheme limit --cpu --refine 1", 2, message);
 }

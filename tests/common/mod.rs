@@ -33,6 +33,24 @@ pub fn vectors() -> Vec<(String, serde_json::Value)> {
         .collect()
 }
 
+/// Points and samples of Pm-patches, beside the tests: see its note.
+pub fn pentagon_vector() -> serde_json::Value {
+    serde_json::from_str(include_str!("../vectors/pentagons.json")).expect("JSON")
+}
+
+/// A closed mesh of two pentagons with quads and triangles between them.
+pub fn pentagons() -> ControlMesh {
+    let vector = pentagon_vector();
+    let faces: Vec<Vec<u32>> = serde_json::from_value(vector["faces"].clone()).expect("faces");
+    ControlMesh::new(ash_subdiv::MeshData {
+        positions: serde_json::from_value(vector["positions"].clone()).expect("positions"),
+        face_sizes: faces.iter().map(|face| face.len() as u32).collect(),
+        face_vertices: faces.concat(),
+        ..Default::default()
+    })
+    .expect("manifold")
+}
+
 /// A device that says everything that is wrong; end with `finish_silent`.
 #[cfg(feature = "headless")]
 pub fn headless() -> ash_subdiv::headless::Headless {
