@@ -28,7 +28,7 @@ fn error_measures_every_scheme_there_is() {
 #[test]
 fn error_measures_the_fallback() {
     let report = json("error --shape creature-mixed --samples 2 --nearest 0 --fallback gregory");
-    assert_eq!(keys(&report["schemes"]), ["acc", "c-patch", "gregory", "pm"]);
+    assert_eq!(keys(&report["schemes"]), ["acc", "c-patch", "gregory", "gregory-fitted", "pm"]);
     let triangles = json("info --shape creature-mixed")["patches"]["triangle"].clone();
     let fallen = |scheme: &str| report["schemes"][scheme]["fallen_back"].clone();
     assert_eq!([fallen("acc"), fallen("gregory"), fallen("pm")], [triangles, 0.into(), 0.into()]);
@@ -76,10 +76,10 @@ fn error_plots_refined_meshes() {
     }
     // A dot for each step in each panel, and in the legend: schemes that start one step later have fewer.
     let dots = |colour: &str| svg.lines().filter(|l| l.starts_with("<circle") && l.contains(colour)).count();
-    assert_eq!((dots("#0072B2"), dots("#D55E00")), (3 * 6 + 1, 2 * 6 + 1));
+    assert_eq!((dots("#0072B2"), dots("#009E73")), (3 * 6 + 1, 2 * 6 + 1));
     let png = image::open(prefix.with_extension("png")).unwrap().to_rgba8();
     assert_eq!((png.dimensions(), png.get_pixel(0, 0).0), ((1500, 940), [255; 4]));
-    for colour in [[0, 114, 178, 255], [213, 94, 0, 255]] {
+    for colour in [[0, 114, 178, 255], [0, 158, 115, 255]] {
         assert!(png.pixels().filter(|pixel| pixel.0 == colour).count() > 100, "{colour:?}");
     }
     // Exact surfaces have no errors to plot.
