@@ -8,8 +8,8 @@ use crate::gpu::{
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::mesh::ControlMesh;
 use crate::renderer::{
-    Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Factor, ModelOptions, ModelTables, Options, Renderer,
-    Style, Target, View,
+    Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Factor, ModelOptions, ModelTables, Options,
+    Renderer, Style, Target, View,
 };
 use crate::topology::PatchKind;
 use ash::vk;

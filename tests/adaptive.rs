@@ -224,7 +224,7 @@ fn wrong_use_is_told() {
     );
     let options = ModelOptions { edge_factors: true, spacing: Spacing::FractionalOdd, ..ModelOptions::default() };
     let captured = Captured::new(&headless, &cube, &options).expect("a model");
-    let error = |draw: CaptureDraw| captured.factors(&draw).err().expect("an error").to_string();
+    let error = |draw: CaptureDraw| captured.factors(&draw).expect_err("an error").to_string();
     let unsized_view = View { viewport: [0.0; 2], ..view(&cube, [0.0, 0.0, 1.0]) };
     assert_eq!(
         error(CaptureDraw { view: unsized_view, ..CaptureDraw::new(Factor::Pixels(2.0)) }),
@@ -242,7 +242,7 @@ fn wrong_use_is_told() {
     );
     let plain = Captured::new(&headless, &cube, &ModelOptions::default()).expect("a model");
     assert_eq!(
-        plain.factors(&CaptureDraw::new(Factor::Edges(1.0))).err().expect("an error").to_string(),
+        plain.factors(&CaptureDraw::new(Factor::Edges(1.0))).expect_err("an error").to_string(),
         "model 0: its edges have no factors: call set_edge_factors first"
     );
     assert_eq!(

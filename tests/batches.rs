@@ -127,7 +127,7 @@ fn straight_down() -> View {
         eye: [0.0, 0.0, 1.0],
         light: [0.0, 0.0, 1.0],
         viewport: [0.0; 2],
-            measured_from: None,
+        measured_from: None,
     }
 }
 

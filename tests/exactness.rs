@@ -88,7 +88,9 @@ fn sheets_are_bicubic_b_splines_with_mirrored_ghosts() {
             assert_eq!(topology.patch_kind(face as u32), Some(PatchKind::Regular));
             let vertex = |v| mesh.position(v);
             let bicubic = Scheme::Gregory.control_points(&topology, face as u32, PatchKind::Regular, vertex);
-            let gregory = Scheme::Gregory.control_points(&topology, face as u32, PatchKind::IrregularQuad, vertex);
+            let [gregory, fitted] = [Scheme::Gregory, Scheme::GregoryFitted]
+                .map(|scheme| scheme.control_points(&topology, face as u32, PatchKind::IrregularQuad, vertex));
+            assert!(gregory == fitted, "{columns} x {rows}, face {face}: nothing is fitted among regular faces");
             for (u, v) in [(0.0, 0.0), (0.5, 0.0), (0.25, 0.75), (1.0, 0.3), (0.9, 1.0), (1.0, 1.0)] {
                 let (wu, wv) = (cubic_b_spline(u), cubic_b_spline(v));
                 let position = sheet.sum(i, j, wu, wv);

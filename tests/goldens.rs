@@ -11,8 +11,8 @@ use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
 use ash_subdiv::renderer::{Cull, Factor, Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style, Target, View, shape,
-    shapes,
+    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style, Target,
+    View, shape, shapes,
 };
 use common::golden;
 use common::render_pass::{Moment, RenderPassTarget};
@@ -148,6 +148,7 @@ fn pictures() -> Vec<Picture> {
         },
         Picture { name: "culled".into(), culled: true, ..Picture::lit("creature") },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
+        Picture::of_scheme(Scheme::GregoryFitted, "creature-mixed", Some(0.2)),
         Picture::of_scheme(Scheme::Acc, "cube", None),
         Picture::of_scheme(Scheme::Pm, "valences", Some(0.15)),
         Picture::of_scheme(Scheme::Pm, "creature-mixed", None),

@@ -9,9 +9,7 @@ use ash_subdiv::headless::{Headless, Texels, Texture};
 use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
 use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::renderer::{Cull, Factor};
-use ash_subdiv::{
-    Construction, ControlMesh, MeshData, ModelOptions, ReadOptions, Spacing, View, read, shape, shapes,
-};
+use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, ReadOptions, Spacing, View, read, shape, shapes};
 use common::random::{random_creased_mesh, random_mesh};
 use std::path::Path;
 use std::process::Command;
@@ -39,7 +37,13 @@ fn with_texcoords(mesh: ControlMesh) -> ControlMesh {
 }
 
 /// Compares a mesh drawn with random factors, and with those that a view asks for; displaced or not. Gives what differs.
-fn tally(headless: &Headless, mesh: &ControlMesh, options: &ModelOptions, texture: Option<&Texture>, seed: u64) -> Tally {
+fn tally(
+    headless: &Headless,
+    mesh: &ControlMesh,
+    options: &ModelOptions,
+    texture: Option<&Texture>,
+    seed: u64,
+) -> Tally {
     let options = ModelOptions { edge_factors: true, shared_normals: true, ..options.clone() };
     let captured = match texture {
         // SAFETY: the texture outlives what is captured.
@@ -103,7 +107,9 @@ fn models_are_watertight() {
     let texture = scales(&headless);
     let files = std::fs::read_dir(common::shared().join("meshes")).expect("../shared/meshes");
     let mut files: Vec<_> = files.map(|file| file.expect("readable").path()).collect();
-    files.retain(|file| file.extension().is_some_and(|e| e == "obj") && file.file_stem() != Some("catmark_fan".as_ref()));
+    files.retain(|file| {
+        file.extension().is_some_and(|e| e == "obj") && file.file_stem() != Some("catmark_fan".as_ref())
+    });
     files.sort();
     for (file, seed) in files.iter().zip(0..) {
         let options = ReadOptions { drop_isolated: true, ..ReadOptions::default() };
@@ -154,7 +160,9 @@ fn closed_shapes_have_no_holes_in_pictures() {
     for (name, seed) in ["creature", "creature-mixed", "machine-part", "tetrahedron"].into_iter().zip(0..) {
         let mesh = with_texcoords(shape(name).expect("built in"));
         assert_eq!(mesh.boundary_edge_count(), 0, "{name} is closed");
-        for (displaced, factor) in [(false, Factor::Edges(1.0)), (true, Factor::Edges(1.0)), (true, Factor::Pixels(5.0))] {
+        for (displaced, factor) in
+            [(false, Factor::Edges(1.0)), (true, Factor::Edges(1.0)), (true, Factor::Pixels(5.0))]
+        {
             let spacing = SPACINGS[seed as usize % 3];
             let options = ModelOptions { spacing, edge_factors: true, shared_normals: true, ..ModelOptions::default() };
             let tables = ash_subdiv::renderer::ModelTables::new(&mesh, &options).expect("tables");
@@ -179,7 +187,8 @@ fn closed_shapes_have_no_holes_in_pictures() {
 /// A shader compiled with one thing left out.
 fn faulty(file: &str, defines: &[&str]) -> Vec<u32> {
     let compiler = std::env::var("GLSLANG").unwrap_or_else(|_| "glslangValidator".into());
-    let output = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}{}.spv", file.replace('/', "_"), defines.concat()));
+    let output =
+        Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}{}.spv", file.replace('/', "_"), defines.concat()));
     let status = Command::new(compiler)
         .args(["-V", "--target-env", "vulkan1.3", "--quiet", "-Iglsl/lib", "-o"])
         .arg(&output)
@@ -257,11 +266,8 @@ fn nothing_pops() {
         // The points on an edge, in order.
         let along = |factor: f32| {
             let vertices = captured.vertices_of(&CaptureDraw::new(factor), Which::OnEdges).expect("a capture");
-            let mut edge: Vec<f32> = vertices
-                .iter()
-                .filter(|v| v.patch == 0 && v.coordinate[1] == 0.0)
-                .map(|v| v.coordinate[0])
-                .collect();
+            let mut edge: Vec<f32> =
+                vertices.iter().filter(|v| v.patch == 0 && v.coordinate[1] == 0.0).map(|v| v.coordinate[0]).collect();
             edge.sort_by(f32::total_cmp);
             edge.dedup();
             edge

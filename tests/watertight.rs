@@ -47,14 +47,20 @@ fn on_edges(captured: &Captured, factor: f32) -> HashMap<(u32, usize), HashMap<u
     edges
 }
 
+/// The schemes that are watertight, made in both ways.
+fn cases() -> impl Iterator<Item = (Construction, Scheme)> {
+    let schemes = Scheme::ALL.into_iter().filter(|scheme| scheme.is_watertight());
+    schemes.flat_map(|scheme| Construction::ALL.map(|construction| (construction, scheme)))
+}
+
 #[test]
 fn control_points_of_shared_edges() {
     let headless = common::headless();
     for (name, mesh) in meshes() {
         let prepared = prepare(&mesh, 0).expect("small");
         let topology = Topology::new(&prepared.mesh);
-        for construction in Construction::ALL {
-            let options = ModelOptions { construction, ..ModelOptions::default() };
+        for (construction, scheme) in cases() {
+            let options = ModelOptions { construction, scheme, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let points = captured.control_points().expect("a capture");
             let patches = captured.tables().plan().patches();
@@ -66,7 +72,7 @@ fn control_points_of_shared_edges() {
                 });
                 b.reverse();
                 for (a, b) in a.into_iter().zip(b) {
-                    let what = || format!("{name} {construction:?} {:?}: {a:?} and {b:?}", edge.sides);
+                    let what = || format!("{name} {scheme:?} {construction:?} {:?}: {a:?} and {b:?}", edge.sides);
                     assert_eq!(bits(a), bits(b), "{}", what());
                 }
             }
@@ -81,14 +87,14 @@ fn evaluated_vertices_of_shared_edges() {
     for (name, mesh) in meshes() {
         let prepared = prepare(&mesh, 0).expect("small");
         let topology = Topology::new(&prepared.mesh);
-        for construction in Construction::ALL {
+        for (construction, scheme) in cases() {
             for (spacing, factor, shared_normals) in [
                 (Spacing::Equal, 7.0, false),
                 (Spacing::Equal, 7.0, true),
                 (Spacing::FractionalOdd, 4.3, true),
                 (Spacing::FractionalEven, 4.3, true),
             ] {
-                let options = ModelOptions { construction, spacing, shared_normals, ..ModelOptions::default() };
+                let options = ModelOptions { construction, scheme, spacing, shared_normals, ..ModelOptions::default() };
                 let captured = Captured::new(&headless, &mesh, &options).expect("a model");
                 let on_edges = on_edges(&captured, factor);
                 for edge in shared_edges(&topology) {
@@ -97,7 +103,9 @@ fn evaluated_vertices_of_shared_edges() {
                     assert_eq!((a.len(), b.len()), (count, count), "{name} {spacing:?}");
                     for (t, a) in a {
                         let b = b[&(65536 - t)];
-                        let what = || format!("{name} {construction:?} {spacing:?} {:?}: {a:?} and {b:?}", edge.sides);
+                        let what = || {
+                            format!("{name} {scheme:?} {construction:?} {spacing:?} {:?}: {a:?} and {b:?}", edge.sides)
+                        };
                         assert_eq!(bits(a.position), bits(b.position), "{}", what());
                         if !edge.smooth {
                             continue;

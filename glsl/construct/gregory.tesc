@@ -8,6 +8,11 @@
 #include "control.glsl"
 #include "frames.glsl"
 
+// The transversal of corner k, this invocation's, at its ring edge j.
+vec3 corner_transversal(Corner corner, uint k, uint j) {
+    return scheme_transversal(corner.ring, j, in_centre[k], in_tangent_a[k], in_tangent_b[k]);
+}
+
 // f+ or f-: `near` and `far` are the edge points, `side` the transversal as seen from this face.
 vec3 face_point(vec3 p, vec3 near, vec3 far, float cos_near, float cos_far, vec3 side) {
     const float d = CORNERS == 4u ? 3.0 : 4.0;
@@ -19,7 +24,6 @@ void main() {
     uint next = k + 1u == CORNERS ? 0u : k + 1u;
     uint before = k == 0u ? CORNERS - 1u : k - 1u;
     Corner corner = corner_at(k);
-    vec3 centre = in_centre[k];
     vec3 p = in_limit[k].xyz;
     vec3 plus = corner_edge_point(corner, k, corner.plus);
     vec3 minus = corner_edge_point(corner, k, corner.minus);
@@ -29,10 +33,10 @@ void main() {
     barrier();
     float cosine = in_limit[k].w;
     owned[gl_InvocationID][3] = face_point(p, plus, owned[next][2], cosine, in_limit[next].w,
-                                           transversal(corner.ring, corner.plus, centre));
+                                           corner_transversal(corner, k, corner.plus));
     // The face lies on the right of its minus edge.
     owned[gl_InvocationID][4] = face_point(p, minus, owned[before][1], cosine, in_limit[before].w,
-                                           -transversal(corner.ring, corner.minus, centre));
+                                           -corner_transversal(corner, k, corner.minus));
     finish_framed_corner(corner, k);
     barrier();
     finish_patch(in_patch_number[0]);

@@ -13,6 +13,7 @@ const uint TRIANGLE_BIT = 1u << 31;
 const uint PENTAGON_BIT = 1u << 30;
 const uint OPEN_BIT = 1u << 31;
 const uint CONE_BIT = 1u << 30;
+const uint FITTED_BIT = 1u << 28;
 const uint FALLBACK_BIT = 1u << 29;
 
 struct Ring {
@@ -24,14 +25,15 @@ struct Ring {
     bool open;
     bool cone;
     bool fallback;
+    bool fitted;
 };
 
 Ring ring_at(uint index) {
     uvec4 header = ring_headers[index];
     bool open = (header.w & OPEN_BIT) != 0u;
-    uint faces = header.w & ~(OPEN_BIT | CONE_BIT | FALLBACK_BIT);
+    uint faces = header.w & ~(OPEN_BIT | CONE_BIT | FALLBACK_BIT | FITTED_BIT);
     return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u,
-                (header.w & FALLBACK_BIT) != 0u);
+                (header.w & FALLBACK_BIT) != 0u, (header.w & FITTED_BIT) != 0u);
 }
 
 // cos_k: of the angle between neighbouring edges.
@@ -128,6 +130,19 @@ vec3 transversal(Ring ring, uint j, vec3 centre) {
     vec3 next = edge_neighbour(ring, j + 1u);
     vec3 mean = face_centroid(ring, j, centre, here, next);
     r = (next - before) / 6.0 + (2.0 / 3.0) * (mean - mean_before);
+    return r;
+}
+
+// The transversal of edge j as the scheme has it; a and b are the tangent frame. Rust twin: `Scheme::transversal` in
+// src/patch/scheme.rs.
+vec3 scheme_transversal(Ring ring, uint j, vec3 centre, vec3 a, vec3 b) {
+    precise vec3 r = transversal(ring, j, centre);
+    if (ring.fitted) {
+        // After the ring's cosine, its edges' directions and its frame's weights.
+        uint at = ring.type + 1u + 2u * ring.edges + 3u * (1u + ring.edges + ring.faces) + 2u * j;
+        vec2 direction = edge_direction(ring, j);
+        r = ring_types[at] * r + ring_types[at + 1u] * (direction.x * b - direction.y * a);
+    }
     return r;
 }
 

@@ -94,12 +94,12 @@ void share_corner(uint corner, FramedRing own) {
         at = framed_ring(plus_ring);
     }
     shared_with[gl_InvocationID][0] = across(at, plus_edge & EDGE_MASK);
-    shared_with[gl_InvocationID][1] = transversal(at.ring, plus_edge & EDGE_MASK, at.centre);
+    shared_with[gl_InvocationID][1] = scheme_transversal(at.ring, plus_edge & EDGE_MASK, at.centre, at.a, at.b);
     if (minus_ring != at.index) {
         at = framed_ring(minus_ring);
     }
     shared_with[gl_InvocationID][2] = across(at, minus_edge);
-    shared_with[gl_InvocationID][3] = transversal(at.ring, minus_edge, at.centre);
+    shared_with[gl_InvocationID][3] = scheme_transversal(at.ring, minus_edge, at.centre, at.a, at.b);
 #ifdef DISPLACED
     if (speaker != at.index) {
         at = framed_ring(speaker);

@@ -62,7 +62,9 @@ impl DisplacementArgs {
 /// The built-in height map: the picture as often side by side as makes the scales small on an atlas.
 pub(super) fn scales() -> Result<Texels, CliError> {
     const TILES: u32 = 4;
-    Texels::decode(SCALES, false).map(|texels| texels.tiled(TILES)).map_err(|error| CliError::Work(format!("the built-in height map: {error}")))
+    Texels::decode(SCALES, false)
+        .map(|texels| texels.tiled(TILES))
+        .map_err(|error| CliError::Work(format!("the built-in height map: {error}")))
 }
 
 /// The map on the device.

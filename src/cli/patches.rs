@@ -170,9 +170,9 @@ fn label(scheme: Scheme, kind: PatchKind, number: usize) -> String {
         (k, Scheme::Pm | Scheme::CPatch) if k < n => format!("v{k}"),
         (k, Scheme::Pm | Scheme::CPatch) if k < 3 * n => format!("t{}{sign}", (k - n) / 2),
         (k, Scheme::Pm | Scheme::CPatch) => format!("{}_{}", ["b211", "b121", "b112"][k / n - 3], k % n),
-        (k, Scheme::Gregory) if k < n => format!("p{k}"),
-        (k, Scheme::Gregory) if k < 3 * n => format!("e{}{sign}", (k - n) / 2),
-        (k, Scheme::Gregory) => format!("f{}{sign}", (k - 3 * n) / 2),
+        (k, Scheme::Gregory | Scheme::GregoryFitted) if k < n => format!("p{k}"),
+        (k, Scheme::Gregory | Scheme::GregoryFitted) if k < 3 * n => format!("e{}{sign}", (k - n) / 2),
+        (k, Scheme::Gregory | Scheme::GregoryFitted) => format!("f{}{sign}", (k - 3 * n) / 2),
     }
 }
 

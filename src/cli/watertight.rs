@@ -7,7 +7,9 @@ use super::parse;
 use super::source::{DeviceArgs, SourceArgs, tell_notices};
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::headless::{Headless, Texture};
-use ash_subdiv::measure::watertight::{self, Mismatch, Seams, Tally, leaked_pixels, random_factors, with_seams_everywhere};
+use ash_subdiv::measure::watertight::{
+    self, Mismatch, Seams, Tally, leaked_pixels, random_factors, with_seams_everywhere,
+};
 use ash_subdiv::renderer::{Cull, Factor};
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme, Spacing, View};
 use clap::Args;

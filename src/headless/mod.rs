@@ -21,8 +21,8 @@ mod texture;
 pub use devices::{DeviceInfo, devices};
 pub use error::HeadlessError;
 pub use offscreen::{Offscreen, OffscreenDesc};
-pub use texture::{Texels, Texture};
 pub use query::{Statistics, StatisticsQuery, Timestamps, Timing};
+pub use texture::{Texels, Texture};
 
 #[cfg(feature = "png")]
 pub use offscreen::save_png;

@@ -115,9 +115,8 @@ impl Texture {
             other => return Err(unsupported(format!("{other} numbers a texel: 1 or 4 are possible"))),
         };
         // SAFETY: the physical device is of the instance.
-        let known = unsafe {
-            headless.instance().get_physical_device_format_properties(headless.physical_device(), format)
-        };
+        let known =
+            unsafe { headless.instance().get_physical_device_format_properties(headless.physical_device(), format) };
         let needed = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR | vk::FormatFeatureFlags::TRANSFER_DST;
         if !known.optimal_tiling_features.contains(needed) {
             return Err(unsupported(format!("{} does not filter images of {format:?}", headless.properties().name)));

@@ -148,11 +148,8 @@ impl Seams {
         for place in &group[1..] {
             let other = vertices[place.index as usize];
             tally.samples += 1;
-            let smooth = if key.is_edge {
-                self.smooth[key.number as usize]
-            } else {
-                self.ring(&first) == self.ring(&other)
-            };
+            let smooth =
+                if key.is_edge { self.smooth[key.number as usize] } else { self.ring(&first) == self.ring(&other) };
             if bits(first.position) != bits(other.position) {
                 tally.position_mismatches += 1;
                 note(&mut tally, other);
@@ -242,7 +239,8 @@ pub fn with_seams_everywhere(mesh: &ControlMesh) -> Result<ControlMesh, Error> {
 pub fn random_factors(edges: usize, most: f32, seed: u64) -> Vec<f32> {
     let factor = |edge: u64| {
         // SplitMix64 (Steele, Lea and Flood 2014).
-        let mut x = (edge + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
+        let mut x =
+            (edge + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
         x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         1.0 + (most - 1.0) * ((x ^ (x >> 31)) >> 40) as f32 / (1u64 << 24) as f32

@@ -5,7 +5,7 @@
 
 use super::bicubic::{Basis, cubic};
 use super::point::{scalar, unit_normal};
-use super::{Blend, Frame, Point, RingValues};
+use super::{Blend, Frame, Point, RingValues, Scheme};
 
 /// An edge from one vertex to another.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -14,7 +14,7 @@ pub struct Edge<P> {
     pub curve: [P; 4],
     /// Across the edge at either end, as its vertex sees it ([`RingValues::across`]).
     pub across: [P; 2],
-    /// The transversal at either end, as its vertex sees it ([`RingValues::transversal`]).
+    /// The transversal at either end, as its vertex sees it ([`Scheme::transversal`]).
     pub transversals: [P; 2],
 }
 
@@ -30,15 +30,17 @@ impl<P: Point> Edge<P> {
 }
 
 impl<P: Point + Blend> Edge<P> {
-    /// The edge that is edge `index[0]` of the ring at its start and edge `index[1]` of the one at its end.
-    pub fn new(rings: [&RingValues<P>; 2], frames: [&Frame<P>; 2], index: [usize; 2]) -> Self {
+    /// The edge that is edge `index[0]` of the ring at its start and edge `index[1]` of the one at its end; frames are those of
+    /// the scheme.
+    pub fn new(scheme: Scheme, rings: [&RingValues<P>; 2], frames: [&Frame<P>; 2], index: [usize; 2]) -> Self {
         let at = |end: usize| (rings[end], frames[end], index[end]);
         let point = |(ring, frame, j): (&RingValues<P>, &Frame<P>, usize)| ring.edge_point(frame, j);
+        let transversal = |(ring, frame, j): (&RingValues<P>, &Frame<P>, usize)| scheme.transversal(ring, frame, j);
         let across = |(ring, frame, j): (&RingValues<P>, &Frame<P>, usize)| ring.across(frame, j);
         Self {
             curve: [frames[0].p, point(at(0)), point(at(1)), frames[1].p],
             across: [across(at(0)), across(at(1))],
-            transversals: [rings[0].transversal(index[0]), rings[1].transversal(index[1])],
+            transversals: [transversal(at(0)), transversal(at(1))],
         }
     }
 }

@@ -36,8 +36,14 @@ impl<T: Blend> PatchCorner<'_, T> {
 
 /// The control points of the patch with these corners: 20 for four, 15 for three.
 ///
+/// `transversal` gives `r_j` of a corner's ring edge j; that of the paper is [`RingValues::transversal`]. The patches on
+/// both sides of an edge have to be given the same.
+///
 /// GLSL twin: `glsl/construct/gregory.tesc`.
-pub fn gregory_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
+pub fn gregory_points<T: Blend>(
+    corners: &[PatchCorner<T>],
+    transversal: impl Fn(&PatchCorner<T>, usize) -> T,
+) -> Vec<T> {
     let n = corners.len();
     // The d of section 3.4: three times the degree ratio between the patch and its edge curves.
     let d = if n == 4 { 3.0 } else { 4.0 };
@@ -56,7 +62,7 @@ pub fn gregory_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
                 (cosines[far] / d, &corner.frame.p),
                 ((d - 2.0 * cosines[k] - cosines[far]) / d, near_edge),
                 (2.0 * cosines[k] / d, far_edge),
-                (side / d, &corner.ring.transversal(edge)),
+                (side / d, &transversal(corner, edge)),
             ])
         };
         points.push(face_point(next, &plus[k], &minus[next], 1.0, corner.index));

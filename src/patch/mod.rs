@@ -14,6 +14,7 @@ pub mod bicubic;
 mod blend;
 pub mod edge;
 mod fallback;
+pub mod fitted;
 pub mod gregory;
 pub mod pm;
 mod point;

@@ -4,8 +4,9 @@
 //! (`glsl/construct/NAME.tesc` for the two-stage construction, `glsl/evaluate/NAME.tese`), and its arms in the `match`es of
 //! this file and of `renderer/stages.rs`. Regular faces are bicubic patches in every scheme.
 
+use super::fitted::Fit;
 use super::gregory::PatchCorner;
-use super::{Blend, FallbackRings, Frame, Point, RingValues, Sample, acc, bicubic, gregory, pm};
+use super::{Blend, FallbackRings, Frame, Point, RingShape, RingValues, Sample, acc, bicubic, fitted, gregory, pm};
 use crate::topology::{PatchKind, RingKind, Topology};
 
 /// A way to approximate the Catmull-Clark surface by patches, one a face.
@@ -14,6 +15,9 @@ pub enum Scheme {
     /// Gregory patches for irregular faces ([`gregory`]): quads and triangles, boundaries, G1 everywhere.
     #[default]
     Gregory,
+    /// Gregory patches that are closer to the limit surface ([`fitted`]): the same points and evaluation, with other tangent
+    /// lengths and transversals.
+    GregoryFitted,
     /// A geometry patch and two tangent patches for irregular faces ([`acc`]): quads only; the shading is smooth, the
     /// surface has a faint kink at the edges of irregular faces.
     Acc,
@@ -38,12 +42,13 @@ pub struct Undefined {
 
 impl Scheme {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Gregory, Self::Acc, Self::Pm, Self::CPatch];
+    pub const ALL: [Self; 5] = [Self::Gregory, Self::GregoryFitted, Self::Acc, Self::Pm, Self::CPatch];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gregory => "gregory",
+            Self::GregoryFitted => "gregory-fitted",
             Self::Acc => "acc",
             Self::Pm => "pm",
             Self::CPatch => "c-patch",
@@ -58,8 +63,10 @@ impl Scheme {
         let kind = topology.patch_kind(face);
         let what = match (kind, self) {
             (None, _) => Some("faces of six or more corners"),
-            (Some(PatchKind::Pentagon), Self::Gregory | Self::Acc | Self::CPatch) => Some("faces of five corners"),
-            (Some(PatchKind::Regular), _) | (_, Self::Gregory) => None,
+            (Some(PatchKind::Pentagon), Self::Gregory | Self::GregoryFitted | Self::Acc | Self::CPatch) => {
+                Some("faces of five corners")
+            }
+            (Some(PatchKind::Regular), _) | (_, Self::Gregory | Self::GregoryFitted) => None,
             (Some(PatchKind::Triangle), Self::Acc | Self::CPatch) => Some("triangles"),
             (_, Self::Acc) => None,
             (_, Self::Pm | Self::CPatch) => pm_lacks(topology, face),
@@ -79,7 +86,7 @@ impl Scheme {
     pub fn owned(self, kind: PatchKind) -> usize {
         match (kind, self) {
             (PatchKind::Regular, _) => 4,
-            (_, Self::Gregory) => 5,
+            (_, Self::Gregory | Self::GregoryFitted) => 5,
             (_, Self::Acc) => 8,
             (_, Self::Pm | Self::CPatch) => 6,
         }
@@ -96,7 +103,9 @@ impl Scheme {
         let n = kind.corners();
         match (kind, self) {
             (PatchKind::Regular, _) => bicubic::CORNER_SLOTS[k].to_vec(),
-            (_, Self::Gregory) => vec![k, n + 2 * k, n + 2 * k + 1, 3 * n + 2 * k, 3 * n + 2 * k + 1],
+            (_, Self::Gregory | Self::GregoryFitted) => {
+                vec![k, n + 2 * k, n + 2 * k + 1, 3 * n + 2 * k, 3 * n + 2 * k + 1]
+            }
             (_, Self::Acc) => acc::corner_slots(k).to_vec(),
             (_, Self::Pm | Self::CPatch) => pm::corner_slots(n, k).to_vec(),
         }
@@ -108,8 +117,26 @@ impl Scheme {
         match self {
             _ if ring.shape.fallback => ring.frame(),
             Self::Gregory => ring.frame(),
+            Self::GregoryFitted => fitted::fitted_frame(ring, &Fit::GREGORY),
             Self::Acc => acc::acc_frame(ring),
             Self::Pm | Self::CPatch => pm::pm_frame(ring),
+        }
+    }
+
+    /// The transversal of edge `j` of a ring whose frame is [`Scheme::frame`]: the scheme's own choice of
+    /// [`RingValues::transversal`].
+    pub fn transversal<T: Blend>(self, ring: &RingValues<T>, frame: &Frame<T>, j: usize) -> T {
+        match self {
+            Self::GregoryFitted => fitted::fitted_transversal(ring, frame, j, &Fit::GREGORY),
+            _ => ring.transversal(j),
+        }
+    }
+
+    /// The weights in it of [`RingValues::transversal`] and of the frame's tangent at a right angle to edge `j`.
+    pub(crate) fn transversal_weights(self, shape: &RingShape, j: usize) -> [f64; 2] {
+        match self {
+            Self::GregoryFitted => Fit::GREGORY.transversal_weights(shape, j),
+            _ => [1.0, 0.0],
         }
     }
 
@@ -117,7 +144,7 @@ impl Scheme {
     /// the edge points at its plus and its minus edge ([`RingValues::edge_point`]): the boundary is then the same
     /// on both sides of an edge.
     pub fn shares_frame(self, kind: PatchKind) -> bool {
-        kind == PatchKind::Regular || self == Self::Gregory
+        kind == PatchKind::Regular || matches!(self, Self::Gregory | Self::GregoryFitted)
     }
 
     /// Whether patches of all kinds share what they have in common along edges to the last bit ([`Scheme::shares_frame`]).
@@ -169,7 +196,9 @@ impl Scheme {
         let four = || <&[_; 4]>::try_from(corners.as_slice()).expect("the patch is a quad");
         match (kind, self) {
             (PatchKind::Regular, _) => bicubic::bicubic_points(four()).into(),
-            (_, Self::Gregory) => gregory::gregory_points(&corners),
+            (_, Self::Gregory | Self::GregoryFitted) => {
+                gregory::gregory_points(&corners, |corner, j| self.transversal(corner.ring, corner.frame, j))
+            }
             (_, Self::Acc) => acc::acc_points(four()),
             (_, Self::Pm | Self::CPatch) => pm::pm_points(&corners),
         }
@@ -184,10 +213,10 @@ impl Scheme {
         const COUNT: &str = "a patch has the control points of its kind";
         match (kind, self) {
             (PatchKind::Regular, _) => bicubic::evaluate_bicubic(points.try_into().expect(COUNT), u, v),
-            (PatchKind::IrregularQuad, Self::Gregory) => {
+            (PatchKind::IrregularQuad, Self::Gregory | Self::GregoryFitted) => {
                 gregory::evaluate_gregory_quad(points.try_into().expect(COUNT), u, v)
             }
-            (PatchKind::Triangle, Self::Gregory) => {
+            (PatchKind::Triangle, Self::Gregory | Self::GregoryFitted) => {
                 gregory::evaluate_gregory_triangle(points.try_into().expect(COUNT), u, v)
             }
             (_, Self::Acc) => acc::evaluate_acc(points.try_into().expect(COUNT), u, v),

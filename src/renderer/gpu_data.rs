@@ -116,9 +116,10 @@ mod tests {
             31 => f32::INFINITY,
             exponent => (1.0 + f32::from(half & 0x3ff) / 1024.0) * 2f32.powi(i32::from(exponent) - 15),
         };
-        for x in [0.0, 1e-9, 6.2e-5, 0.03, 0.5, 0.500_01, 1.0, 3.1415, 1000.3, 65504.0, 65505.0, 1e9] {
+        for x in [0.0, 1e-9, 6.2e-5, 0.03, 0.5, 0.500_01, 1.0, 3.3, 1000.3, 65504.0, 65505.0, 1e9] {
             let half = value(half_not_below(x));
-            assert!(half >= x && (half <= x * 1.001 || x < 1e-4 || x > 65504.0), "{x}: {half}");
+            let normal = (1e-4..=65504.0).contains(&x);
+            assert!(half >= x && (half <= x * 1.001 || !normal), "{x}: {half}");
         }
     }
 }

@@ -54,7 +54,7 @@ use crate::table::Notice;
 use ash::vk;
 use displacement::Displacements;
 use gpu_data::ViewData;
-use model::Model;
+use model::{Model, Surroundings};
 use pipelines::Pipelines;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -199,7 +199,8 @@ impl Renderer {
         }
         let options = ModelOptions { construction: tables.construction(), ..options.clone() };
         let map = self.displacements.get(options.displacement)?;
-        let model = Model::new(&self.context, &self.pipelines, &self.options, id, &options, tables, positions, map)?;
+        let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
+        let model = Model::new(from, id, &options, tables, positions, map)?;
         self.pipelines.make(&model.stages)?;
         self.next_id += 1;
         self.models.insert(id, model);

@@ -40,11 +40,17 @@ pub(super) struct ControlIndices {
     pub vertex_offset: i32,
 }
 
+/// What a model needs of its renderer.
+#[derive(Clone, Copy)]
+pub(super) struct Surroundings<'r> {
+    pub context: &'r Arc<DeviceContext>,
+    pub pipelines: &'r Pipelines,
+    pub options: &'r Options,
+}
+
 impl Model {
     pub(super) fn new(
-        context: &Arc<DeviceContext>,
-        pipelines: &Pipelines,
-        options: &Options,
+        Surroundings { context, pipelines, options }: Surroundings,
         id: ModelId,
         model_options: &ModelOptions,
         tables: ModelTables,

@@ -128,7 +128,10 @@ impl Pipelines {
         let pipeline = match key.geometry {
             GeometryKey::Control => {
                 let name = format!("subdiv style {} of the control mesh", key.style);
-                let stages = [Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT), fragment(style, Sharing::Positions, &encode)];
+                let stages = [
+                    Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT),
+                    fragment(style, Sharing::Positions, &encode),
+                ];
                 self.create(&name, style, &stages, 0)?
             }
             GeometryKey::Patches(patch) => {

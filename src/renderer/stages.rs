@@ -41,8 +41,8 @@ impl Sharing {
 fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
     match (kind, scheme) {
         (PatchKind::Regular, _) => ["REGULAR", "BICUBIC"],
-        (PatchKind::IrregularQuad, Scheme::Gregory) => ["GREGORY", "GREGORY_QUAD"],
-        (PatchKind::Triangle, Scheme::Gregory) => ["GREGORY", "GREGORY_TRIANGLE"],
+        (PatchKind::IrregularQuad, Scheme::Gregory | Scheme::GregoryFitted) => ["GREGORY", "GREGORY_QUAD"],
+        (PatchKind::Triangle, Scheme::Gregory | Scheme::GregoryFitted) => ["GREGORY", "GREGORY_TRIANGLE"],
         (_, Scheme::Acc) => ["ACC", "ACC"],
         (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_QUAD"],
         (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_TRIANGLE"],

@@ -18,6 +18,8 @@ pub enum TableError {
         scheme: Scheme,
     },
     /// Displacement of a mesh without texture coordinates.
-    #[error("the mesh has no texture coordinates, which displacement looks up: give it some (vt in OBJ, TEXCOORD_0 in glTF)")]
+    #[error(
+        "the mesh has no texture coordinates, which displacement looks up: give it some (vt in OBJ, TEXCOORD_0 in glTF)"
+    )]
     NoTexcoords,
 }

@@ -17,6 +17,8 @@ pub const OPEN_BIT: u32 = 1 << 31;
 pub const CONE_BIT: u32 = 1 << 30;
 /// Bit of [`RingTable::headers`]`[3]`: [`RingShape::fallback`].
 pub const FALLBACK_BIT: u32 = 1 << 29;
+/// Bit of [`RingTable::headers`]`[3]`: transversals are the scheme's own, with weights in the ring's type.
+pub const FITTED_BIT: u32 = 1 << 28;
 
 /// One-rings as the shaders read them. GLSL twin: `glsl/lib/rings.glsl`.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -27,7 +29,9 @@ pub struct RingTable {
     /// vertices of each pentagon, with the first once more at the end.
     pub entries: Vec<u32>,
     /// For each type of ring: `cos_k`; cosine and sine of each edge's direction; then, for the vertex itself and
-    /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame).
+    /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame); then, for
+    /// rings with their `FITTED_BIT` set, two weights for each edge
+    /// ([`Fit::transversal_weights`](crate::patch::fitted::Fit::transversal_weights)).
     pub types: Vec<f32>,
     /// How many types there are.
     pub type_count: usize,
@@ -45,19 +49,8 @@ impl RingTable {
             .iter()
             .zip(0..)
             .map(|(ring, number)| {
-                let fallback = plan.fallback_rings().contains(number);
-                let (kind, has_frame) = types.of(topology, ring, fallback);
-                let mut faces = ring.faces;
-                if ring.open {
-                    faces |= OPEN_BIT;
-                }
-                if !has_frame {
-                    faces |= CONE_BIT;
-                }
-                if fallback {
-                    faces |= FALLBACK_BIT;
-                }
-                let header = [topology.mesh_vertex(ring.start), entries, kind, faces];
+                let (kind, bits) = types.of(topology, ring, plan.fallback_rings().contains(number));
+                let header = [topology.mesh_vertex(ring.start), entries, kind, ring.faces | bits];
                 entries += 2 * ring.faces + u32::from(ring.open);
                 header
             })
@@ -136,13 +129,13 @@ struct RingTypes {
     words: Vec<f32>,
     count: usize,
     /// Rings of quads only, by kind, openness, faces and fallback: no need to look at their faces one by one.
-    of_quads: HashMap<(RingKind, bool, u32, bool), (u32, bool)>,
-    mixed: HashMap<RingShape, (u32, bool)>,
+    of_quads: HashMap<(RingKind, bool, u32, bool), (u32, u32)>,
+    mixed: HashMap<RingShape, (u32, u32)>,
 }
 
 impl RingTypes {
-    /// Where the type of a ring starts, and whether it has a frame.
-    fn of(&mut self, topology: &Topology, ring: &Ring, fallback: bool) -> (u32, bool) {
+    /// Where the type of a ring starts, and the bits of its header.
+    fn of(&mut self, topology: &Topology, ring: &Ring, fallback: bool) -> (u32, u32) {
         let shape = || RingShape { fallback, ..RingShape::of(topology, ring) };
         if !ring.quads {
             return self.of_shape(shape());
@@ -156,7 +149,7 @@ impl RingTypes {
         found
     }
 
-    fn of_shape(&mut self, shape: RingShape) -> (u32, bool) {
+    fn of_shape(&mut self, shape: RingShape) -> (u32, u32) {
         if let Some(&found) = self.mixed.get(&shape) {
             return found;
         }
@@ -169,8 +162,19 @@ impl RingTypes {
         for entry in 0..=(shape.faces() + shape.edges()) as u32 {
             self.words.extend([&frame.p, &frame.a, &frame.b].map(|row| row.weight(entry) as f32));
         }
+        let transversals: Vec<_> = (0..shape.edges()).map(|j| self.scheme.transversal_weights(&shape, j)).collect();
+        let fitted = transversals.iter().any(|&weights| weights != [1.0, 0.0]);
+        if fitted {
+            self.words.extend(transversals.iter().flatten().map(|&x| x as f32));
+        }
         self.count += 1;
-        let found = (start, shape.has_frame());
+        let bits = [
+            (shape.open, OPEN_BIT),
+            (!shape.has_frame(), CONE_BIT),
+            (shape.fallback, FALLBACK_BIT),
+            (fitted, FITTED_BIT),
+        ];
+        let found = (start, bits.into_iter().filter(|bit| bit.0).map(|bit| bit.1).sum());
         self.mixed.insert(shape, found);
         found
     }

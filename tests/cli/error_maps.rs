@@ -106,7 +106,7 @@ fn errors_say_what_is_wrong() {
     fails(
         &format!("render --shape tetrahedron --scheme acc --shading error-normal {to}"),
         1,
-        "face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has",
+        "face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as fallback",
     );
 }
 

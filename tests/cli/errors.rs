@@ -41,7 +41,7 @@ fn wrong_usage_is_said_in_one_line() {
     fails(
         "info --shape cube --scheme loop",
         2,
-        "invalid value 'loop' for '--scheme <SCHEME>' [possible values: gregory, acc, pm, c-patch]",
+        "invalid value 'loop' for '--scheme <SCHEME>' [possible values: gregory, gregory-fitted, acc, pm, c-patch]",
     );
 }
 

@@ -9,7 +9,7 @@ fn error_measures_every_scheme_there_is() {
         "area diagonal irregular_patches mesh nearest_floor_rms nearest_samples patches samples schemes undefined";
     assert_eq!(keys(&report), known.split(' ').collect::<Vec<_>>());
     assert_eq!((&report["mesh"], &report["irregular_patches"]), (&"tetrahedron".into(), &4.into()));
-    assert_eq!(keys(&report["schemes"]), ["gregory", "pm"]);
+    assert_eq!(keys(&report["schemes"]), ["gregory", "gregory-fitted", "pm"]);
     assert_eq!(keys(&report["undefined"]), ["acc", "c-patch"]);
     let gregory = &report["schemes"]["gregory"];
     for key in ["position_rms", "position_max", "nearest_rms", "nearest_max", "normal_rms", "normal_max"] {
@@ -28,7 +28,7 @@ fn error_measures_every_scheme_there_is() {
 #[test]
 fn error_measures_the_fallback() {
     let report = json("error --shape creature-mixed --samples 2 --nearest 0 --fallback gregory");
-    assert_eq!(keys(&report["schemes"]), ["acc", "c-patch", "gregory", "pm"]);
+    assert_eq!(keys(&report["schemes"]), ["acc", "c-patch", "gregory", "gregory-fitted", "pm"]);
     let triangles = json("info --shape creature-mixed")["patches"]["triangle"].clone();
     let fallen = |scheme: &str| report["schemes"][scheme]["fallen_back"].clone();
     assert_eq!([fallen("acc"), fallen("gregory"), fallen("pm")], [triangles, 0.into(), 0.into()]);
@@ -48,7 +48,7 @@ fn error_writes_tables() {
     let csv = String::from_utf8(run("error --shape tetrahedron --samples 3 --nearest 0 --csv").stdout).unwrap();
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
-    assert_eq!((lines.len(), &lines[1][..2], lines[1][4]), (5, &["gregory", "all"][..], ""));
+    assert_eq!((lines.len(), &lines[1][..2], lines[1][4]), (7, &["gregory", "all"][..], ""));
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn error_plots_refined_meshes() {
     let of_steps = |key: &str| steps.iter().map(|step| step[key].as_u64().unwrap()).collect::<Vec<_>>();
     assert_eq!((of_steps("refine"), of_steps("patches")), (vec![0, 1, 2], vec![4, 12, 48]));
     assert_eq!(of_steps("samples"), [9, 5, 5]);
-    assert_eq!((keys(&steps[0]["schemes"]).len(), keys(&steps[1]["schemes"]).len()), (2, 4));
+    assert_eq!((keys(&steps[0]["schemes"]).len(), keys(&steps[1]["schemes"]).len()), (3, 5));
     let gregory = |key: &str| steps.iter().map(|s| s["schemes"]["gregory"][key].as_f64().unwrap()).collect::<Vec<_>>();
     assert_eq!(gregory("normal_rms")[0], report["schemes"]["gregory"]["normal_rms"].as_f64().unwrap());
     assert!(gregory("normal_rms").is_sorted_by(|a, b| a > b), "{report}");
@@ -76,10 +76,10 @@ fn error_plots_refined_meshes() {
     }
     // A dot for each step in each panel, and in the legend: schemes that start one step later have fewer.
     let dots = |colour: &str| svg.lines().filter(|l| l.starts_with("<circle") && l.contains(colour)).count();
-    assert_eq!((dots("#0072B2"), dots("#D55E00")), (3 * 6 + 1, 2 * 6 + 1));
+    assert_eq!((dots("#0072B2"), dots("#009E73")), (3 * 6 + 1, 2 * 6 + 1));
     let png = image::open(prefix.with_extension("png")).unwrap().to_rgba8();
     assert_eq!((png.dimensions(), png.get_pixel(0, 0).0), ((1500, 940), [255; 4]));
-    for colour in [[0, 114, 178, 255], [213, 94, 0, 255]] {
+    for colour in [[0, 114, 178, 255], [0, 158, 115, 255]] {
         assert!(png.pixels().filter(|pixel| pixel.0 == colour).count() > 100, "{colour:?}");
     }
     // Exact surfaces have no errors to plot.
@@ -123,7 +123,7 @@ fn error_says_what_is_wrong() {
     fails(
         "error --shape cube --scheme limit",
         2,
-        "invalid value 'limit' for '--scheme <SCHEME>' [possible values: gregory, acc, pm, c-patch]",
+        "invalid value 'limit' for '--scheme <SCHEME>' [possible values: gregory, gregory-fitted, acc, pm, c-patch]",
     );
     fails("error --shape cube --samples 0", 2, "invalid value '0' for '--samples <N>': 0 is not in 1..=1025");
     fails("error --shape cube --csv --json", 2, "the argument '--csv' cannot be used with '--json'");
