@@ -141,7 +141,7 @@ fn pictures() -> Vec<Picture> {
         Picture {
             name: "adaptive".into(),
             layers: wire(),
-            factor: Factor::Curvature(0.15),
+            factor: Factor::Curvature(1.5),
             spacing: Spacing::FractionalOdd,
             around: Some(0.25),
             ..Picture::lit("creature-mixed")
@@ -189,7 +189,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     };
     let view = view.sized(SIDE, SIDE);
     let view = match picture.culled {
-        true => View::framing(mesh.bounds(), [-1.0, 0.3, -0.6], 1.0).measured_from(&view),
+        true => View::framing(mesh.bounds(), [0.9, 0.3, -0.7], 1.0).measured_from(&view),
         false => view,
     };
     let desc = OffscreenDesc { samples: picture.samples, color: picture.format, ..OffscreenDesc::new(SIDE, SIDE) };
