@@ -2,6 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `bench` | `bench`: what to race, results, presets, comparisons, the report |
 //! | `camera`, `shading`, `picture` | what `render` needs |
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
@@ -9,6 +10,7 @@
 //! | `parse` | values of options |
 //! | `error` | what goes to the user, and the exit code |
 
+mod bench;
 mod camera;
 mod devices;
 mod error;
@@ -47,6 +49,7 @@ Examples:
   subdiv render model.obj --shading patches -o patches.png
   subdiv info model.glb --json
   subdiv error model.obj
+  subdiv bench model.obj --report report
   subdiv sample model.obj --grid 9 --cpu --json > samples.json
 
 Exit codes: 0 done, 1 the work failed, 2 wrong usage.
@@ -62,6 +65,8 @@ enum Command {
     Patches(patches::PatchesArgs),
     /// Positions and normals on a lattice of every patch, as the GPU or the CPU evaluates them.
     Sample(sample::SampleArgs),
+    /// How long each scheme, construction and path takes to draw, on this device.
+    Bench(Box<bench::BenchArgs>),
     /// How far the patches of each scheme are from the exact surface, in position and normal. Needs no device.
     Error(errors::ErrorArgs),
     /// List the built-in shapes, or write one as OBJ.
@@ -80,6 +85,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Info(args) => info::run(&args, cli.json),
         Command::Patches(args) => patches::run(&args, cli.json),
         Command::Sample(args) => sample::run(&args, cli.json),
+        Command::Bench(args) => bench::run(&args, cli.json),
         Command::Error(args) => errors::run(&args, cli.json),
         Command::Shapes(args) => shapes::run(&args, cli.json),
         Command::Devices => devices::run(cli.json),

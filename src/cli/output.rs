@@ -91,6 +91,26 @@ impl Progress {
         Self(bar)
     }
 
+    /// A bar that fills with `steps` steps of [`Progress::advance`], and tells how long the rest will take.
+    pub(super) fn bar(what: &'static str, steps: u64) -> Self {
+        let bar = ProgressBar::new(steps).with_message(what);
+        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {elapsed}, {eta} left") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(500));
+        Self(bar)
+    }
+
+    /// So many steps more are done.
+    pub(super) fn advance(&self, steps: u64) {
+        self.0.inc(steps);
+    }
+
+    /// Does something to the terminal without being drawn over it.
+    pub(super) fn suspend<R>(&self, work: impl FnOnce() -> R) -> R {
+        self.0.suspend(work)
+    }
+
     /// What is going on now.
     pub(super) fn now(&self, what: &'static str) {
         self.0.set_message(what);

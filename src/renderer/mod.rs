@@ -42,11 +42,17 @@ pub use tables::{ModelTables, TableBytes};
 pub use view::View;
 
 pub(crate) use pipelines::Capture;
+#[cfg(all(feature = "measure", feature = "headless"))]
+pub(crate) use {
+    gpu_data::{DrawConstants, ViewData},
+    pipelines::STAGES,
+};
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::mesh::ControlMesh;
 use crate::table::Notice;
 use ash::vk;
+#[cfg(not(all(feature = "measure", feature = "headless")))]
 use gpu_data::ViewData;
 use model::Model;
 use pipelines::Pipelines;

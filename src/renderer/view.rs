@@ -68,7 +68,7 @@ impl View {
         )
     }
 
-    pub(super) fn data(&self) -> ViewData {
+    pub(crate) fn data(&self) -> ViewData {
         let [x, y, z] = self.eye;
         let light = Vec3::from(self.light).normalize_or(Vec3::Y);
         ViewData { view_projection: self.view_projection, eye: [x, y, z, 1.0], light: light.extend(0.0).into() }

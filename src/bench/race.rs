@@ -1,0 +1,335 @@
+//! Everything that is raced on one mesh, drawn in turns.
+
+use super::drawable::{Drawable, Frame, Lane, Pass, VERTEX_BYTES};
+use super::{BenchError, Contestant, Setup, Subject, Traffic};
+use crate::gpu::Spacing;
+use crate::headless::{Headless, Offscreen, OffscreenDesc, Statistics};
+use crate::measure::statistics::{Estimate, FEWEST, paired_difference};
+use crate::renderer::{TableBytes, View};
+use ash::vk;
+use glam::{DVec3, Mat4};
+use std::time::Duration;
+
+/// How to measure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BenchOptions {
+    /// Tessellation factors, from 1 up, of all edges and insides.
+    pub factors: Vec<f32>,
+    /// Where the tessellator puts its vertices.
+    pub spacing: Spacing,
+    /// Pixels of the picture.
+    pub size: [u32; 2],
+    /// Copies of the model that a frame draws, each with a transform of its own.
+    pub instances: u32,
+    /// Frames of each contestant that count, at least [`FEWEST`].
+    pub frames: u32,
+    /// Frames of each contestant that go before and do not count.
+    pub warm_up: u32,
+}
+
+impl Default for BenchOptions {
+    /// Factors 4, 8, 16 and 32, equal spacing, 1024 x 1024 pixels, one instance, 21 frames after 3.
+    fn default() -> Self {
+        Self {
+            factors: vec![4.0, 8.0, 16.0, 32.0],
+            spacing: Spacing::Equal,
+            size: [1024, 1024],
+            instances: 1,
+            frames: 21,
+            warm_up: 3,
+        }
+    }
+}
+
+/// Frame by frame, in milliseconds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// On the device, from the first command to the last.
+    pub device: Vec<f64>,
+    /// On the host's clock, with recording, submission and the wait for the fence.
+    pub host: Vec<f64>,
+}
+
+/// What one contestant did at one factor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Who.
+    pub contestant: Contestant,
+    /// The factor.
+    pub factor: f32,
+    /// Patches that a frame draws, in all instances.
+    pub patches: u64,
+    /// Invocations of the evaluation stage in a frame; `None` if the device cannot count.
+    pub evaluations: Option<u64>,
+    /// Triangles in a frame, before clipping.
+    pub triangles: Option<u64>,
+    /// Frames with pixels.
+    pub gpu: Series,
+    /// Frames without rasterization.
+    pub geometry: Series,
+    /// What making the control points takes, in milliseconds (see the module); `None` without the bilinear floor, and for
+    /// floors.
+    pub construction: Option<Estimate>,
+    /// What went before the first frame.
+    pub setup: Setup,
+    /// Everything that drawing reads.
+    pub bytes: Vec<TableBytes>,
+    /// What a frame moves.
+    pub traffic: Traffic,
+}
+
+/// What a race tells while it runs.
+#[derive(Debug)]
+pub enum Event {
+    /// So many frames more are done, or need not be drawn, of those that [`Bench::frames`] counts.
+    Frames(u64),
+    /// A contestant does not run, at this factor or at all: why.
+    LeftOut(Contestant, Option<f32>, BenchError),
+    /// All of one factor, in the order of the contestants.
+    Rows(Vec<Row>),
+}
+
+/// Races on one device.
+pub struct Bench<'h> {
+    headless: &'h Headless,
+    options: BenchOptions,
+    /// In the order of [`Pass::ALL`].
+    targets: [Offscreen; 2],
+}
+
+/// A contestant that runs.
+struct Runner<'a> {
+    contestant: Contestant,
+    drawable: Box<dyn Drawable + 'a>,
+    setup_first_frame: f64,
+    construction: Option<Estimate>,
+}
+
+impl<'h> Bench<'h> {
+    /// Makes what is drawn into.
+    ///
+    /// # Errors
+    /// [`BenchError::BadOption`]; sizes that the device does not have, no memory.
+    pub fn new(headless: &'h Headless, options: BenchOptions) -> Result<Self, BenchError> {
+        let least = [("frames", options.frames, FEWEST as u32), ("instances", options.instances, 1)];
+        if let Some(&(what, given, least)) = least.iter().find(|(_, given, least)| given < least) {
+            return Err(BenchError::BadOption { what, given, least });
+        }
+        let [width, height] = options.size;
+        let targets = [
+            Offscreen::new(headless, &OffscreenDesc::new(width, height))?,
+            Offscreen::new(headless, &OffscreenDesc::new(16, 16))?,
+        ];
+        Ok(Self { headless, options, targets })
+    }
+
+    /// How it measures.
+    pub fn options(&self) -> &BenchOptions {
+        &self.options
+    }
+
+    /// How many frames a race of so many contestants draws.
+    pub fn frames(&self, contestants: usize) -> u64 {
+        let rounds = u64::from(self.options.frames + self.options.warm_up);
+        contestants as u64 * rounds * (1 + 2 * self.options.factors.len() as u64)
+    }
+
+    /// Races on one mesh, factor by factor.
+    ///
+    /// # Errors
+    /// Failed Vulkan calls. A contestant that has no patches for the mesh, or takes more memory than there is, is left
+    /// out, and `tell` hears of it.
+    pub fn race(
+        &self,
+        subject: &Subject,
+        contestants: &[Contestant],
+        mut tell: impl FnMut(Event),
+    ) -> Result<(), BenchError> {
+        let rounds = u64::from(self.options.frames + self.options.warm_up);
+        let lane =
+            Lane { headless: self.headless, target: self.targets[0].desc(), subject, spacing: self.options.spacing };
+        let scene = Scene::new(subject, &self.options);
+        let mut runners = Vec::new();
+        for &contestant in contestants {
+            match self.runner(contestant, lane, &scene) {
+                Err(error) if error.leaves_out() => {
+                    tell(Event::LeftOut(contestant, None, error));
+                    tell(Event::Frames(self.frames(1)));
+                }
+                other => runners.push(other?),
+            }
+        }
+        self.construction(&mut runners, &scene, &mut tell)?;
+        for &factor in &self.options.factors {
+            let mut racing = Vec::new();
+            for runner in &mut runners {
+                match runner.drawable.set_factor(factor) {
+                    Err(error) if error.leaves_out() => {
+                        tell(Event::LeftOut(runner.contestant, Some(factor), error));
+                        tell(Event::Frames(2 * rounds));
+                    }
+                    Ok(()) => racing.push(runner),
+                    Err(error) => return Err(error),
+                }
+            }
+            let series = self.turns(&mut racing, &scene, factor, &Pass::ALL, &mut tell)?;
+            let rows =
+                racing.iter_mut().zip(series).map(|(runner, series)| self.row(runner, &scene, subject, factor, series));
+            tell(Event::Rows(rows.collect::<Result<_, _>>()?));
+        }
+        Ok(())
+    }
+
+    fn runner<'a>(&self, contestant: Contestant, lane: Lane<'a>, scene: &Scene) -> Result<Runner<'a>, BenchError> {
+        let mut drawable = contestant.open(lane)?;
+        drawable.set_factor(1.0)?;
+        let mut setup_first_frame = 0.0;
+        for pass in Pass::ALL {
+            setup_first_frame += milliseconds(self.frame(&mut *drawable, &scene.frame(1.0, pass))?[1]);
+        }
+        Ok(Runner { contestant, drawable, setup_first_frame, construction: None })
+    }
+
+    /// What making the control points takes: factor 1, less the same of the bilinear floor.
+    fn construction(
+        &self,
+        runners: &mut [Runner],
+        scene: &Scene,
+        tell: &mut impl FnMut(Event),
+    ) -> Result<(), BenchError> {
+        let mut all: Vec<&mut Runner> = runners.iter_mut().collect();
+        let series = self.turns(&mut all, scene, 1.0, &[Pass::Geometry], tell)?;
+        let floor = runners.iter().position(|runner| runner.contestant.path == super::Path::Bilinear);
+        let Some(floor) = floor.map(|index| series[index][0].device.clone()) else { return Ok(()) };
+        for (runner, series) in runners.iter_mut().zip(series).filter(|(runner, _)| !runner.contestant.path.is_floor())
+        {
+            runner.construction = paired_difference(&series[0].device, &floor);
+        }
+        Ok(())
+    }
+
+    /// Warms up, and draws in turns: for each runner a series for each pass.
+    fn turns(
+        &self,
+        runners: &mut [&mut Runner],
+        scene: &Scene,
+        factor: f32,
+        passes: &[Pass],
+        tell: &mut impl FnMut(Event),
+    ) -> Result<Vec<Vec<Series>>, BenchError> {
+        let mut all = vec![vec![Series::default(); passes.len()]; runners.len()];
+        for round in 0..self.options.warm_up + self.options.frames {
+            for (runner, series) in runners.iter_mut().zip(&mut all) {
+                for (&pass, series) in passes.iter().zip(series) {
+                    let [device, host] = self.frame(&mut *runner.drawable, &scene.frame(factor, pass))?;
+                    if round >= self.options.warm_up {
+                        series.device.push(milliseconds(device));
+                        series.host.push(milliseconds(host));
+                    }
+                }
+                tell(Event::Frames(passes.len() as u64));
+            }
+        }
+        Ok(all)
+    }
+
+    /// Draws a frame: how long it takes on the device and on the host.
+    fn frame(&self, drawable: &mut dyn Drawable, frame: &Frame) -> Result<[Duration; 2], BenchError> {
+        // SAFETY: each submission is waited for.
+        let timing = self.headless.timed(|cmd| unsafe { self.record(cmd, drawable, frame) })?;
+        Ok([timing.device, timing.host])
+    }
+
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering; the device is done with earlier frames.
+    unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        drawable: &mut dyn Drawable,
+        frame: &Frame,
+    ) -> Result<(), BenchError> {
+        let target = &self.targets[usize::from(frame.pass == Pass::Geometry)];
+        // SAFETY: as the caller promises.
+        unsafe {
+            drawable.cmd_prepare(cmd)?;
+            target.cmd_begin(cmd, [0.0; 4]);
+            drawable.cmd_draw(cmd, frame)?;
+            target.cmd_end(cmd);
+        }
+        Ok(())
+    }
+
+    fn row(
+        &self,
+        runner: &mut Runner,
+        scene: &Scene,
+        subject: &Subject,
+        factor: f32,
+        series: Vec<Series>,
+    ) -> Result<Row, BenchError> {
+        let frame = scene.frame(factor, Pass::Pixels);
+        let drawable = &mut *runner.drawable;
+        let counted = if self.headless.context().features().statistics {
+            // SAFETY: each submission is waited for.
+            Some(self.headless.counted(|cmd| unsafe { self.record(cmd, drawable, &frame) })?)
+        } else {
+            None
+        };
+        let count = |of: fn(&Statistics) -> u64| counted.as_ref().map(of);
+        let evaluations = count(|s| s.evaluation_invocations);
+        let vertices = count(|s| s.evaluation_invocations.max(s.vertex_invocations)).unwrap_or(0);
+        let instances = u64::from(self.options.instances);
+        let bytes = drawable.bytes();
+        let traffic = Traffic {
+            tables: instances * bytes.iter().map(|(_, bytes)| bytes).sum::<u64>(),
+            control_points: instances * drawable.control_point_bytes(),
+            vertices: VERTEX_BYTES * vertices,
+        };
+        let [gpu, geometry] = <[Series; 2]>::try_from(series).unwrap_or_default();
+        Ok(Row {
+            contestant: runner.contestant,
+            factor,
+            patches: instances * subject.patches(),
+            evaluations,
+            triangles: count(|s| s.clipping_invocations),
+            gpu,
+            geometry,
+            construction: runner.construction,
+            setup: Setup { first_frame: runner.setup_first_frame, ..drawable.setup() },
+            bytes,
+            traffic,
+        })
+    }
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}
+
+/// Where the instances stand, and who looks at them.
+struct Scene {
+    view: View,
+    instances: Vec<[[f32; 4]; 4]>,
+}
+
+impl Scene {
+    /// All of them in the picture, side by side.
+    fn new(subject: &Subject, options: &BenchOptions) -> Self {
+        const APART: f64 = 1.1;
+        let [low, high] = subject.mesh.bounds();
+        let step = (high - low) * APART;
+        let columns = f64::from(options.instances).sqrt().ceil() as u32;
+        let rows = options.instances.div_ceil(columns);
+        let place = |i: u32| DVec3::new(f64::from(i % columns), f64::from(i / columns), 0.0) * step;
+        let offsets: Vec<DVec3> = (0..options.instances).map(place).collect();
+        let far = DVec3::new(f64::from(columns - 1), f64::from(rows - 1), 0.0) * step;
+        let aspect = options.size[0] as f32 / options.size[1] as f32;
+        let view = View::framing([low, high + far], [-0.5, 0.3, 1.0], aspect);
+        let instances = offsets.iter().map(|offset| Mat4::from_translation(offset.as_vec3()).to_cols_array_2d());
+        Self { view, instances: instances.collect() }
+    }
+
+    fn frame(&self, factor: f32, pass: Pass) -> Frame<'_> {
+        Frame { view: &self.view, instances: &self.instances, factor, pass }
+    }
+}
