@@ -101,7 +101,7 @@ pub struct Bench<'h> {
 struct Runner<'a> {
     contestant: Contestant,
     drawable: Box<dyn Drawable + 'a>,
-    setup_first_frame: f64,
+    first_frame: f64,
     construction: Option<Estimate>,
 }
 
@@ -120,6 +120,14 @@ impl<'h> Bench<'h> {
             Offscreen::new(headless, &OffscreenDesc::new(width, height))?,
             Offscreen::new(headless, &OffscreenDesc::new(16, 16))?,
         ];
+        // The first submission of a device takes longer than those after it.
+        for target in &targets {
+            // SAFETY: the command buffer is being recorded, outside rendering.
+            headless.submit(|cmd| unsafe {
+                target.cmd_begin(cmd, [0.0; 4]);
+                target.cmd_end(cmd);
+            })?;
+        }
         Ok(Self { headless, options, targets })
     }
 
@@ -180,14 +188,32 @@ impl<'h> Bench<'h> {
         Ok(())
     }
 
+    /// What a contestant draws: rows from the top, four bytes sRGB and opacity a pixel.
+    ///
+    /// # Errors
+    /// As [`Bench::race`], but a contestant that would be left out is an error here.
+    pub fn picture(&self, subject: &Subject, contestant: Contestant, factor: f32) -> Result<Vec<u8>, BenchError> {
+        let target = &self.targets[0];
+        let lane = Lane { headless: self.headless, target: target.desc(), subject, spacing: self.options.spacing };
+        let scene = Scene::new(subject, &self.options);
+        let mut drawable = contestant.open(lane)?;
+        drawable.set_factor(factor)?;
+        // SAFETY: the command buffer is being recorded, outside rendering; each submission is waited for.
+        self.headless.try_submit(|cmd| unsafe { drawable.cmd_prepare(cmd) })?;
+        target.draw(self.headless, [0.0; 4], |cmd| {
+            // SAFETY: inside rendering that fits the target, after the frame was prepared.
+            unsafe { drawable.cmd_draw(cmd, &scene.frame(factor, Pass::Pixels)) }
+        })
+    }
+
     fn runner<'a>(&self, contestant: Contestant, lane: Lane<'a>, scene: &Scene) -> Result<Runner<'a>, BenchError> {
         let mut drawable = contestant.open(lane)?;
         drawable.set_factor(1.0)?;
-        let mut setup_first_frame = 0.0;
+        let mut first_frame = 0.0;
         for pass in Pass::ALL {
-            setup_first_frame += milliseconds(self.frame(&mut *drawable, &scene.frame(1.0, pass))?[1]);
+            first_frame += milliseconds(self.frame(&mut *drawable, &scene.frame(1.0, pass))?[1]);
         }
-        Ok(Runner { contestant, drawable, setup_first_frame, construction: None })
+        Ok(Runner { contestant, drawable, first_frame, construction: None })
     }
 
     /// What making the control points takes: factor 1, less the same of the bilinear floor.
@@ -295,7 +321,7 @@ impl<'h> Bench<'h> {
             gpu,
             geometry,
             construction: runner.construction,
-            setup: Setup { first_frame: runner.setup_first_frame, ..drawable.setup() },
+            setup: Setup { first_frame: runner.first_frame, ..drawable.setup() },
             bytes,
             traffic,
         })

@@ -1,6 +1,7 @@
 //! The program `subdiv`, run as a user runs it.
 #![cfg(feature = "cli")]
 
+mod bench;
 mod errors;
 mod measures;
 mod pictures;

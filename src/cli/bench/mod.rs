@@ -20,11 +20,13 @@ use super::parse;
 use super::source::DeviceArgs;
 use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Event, Path, Subject, Subset};
 use ash_subdiv::headless::Headless;
+use ash_subdiv::measure::{ErrorOptions, surface_errors};
 use ash_subdiv::mesh::{ReadOptions, read, replicate, shape};
 use ash_subdiv::{Construction, ControlMesh, Scheme, Spacing};
 use clap::Args;
 use presets::Preset;
 use results::{DeviceOut, LeftOut, MeshOut, Results, Row};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -86,7 +88,7 @@ pub(super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "schemes", "constructions", "paths", "factors", "patches", "instances", "preset"]
+        conflicts_with_all = ["mesh", "shape", "schemes", "constructions", "paths", "factors", "patches", "instances", "replicate", "spacing"]
     )]
     results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]
@@ -212,8 +214,12 @@ impl BenchArgs {
         let mut results = self.device.run(|headless| {
             let mut results = Results::new(DeviceOut::new(headless.properties()), &options, patches);
             for subject in &subjects {
-                let thumbnail = report::thumbnail(headless, subject)?;
-                results.meshes.push(MeshOut { thumbnail, ..MeshOut::new(subject) });
+                let mut mesh = MeshOut::new(subject);
+                if self.report.is_some() {
+                    mesh.thumbnail = Some(report::thumbnail(headless, subject)?);
+                    mesh.normal_error = normal_errors(subject)?;
+                }
+                results.meshes.push(mesh);
             }
             self.race(headless, &subjects, &contestants, &options, show, &mut results)?;
             Ok(results)
@@ -261,6 +267,14 @@ impl BenchArgs {
         }
         Ok(())
     }
+}
+
+/// How far the normals of each scheme are from the limit surface's, where it has patches.
+fn normal_errors(subject: &Subject) -> Result<BTreeMap<String, f64>, CliError> {
+    let options = ErrorOptions { refine: subject.refine, samples: 9, nearest: 0 };
+    let report = surface_errors(&subject.mesh, &Scheme::ALL, &options)?;
+    let measured = report.schemes.into_iter().filter_map(|(scheme, errors)| Some((scheme, errors.ok()?)));
+    Ok(measured.map(|(scheme, errors)| (scheme.name().to_owned(), errors.all.normal.rms)).collect())
 }
 
 /// So many copies as a block that is as near to a cube as the count allows.

@@ -62,8 +62,11 @@ pub(super) struct MeshOut {
     pub faces: usize,
     /// Those that are drawn, by kind.
     pub patches: BTreeMap<String, u32>,
-    /// A picture as a `data:` address.
-    #[serde(skip)]
+    /// Of each scheme: root mean square of the angle to the limit surface's normal, in radians. Measured for reports.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub normal_error: BTreeMap<String, f64>,
+    /// A picture as a `data:` address. Made for reports.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thumbnail: Option<String>,
 }
 
@@ -197,7 +200,7 @@ impl Results {
                 value(row.geometry_ratio),
                 value(row.construction_ms),
                 row.first_use_ms().to_string(),
-                row.traffic_bytes[TOTAL].to_string(),
+                row.traffic_total().to_string(),
             ]))?;
         }
         Ok(csv.flush()?)
@@ -252,6 +255,10 @@ impl Row {
 
     pub(super) fn total_bytes(&self) -> u64 {
         self.bytes.get(TOTAL).copied().unwrap_or(0)
+    }
+
+    pub(super) fn traffic_total(&self) -> u64 {
+        self.traffic_bytes.get(TOTAL).copied().unwrap_or(0)
     }
 
     pub(super) fn first_use_ms(&self) -> f64 {
@@ -316,6 +323,7 @@ impl MeshOut {
             vertices: subject.mesh.vertex_count(),
             faces: subject.mesh.face_count(),
             patches: patches.into(),
+            normal_error: BTreeMap::new(),
             thumbnail: None,
         }
     }
