@@ -103,7 +103,7 @@ fn axis(range: Range<f64>) -> impl Ranged<ValueType = f64, FormatOption = Defaul
 /// Short, without zeros that say nothing.
 fn number(x: f64) -> String {
     match x {
-        x if x >= 1e5 || x < 1e-3 => format!("{x:.0e}"),
+        x if !(1e-3..1e5).contains(&x) => format!("{x:.0e}"),
         x if x >= 10.0 => format!("{x:.0}"),
         x => format!("{x:.3}").trim_end_matches('0').trim_end_matches('.').to_owned(),
     }
