@@ -8,6 +8,8 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+/// What the axis of tessellation factors says.
+const FACTOR: &str = "factor";
 const STYLE: &str = include_str!("style.css");
 
 pub(super) fn page(results: &Results, csv: &[u8], json: &str) -> Result<String, CliError> {
@@ -117,18 +119,23 @@ fn lines<'r>(rows: &[&'r Row], point: impl Fn(&'r Row) -> Option<(f64, f64)>) ->
             None => lines.push((row.label(), Line { style: style(row), points: vec![at] })),
         }
     }
+    for (_, line) in &mut lines {
+        line.points.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    }
     lines.into_iter().map(|(_, line)| line).collect()
 }
 
 fn plots(results: &Results) -> Result<Markup, CliError> {
     let rows = &results.rows;
     let mut figures: Vec<(String, String)> = Vec::new();
+    let factors = unique(rows, |row| row.factor);
+    let marks: Vec<f64> = factors.iter().map(|&factor| factor.into()).collect();
     let mut add = |title: String, x: &str, y: &str, lines: Vec<Line>| -> Result<(), CliError> {
-        figures.push((title, plot(x, y, &lines)?));
+        let marks = if x == FACTOR { &marks[..] } else { &[] };
+        figures.push((title, plot(x, marks, y, &lines)?));
         Ok(())
     };
     let (geometry, gpu) = ("ms a frame, geometry alone", "ms a frame, with pixels");
-    let factors = unique(rows, |row| row.factor);
     for (mesh, spacing) in unique(rows, |row| (&row.mesh, &row.spacing)) {
         let of: Vec<&Row> = rows.iter().filter(|row| (&row.mesh, &row.spacing) == (mesh, spacing)).collect();
         if factors.len() > 1 {
@@ -136,11 +143,11 @@ fn plots(results: &Results) -> Result<Markup, CliError> {
             let title = format!("{mesh}, {spacing} spacing");
             add(
                 format!("{title}: geometry"),
-                "factor",
+                FACTOR,
                 geometry,
                 lines(&of, |row| Some((x(row), row.geometry_ms.median))),
             )?;
-            add(format!("{title}: with pixels"), "factor", gpu, lines(&of, |row| Some((x(row), row.gpu_ms.median))))?;
+            add(format!("{title}: with pixels"), FACTOR, gpu, lines(&of, |row| Some((x(row), row.gpu_ms.median))))?;
         }
         let errors = results.meshes.iter().find(|m| m.name == *mesh).map(|m| &m.normal_error);
         if let Some(errors) = errors.filter(|errors| errors.values().any(|&e| e > 0.0)) {

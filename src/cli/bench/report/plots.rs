@@ -36,7 +36,9 @@ pub(super) const FLOOR: RGBColor = RGBColor(0x88, 0x88, 0x88);
 const SIZE: (u32, u32) = (560, 380);
 
 /// A plot with both axes logarithmic.
-pub(super) fn plot(x: &str, y: &str, lines: &[Line]) -> Result<String, CliError> {
+///
+/// Marks along x are at `marks`, or at round numbers if there are none.
+pub(super) fn plot(x: &str, marks: &[f64], y: &str, lines: &[Line]) -> Result<String, CliError> {
     let failed = |e: &dyn std::fmt::Display| CliError::Work(format!("the plot of {y} can't be drawn: {e}"));
     let mut svg = String::new();
     let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
@@ -45,7 +47,7 @@ pub(super) fn plot(x: &str, y: &str, lines: &[Line]) -> Result<String, CliError>
         .margin(12)
         .x_label_area_size(40)
         .y_label_area_size(56)
-        .build_cartesian_2d(axis(of(|p| p.0)), axis(of(|p| p.1)))
+        .build_cartesian_2d(axis(of(|p| p.0), marks), axis(of(|p| p.1), &[]))
         .map_err(|e| failed(&e))?;
     let font = ("sans-serif", 13).into_font();
     chart
@@ -86,10 +88,13 @@ fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
     low / 1.25..high * 1.25
 }
 
-/// A logarithmic axis with marks at round numbers: as many as are needed for three, or all there are.
-fn axis(range: Range<f64>) -> impl Ranged<ValueType = f64, FormatOption = DefaultFormatting> {
+/// A logarithmic axis with these marks, or with marks at round numbers: as many as are needed for three, or all there are.
+fn axis(range: Range<f64>, given: &[f64]) -> impl Ranged<ValueType = f64, FormatOption = DefaultFormatting> {
     const DECADES: [&[f64]; 4] =
         [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 5.0], &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0]];
+    if !given.is_empty() {
+        return range.log_scale().with_key_points(given.to_vec());
+    }
     let decades = range.start.log10().floor() as i32..=range.end.log10().floor() as i32;
     let marks = |steps: &[f64]| -> Vec<f64> {
         let all = decades.clone().flat_map(|decade| steps.iter().map(move |step| step * 10f64.powi(decade)));
@@ -100,12 +105,16 @@ fn axis(range: Range<f64>) -> impl Ranged<ValueType = f64, FormatOption = Defaul
     range.log_scale().with_key_points(enough)
 }
 
-/// Short, without zeros that say nothing.
+/// Two digits that count at least, without zeros that say nothing.
 fn number(x: f64) -> String {
-    match x {
-        x if !(1e-3..1e5).contains(&x) => format!("{x:.0e}"),
-        x if x >= 10.0 => format!("{x:.0}"),
-        x => format!("{x:.3}").trim_end_matches('0').trim_end_matches('.').to_owned(),
+    let decimals = (1.0 - x.log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{x:.decimals$}");
+    if x >= 1e5 {
+        format!("{x:.0e}")
+    } else if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
     }
 }
 
@@ -119,15 +128,15 @@ mod tests {
             style: LineStyle { colour: COLOURS[0], dashed },
             points: points.to_vec(),
         };
-        let svg = plot("factor", "ms", &[line(false, &[(4.0, 1.0), (8.0, 3.0)]), line(true, &[(4.0, 2.0)])]).unwrap();
+        let svg = plot("factor", &[4.0, 8.0], "ms", &[line(false, &[(4.0, 1.0), (8.0, 3.0)]), line(true, &[(4.0, 2.0)])]).unwrap();
         assert_eq!(svg.matches("<circle").count(), 3);
         assert!(svg.starts_with("<svg") && svg.contains("factor") && svg.trim_end().ends_with("</svg>"));
-        assert!(plot("factor", "ms", &[]).is_ok());
+        assert!(plot("factor", &[], "ms", &[]).is_ok());
     }
 
     #[test]
     fn numbers_are_short() {
-        let numbers = [0.05, 0.125, 1.0, 2.5, 10.0, 12.4, 1000.0, 1e6].map(number);
-        assert_eq!(numbers, ["0.05", "0.125", "1", "2.5", "10", "12", "1000", "1e6"]);
+        let numbers = [0.0025, 0.05, 0.12, 1.0, 2.5, 10.0, 12.4, 1000.0, 1e6].map(number);
+        assert_eq!(numbers, ["0.0025", "0.05", "0.12", "1", "2.5", "10", "12", "1000", "1e6"]);
     }
 }
