@@ -83,7 +83,7 @@
 //! * Neighbouring patches share their edge curve and tangent planes along it (G1; [`Scheme::Acc`]: shading normals).
 //!   The GPU evaluates the curve once for each patch: to the same bits with Gregory patches made by
 //!   [`Construction::TwoStage`], else to rounding. Normals agree to rounding.
-//! * The two constructions on the GPU ([`Construction`]) make the same control points but for rounding.
+//! * The constructions on the GPU ([`Construction`]) make the same control points but for rounding.
 //!
 //! # Where the formulas come from
 //!

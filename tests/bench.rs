@@ -80,18 +80,18 @@ fn the_bilinear_floor_is_the_control_mesh() {
 fn a_race_counts_what_was_drawn() {
     let headless = headless();
     let all = Contestant::all(&Path::ALL, &Scheme::ALL, &Construction::ALL);
-    let rows = race(&headless, BenchOptions { instances: 3, ..options() }, "cube", &all);
+    let rows = race(&headless, BenchOptions { instances: 3, passes: 2, ..options() }, "cube", &all);
     assert_eq!(rows.len(), 2 * all.len());
     for (row, contestant) in rows.iter().zip(all.iter().cycle()) {
         let n = row.factor as u64;
-        assert_eq!((row.contestant, row.patches), (*contestant, 18));
-        assert_eq!(row.triangles, Some(18 * 2 * n * n));
-        let evaluations = if contestant.path == Path::VertexBuffer { 0 } else { 18 * (n + 1) * (n + 1) };
+        assert_eq!((row.contestant, row.patches), (*contestant, 36));
+        assert_eq!(row.triangles, Some(36 * 2 * n * n));
+        let evaluations = if contestant.path == Path::VertexBuffer { 0 } else { 36 * (n + 1) * (n + 1) };
         assert_eq!(row.evaluations, Some(evaluations));
-        assert_eq!(row.traffic.vertices, 40 * 18 * (n + 1) * (n + 1));
+        assert_eq!(row.traffic.vertices, 40 * 36 * (n + 1) * (n + 1));
         let points = contestant.patches.map(|(scheme, _)| scheme.owned(ash_subdiv::topology::PatchKind::IrregularQuad));
         let points = points.unwrap_or(if contestant.path == Path::Bilinear { 1 } else { 0 }) as u64;
-        assert_eq!(row.traffic.control_points, 12 * 4 * points * 18);
+        assert_eq!(row.traffic.control_points, 12 * 4 * points * 36);
         assert_eq!(row.construction.is_some(), !contestant.path.is_floor());
         for series in [&row.gpu, &row.geometry] {
             assert!(series.device.len() == 6 && series.device.iter().all(|&ms| ms > 0.0));
@@ -123,5 +123,25 @@ fn contestants_that_cannot_are_left_out() {
     let few = Bench::new(&headless, BenchOptions { frames: 5, ..options() }).map(drop).unwrap_err();
     assert_eq!(few.to_string(), "frames of BenchOptions is 5: it must be at least 6");
     drop(bench);
+    headless.finish_silent();
+}
+
+#[test]
+fn cached_control_points_are_made_in_every_frame_that_is_timed() {
+    let headless = headless();
+    let cached = Contestant { patches: Some((Scheme::Gregory, Construction::Cached)), ..GREGORY };
+    let rows = race(&headless, BenchOptions { passes: 3, ..options() }, "creature-mixed", &[GREGORY, cached]);
+    let points = |row: &Row| row.bytes.iter().find(|(name, _)| *name == "control_points").map(|(_, bytes)| *bytes);
+    assert_eq!(points(&rows[0]), None);
+    let corners: u64 = {
+        use ash_subdiv::topology::PatchKind;
+        let subject = subject("creature-mixed");
+        PatchKind::ALL.map(|kind| u64::from(subject.patch_count(kind)) * kind.corners() as u64).iter().sum()
+    };
+    assert_eq!(points(&rows[1]), Some(12 * 5 * corners));
+    // Once a frame, whatever the number of passes: 64 invocations a group.
+    let counted = rows[1].computed.expect("lavapipe counts");
+    assert!(counted >= corners && counted < corners + 3 * 64, "{counted} for {corners}");
+    assert_eq!(rows[0].computed, Some(0));
     headless.finish_silent();
 }

@@ -36,7 +36,7 @@ impl Setup {
 /// on the chip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Traffic {
-    /// Tables, positions, vertices and indices, each byte read once an instance.
+    /// Tables, positions, vertices and indices, each byte read once an instance and pass.
     pub tables: u64,
     /// Control points that go from the control stage to the evaluation stage.
     pub control_points: u64,
@@ -105,6 +105,8 @@ pub(super) struct Lane<'a> {
     pub target: &'a OffscreenDesc,
     pub subject: &'a Subject,
     pub spacing: Spacing,
+    /// Calls of [`Drawable::cmd_draw`] in a frame.
+    pub passes: u32,
 }
 
 impl Contestant {

@@ -1,6 +1,7 @@
 //! Everything that is raced on one mesh, drawn in turns.
 
 use super::drawable::{Drawable, Frame, Lane, Pass, VERTEX_BYTES};
+use super::floors::device_buffer;
 use super::{BenchError, Contestant, Setup, Subject, Traffic};
 use crate::gpu::Spacing;
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Statistics};
@@ -21,6 +22,8 @@ pub struct BenchOptions {
     pub size: [u32; 2],
     /// Copies of the model that a frame draws, each with a transform of its own.
     pub instances: u32,
+    /// Passes of a frame, each of which draws all instances again, as for depth, shadows and the picture.
+    pub passes: u32,
     /// Frames of each contestant that count, at least [`FEWEST`].
     pub frames: u32,
     /// Frames of each contestant that go before and do not count.
@@ -28,13 +31,14 @@ pub struct BenchOptions {
 }
 
 impl Default for BenchOptions {
-    /// Factors 4, 8, 16 and 32, equal spacing, 1024 x 1024 pixels, one instance, 21 frames after 3.
+    /// Factors 4, 8, 16 and 32, equal spacing, 1024 x 1024 pixels, one instance, one pass, 21 frames after 3.
     fn default() -> Self {
         Self {
             factors: vec![4.0, 8.0, 16.0, 32.0],
             spacing: Spacing::Equal,
             size: [1024, 1024],
             instances: 1,
+            passes: 1,
             frames: 21,
             warm_up: 3,
         }
@@ -57,10 +61,12 @@ pub struct Row {
     pub contestant: Contestant,
     /// The factor.
     pub factor: f32,
-    /// Patches that a frame draws, in all instances.
+    /// Patches that a frame draws, in all instances and passes.
     pub patches: u64,
     /// Invocations of the evaluation stage in a frame; `None` if the device cannot count.
     pub evaluations: Option<u64>,
+    /// Invocations of compute shaders in a frame.
+    pub computed: Option<u64>,
     /// Triangles in a frame, before clipping.
     pub triangles: Option<u64>,
     /// Frames with pixels.
@@ -111,7 +117,11 @@ impl<'h> Bench<'h> {
     /// # Errors
     /// [`BenchError::BadOption`]; sizes that the device does not have, no memory.
     pub fn new(headless: &'h Headless, options: BenchOptions) -> Result<Self, BenchError> {
-        let least = [("frames", options.frames, FEWEST as u32), ("instances", options.instances, 1)];
+        let least = [
+            ("frames", options.frames, FEWEST as u32),
+            ("instances", options.instances, 1),
+            ("passes", options.passes, 1),
+        ];
         if let Some(&(what, given, least)) = least.iter().find(|(_, given, least)| given < least) {
             return Err(BenchError::BadOption { what, given, least });
         }
@@ -120,7 +130,8 @@ impl<'h> Bench<'h> {
             Offscreen::new(headless, &OffscreenDesc::new(width, height))?,
             Offscreen::new(headless, &OffscreenDesc::new(16, 16))?,
         ];
-        // The first submission of a device takes longer than those after it.
+        // The first submissions of a device take longer than those after them.
+        device_buffer(headless, "warm-up", vk::BufferUsageFlags::STORAGE_BUFFER, &[0u32])?;
         for target in &targets {
             // SAFETY: the command buffer is being recorded, outside rendering.
             headless.submit(|cmd| unsafe {
@@ -154,8 +165,7 @@ impl<'h> Bench<'h> {
         mut tell: impl FnMut(Event),
     ) -> Result<(), BenchError> {
         let rounds = u64::from(self.options.frames + self.options.warm_up);
-        let lane =
-            Lane { headless: self.headless, target: self.targets[0].desc(), subject, spacing: self.options.spacing };
+        let lane = self.lane(subject);
         let scene = Scene::new(subject, &self.options);
         let mut runners = Vec::new();
         for &contestant in contestants {
@@ -194,9 +204,8 @@ impl<'h> Bench<'h> {
     /// As [`Bench::race`], but a contestant that would be left out is an error here.
     pub fn picture(&self, subject: &Subject, contestant: Contestant, factor: f32) -> Result<Vec<u8>, BenchError> {
         let target = &self.targets[0];
-        let lane = Lane { headless: self.headless, target: target.desc(), subject, spacing: self.options.spacing };
         let scene = Scene::new(subject, &self.options);
-        let mut drawable = contestant.open(lane)?;
+        let mut drawable = contestant.open(self.lane(subject))?;
         drawable.set_factor(factor)?;
         // SAFETY: the command buffer is being recorded, outside rendering; each submission is waited for.
         self.headless.try_submit(|cmd| unsafe { drawable.cmd_prepare(cmd) })?;
@@ -204,6 +213,11 @@ impl<'h> Bench<'h> {
             // SAFETY: inside rendering that fits the target, after the frame was prepared.
             unsafe { drawable.cmd_draw(cmd, &scene.frame(factor, Pass::Pixels)) }
         })
+    }
+
+    fn lane<'a>(&'a self, subject: &'a Subject) -> Lane<'a> {
+        let BenchOptions { spacing, passes, .. } = self.options;
+        Lane { headless: self.headless, target: self.targets[0].desc(), subject, spacing, passes }
     }
 
     fn runner<'a>(&self, contestant: Contestant, lane: Lane<'a>, scene: &Scene) -> Result<Runner<'a>, BenchError> {
@@ -278,9 +292,11 @@ impl<'h> Bench<'h> {
         // SAFETY: as the caller promises.
         unsafe {
             drawable.cmd_prepare(cmd)?;
-            target.cmd_begin(cmd, [0.0; 4]);
-            drawable.cmd_draw(cmd, frame)?;
-            target.cmd_end(cmd);
+            for _ in 0..self.options.passes {
+                target.cmd_begin(cmd, [0.0; 4]);
+                drawable.cmd_draw(cmd, frame)?;
+                target.cmd_end(cmd);
+            }
         }
         Ok(())
     }
@@ -304,19 +320,20 @@ impl<'h> Bench<'h> {
         let count = |of: fn(&Statistics) -> u64| counted.as_ref().map(of);
         let evaluations = count(|s| s.evaluation_invocations);
         let vertices = count(|s| s.evaluation_invocations.max(s.vertex_invocations)).unwrap_or(0);
-        let instances = u64::from(self.options.instances);
+        let times = u64::from(self.options.instances) * u64::from(self.options.passes);
         let bytes = drawable.bytes();
         let traffic = Traffic {
-            tables: instances * bytes.iter().map(|(_, bytes)| bytes).sum::<u64>(),
-            control_points: instances * drawable.control_point_bytes(),
+            tables: times * bytes.iter().map(|(_, bytes)| bytes).sum::<u64>(),
+            control_points: times * drawable.control_point_bytes(),
             vertices: VERTEX_BYTES * vertices,
         };
         let [gpu, geometry] = <[Series; 2]>::try_from(series).unwrap_or_default();
         Ok(Row {
             contestant: runner.contestant,
             factor,
-            patches: instances * subject.patches(),
+            patches: times * subject.patches(),
             evaluations,
+            computed: count(|s| s.compute_invocations),
             triangles: count(|s| s.clipping_invocations),
             gpu,
             geometry,

@@ -24,13 +24,13 @@ pub(super) struct Surface {
 
 impl Surface {
     pub(super) fn new(lane: Lane, scheme: Scheme, construction: Construction) -> Result<Self, BenchError> {
-        let Lane { headless, target, subject, spacing } = lane;
+        let Lane { headless, target, subject, spacing, passes } = lane;
         let name = subject.name.clone();
         let model_options = ModelOptions { name, scheme, construction, spacing, refine: subject.refine };
         let (tables, tables_ms) = build_tables(lane, &model_options)?;
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
-        let options = Options { frames_in_flight: 1, views_per_frame: 1, styles, ..Options::default() };
+        let options = Options { frames_in_flight: 1, views_per_frame: passes, styles, ..Options::default() };
         let render_target = Target::dynamic(target.color, target.depth, target.samples);
         let positions = subject.mesh.positions_f32();
         let spare = tables.clone();
@@ -69,6 +69,8 @@ fn build_tables(lane: Lane, options: &ModelOptions) -> Result<(ModelTables, f64)
 
 impl Drawable for Surface {
     unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer) -> Result<(), BenchError> {
+        // Frames are timed as if the vertices had moved.
+        self.renderer.forget_control_points(self.model)?;
         // SAFETY: as the caller promises.
         unsafe { self.renderer.cmd_prepare(cmd, 0)? };
         Ok(())

@@ -73,6 +73,11 @@ impl Scheme {
         }
     }
 
+    /// How many control points the corners of some kind of patch own, at most.
+    pub fn most_owned(self) -> usize {
+        PatchKind::ALL.into_iter().map(|kind| self.owned(kind)).max().unwrap_or(0)
+    }
+
     /// How many control points a patch has. Each is owned by one corner.
     pub fn points(self, kind: PatchKind) -> usize {
         kind.corners() * self.owned(kind)

@@ -1,13 +1,16 @@
 //! A model on the GPU.
 
+use super::cached::CachedPipelines;
 use super::pipelines::{MODEL_BINDINGS, Pipelines};
 use super::stages::PatchStages;
-use super::{Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
+use super::{Construction, Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::topology::PatchKind;
 use ash::vk;
 use std::sync::Arc;
 
+/// The binding of the control points that the cached construction keeps.
+const CONTROL_POINTS: usize = 4;
 /// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
 
@@ -21,6 +24,10 @@ pub(super) struct Model {
     /// All tables of the construction and the texture coordinates, one after the other.
     table_buffer: Buffer,
     positions: Buffer,
+    /// What the cached construction keeps.
+    control_points: Option<Buffer>,
+    /// Whether it is out of date.
+    stale: bool,
     /// A copy of the positions for each frame that may be on the device.
     staged_positions: Buffer,
     /// Frames whose staged positions are new since they were last copied.
@@ -90,6 +97,12 @@ impl Model {
         let position_bytes = 12 * tables.stored_vertices() as u64;
         check("positions", position_bytes)?;
         let positions = device_buffer(context, &format!("{name}: positions"), position_bytes, storage)?;
+        let bytes = tables.control_point_bytes();
+        check("control points", bytes)?;
+        let control_points = match tables.construction() {
+            Construction::Cached => Some(device_buffer(context, &format!("{name}: control points"), bytes, storage)?),
+            _ => None,
+        };
         let frames = u64::from(options.frames_in_flight);
         let staged_name = format!("{name}: positions to copy");
         let mut staged_positions = upload_buffer(context, &staged_name, position_bytes * frames)?;
@@ -119,7 +132,7 @@ impl Model {
         };
 
         let (pool, set) = descriptor_set(context, pipelines.model_layout.raw(), name)?;
-        write_set(context, set, &positions, &table_buffer, &ranges);
+        write_set(context, set, &positions, &table_buffer, &ranges, control_points.as_ref());
         let ModelOptions { scheme, construction, spacing, .. } = *model_options;
         let stages = |kind| PatchStages { scheme, kind, construction, spacing };
         Ok(Self {
@@ -130,6 +143,8 @@ impl Model {
             _pool: pool,
             table_buffer,
             positions,
+            control_points,
+            stale: false,
             staged_positions,
             dirty: vec![false; options.frames_in_flight as usize],
             control,
@@ -157,6 +172,27 @@ impl Model {
         self.dirty[frame as usize] || !self.prepared
     }
 
+    /// Whether control points are to be computed in this frame.
+    pub(super) fn needs_points(&self, frame: u32) -> bool {
+        self.control_points.is_some() && (self.stale || self.needs_copies(frame))
+    }
+
+    /// Has the control points computed anew in the next frame, even though nothing moved.
+    #[cfg(all(feature = "measure", feature = "headless"))]
+    pub(super) fn forget_points(&mut self) {
+        self.stale = true;
+    }
+
+    /// Records the computation of the control points.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, after the copies; `pipelines` have those of the model's kinds.
+    pub(super) unsafe fn cmd_compute(&mut self, pipelines: &CachedPipelines, cmd: vk::CommandBuffer) {
+        self.stale = false;
+        // SAFETY: as the caller promises.
+        unsafe { pipelines.cmd_compute(cmd, self.set, &self.stages, &self.tables.plan) };
+    }
+
     /// Records the copies that are due, and gives away the staging buffers to be kept until the frame is done.
     ///
     /// # Safety
@@ -182,6 +218,7 @@ impl Model {
 
     pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
         usage.tables += self.table_buffer.size();
+        usage.control_points += self.control_points.as_ref().map_or(0, Buffer::size);
         usage.positions += self.positions.size();
         usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
         let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
@@ -230,6 +267,7 @@ fn write_set(
     positions: &Buffer,
     tables: &Buffer,
     ranges: &[(u64, u64)],
+    control_points: Option<&Buffer>,
 ) {
     let mut infos = vec![positions.descriptor()];
     infos.extend(ranges.iter().map(|&(offset, range)| vk::DescriptorBufferInfo {
@@ -237,6 +275,9 @@ fn write_set(
         offset,
         range,
     }));
+    if let Some(control_points) = control_points {
+        infos[CONTROL_POINTS] = control_points.descriptor();
+    }
     let writes: Vec<_> = (0..)
         .zip(infos.chunks(1))
         .map(|(binding, info)| {

@@ -1,5 +1,6 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
+use super::cached::CachedPipelines;
 use super::stages::PatchStages;
 use super::{ColorEncoding, Construction, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
@@ -49,6 +50,8 @@ pub(super) struct Pipelines {
     pub view_layout: Owned<vk::DescriptorSetLayout>,
     pub model_layout: Owned<vk::DescriptorSetLayout>,
     pub layout: Owned<vk::PipelineLayout>,
+    /// For what the cached construction computes.
+    pub cached: CachedPipelines,
     made: HashMap<PipelineKey, Owned<vk::Pipeline>>,
 }
 
@@ -60,7 +63,8 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
-/// Storage buffers of a model: positions, four tables of the construction, texture coordinates.
+/// Storage buffers of a model: positions, four tables of the construction (the last may be cached control points), texture
+/// coordinates.
 pub(super) const MODEL_BINDINGS: usize = 6;
 
 impl Pipelines {
@@ -71,7 +75,8 @@ impl Pipelines {
         capture: Capture,
     ) -> Result<Self, GpuError> {
         let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
-        let model = [(vk::DescriptorType::STORAGE_BUFFER, STAGES); MODEL_BINDINGS];
+        let model_stages = STAGES | vk::ShaderStageFlags::COMPUTE;
+        let model = [(vk::DescriptorType::STORAGE_BUFFER, model_stages); MODEL_BINDINGS];
         let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
         let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;
         let mut sets = vec![view_layout.raw(), model_layout.raw()];
@@ -79,6 +84,7 @@ impl Pipelines {
         let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];
         // SAFETY: the layouts are of this device; for the caller's own that is part of the contract of `Renderer::new`.
         let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
+        let cached = CachedPipelines::new(context, [view_layout.raw(), model_layout.raw()], options.pipeline_cache)?;
         Ok(Self {
             context: context.clone(),
             target: target.clone(),
@@ -89,6 +95,7 @@ impl Pipelines {
             view_layout,
             model_layout,
             layout,
+            cached,
             made: HashMap::new(),
         })
     }
@@ -103,6 +110,9 @@ impl Pipelines {
 
     /// Makes what these patches need in every style.
     pub(super) fn make(&mut self, patches: &[PatchStages]) -> Result<(), GpuError> {
+        for stages in patches.iter().filter(|stages| stages.construction == Construction::Cached) {
+            self.cached.make(stages.scheme, stages.kind)?;
+        }
         for style in 0..self.styles.len() {
             if self.styles[style].geometry != Geometry::Surface {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Control })?;
@@ -132,11 +142,16 @@ impl Pipelines {
                 let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
                 let vertex = match patch.construction {
                     Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
-                    Construction::Stencil => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
+                    Construction::Stencil | Construction::Cached => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
                 };
+                let stride = [Specialization::uint(0, patch.scheme.most_owned() as u32)];
+                let mut control = Shader::tess_control(patch.control(self.capture, self.texcoords)?);
+                if patch.construction == Construction::Cached {
+                    control = control.specialized(&stride);
+                }
                 let stages = [
                     vertex,
-                    Shader::tess_control(patch.control(self.capture, self.texcoords)?),
+                    control,
                     Shader::tess_evaluation(patch.evaluation(self.capture, self.texcoords)?),
                     fragment(style, &encode),
                 ];

@@ -31,7 +31,7 @@ impl PatchStages {
     pub(super) fn input_points(self) -> u32 {
         match self.construction {
             Construction::TwoStage => self.kind.corners() as u32,
-            Construction::Stencil => 1,
+            Construction::Stencil | Construction::Cached => 1,
         }
     }
 
@@ -40,6 +40,7 @@ impl PatchStages {
         let mut name = match self.construction {
             Construction::TwoStage => format!("CONSTRUCT_{file}_TESC"),
             Construction::Stencil => format!("CONSTRUCT_STENCIL_TESC_OWNED_{}", self.scheme.owned(self.kind)),
+            Construction::Cached => format!("CONSTRUCT_CACHED_TESC_OWNED_{}", self.scheme.owned(self.kind)),
         };
         if self.kind == PatchKind::Triangle {
             name += "_TRIANGLE";

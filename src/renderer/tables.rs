@@ -13,6 +13,8 @@ use std::borrow::Cow;
 pub struct ModelTables {
     pub(super) plan: PatchPlan,
     pub(super) construction: ConstructionTable,
+    /// Whether the control points are kept between draws, and how many a corner has room for then.
+    cached: Option<usize>,
     pub(super) texcoords: Option<Vec<[f32; 2]>>,
     /// Pairs of control vertices: the edges of the caller's mesh.
     pub(super) control_edges: Vec<u32>,
@@ -48,13 +50,16 @@ impl ModelTables {
         plan.check(&topology, scheme)?;
         let construction = match options.construction {
             Construction::TwoStage => ConstructionTable::TwoStage(RingTable::new(&topology, &plan, scheme)),
-            Construction::Stencil => ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan, scheme)?),
+            Construction::Stencil | Construction::Cached => {
+                ConstructionTable::Stencil(StencilTable::new(&topology, &mut plan, scheme)?)
+            }
         };
         Ok(Self {
             texcoords: plan.texcoords(&topology),
             origins: plan.patches().iter().map(|patch| prepared.origin(patch.face)).collect(),
             plan,
             construction,
+            cached: (options.construction == Construction::Cached).then(|| scheme.most_owned()),
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
@@ -104,8 +109,15 @@ impl ModelTables {
     pub(super) fn construction(&self) -> Construction {
         match self.construction {
             ConstructionTable::TwoStage(_) => Construction::TwoStage,
+            ConstructionTable::Stencil(_) if self.cached.is_some() => Construction::Cached,
             ConstructionTable::Stencil(_) => Construction::Stencil,
         }
+    }
+
+    /// Bytes of the control points that the cached construction keeps.
+    pub(super) fn control_point_bytes(&self) -> u64 {
+        let corners = PatchKind::ALL.map(|kind| u64::from(self.plan.count(kind)) * kind.corners() as u64);
+        12 * self.cached.unwrap_or(0) as u64 * corners.iter().sum::<u64>()
     }
 
     /// How many patches of a kind there are.
@@ -137,10 +149,14 @@ impl ModelTables {
                 ("stencil_types", bytes(&t.types)),
             ]),
         }
+        if self.cached.is_some() {
+            all.push(("control_points", self.control_point_bytes()));
+        }
         all
     }
 
-    /// The arrays behind bindings 1 to 4 of set 1, in order, with their names.
+    /// The arrays behind bindings 1 to 4 of set 1, in order, with their names. The cached construction has its control
+    /// points at the last.
     pub(super) fn bindings(&self) -> [(&'static str, &[u8]); 4] {
         use bytemuck::cast_slice;
         match &self.construction {

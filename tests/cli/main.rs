@@ -135,7 +135,7 @@ fn notices_go_to_standard_error() {
 fn patches_are_the_same_from_all_makers() {
     for (shape, refine) in [("valences", 0), ("creature-mixed", 0), ("polygons", 0), ("fan", 1)] {
         let of = |maker| json(&format!("patches --shape {shape} --refine {refine} --construction {maker}"));
-        let (cpu, two_stage, stencil) = (of("cpu"), of("two-stage"), of("stencil"));
+        let (cpu, two_stage, stencil, cached) = (of("cpu"), of("two-stage"), of("stencil"), of("cached"));
         assert_eq!(keys(&cpu), ["construction", "patches"]);
         let patches = cpu["patches"].as_array().unwrap();
         let places: Vec<_> =
@@ -150,7 +150,7 @@ fn patches_are_the_same_from_all_makers() {
                 other => panic!("{other}"),
             };
             assert_eq!(length(&patch["points"]), count);
-            for other in [&two_stage, &stencil] {
+            for other in [&two_stage, &stencil, &cached] {
                 let other = &other["patches"][i];
                 for key in ["face", "sub", "kind"] {
                     assert_eq!(patch[key], other[key]);

@@ -142,7 +142,7 @@ impl Kit {
 }
 
 /// A buffer on the device with this in it.
-fn device_buffer<T: NoUninit>(
+pub(super) fn device_buffer<T: NoUninit>(
     headless: &Headless,
     name: &str,
     usage: vk::BufferUsageFlags,

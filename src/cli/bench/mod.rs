@@ -58,6 +58,9 @@ pub(super) struct BenchArgs {
     /// Draw the model this many times, side by side, with a transform each.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     instances: Option<u32>,
+    /// Draw all again in this many passes of a frame, as for depth and shadows; cached control points are made once.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
+    passes: u32,
     /// Make one large mesh of this many copies; several counts with commas, to see how time grows.
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     replicate: Vec<u32>,
@@ -208,6 +211,7 @@ impl BenchArgs {
             spacing: Spacing::Equal,
             size: self.size,
             instances: self.instances.or(self.preset.map(|p| p.instances)).unwrap_or(1),
+            passes: self.passes,
             frames: self.frames,
             warm_up: self.warm_up,
         };

@@ -50,6 +50,7 @@ pub(super) struct DeviceOut {
 pub(super) struct OptionsOut {
     pub size: [u32; 2],
     pub instances: u32,
+    pub passes: u32,
     pub frames: u32,
     pub warm_up: u32,
     pub patches: String,
@@ -141,6 +142,7 @@ impl Results {
             options: OptionsOut {
                 size: options.size,
                 instances: options.instances,
+                passes: options.passes,
                 frames: options.frames,
                 warm_up: options.warm_up,
                 patches: patches.name().to_owned(),

@@ -68,6 +68,7 @@ fn facts(results: &Results) -> Markup {
                 (options.frames) " of each row, after " (options.warm_up) " that do not count; "
                 (width) " x " (height) " pixels"
                 @if options.instances > 1 { "; " (options.instances) " instances" }
+                @if options.passes > 1 { "; " (options.passes) " passes a frame" }
                 @if options.patches != "all" { "; " (options.patches) " patches only" }
             }
             dt { "Command" } dd { code { (results.command) } }

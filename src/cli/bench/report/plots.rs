@@ -128,7 +128,9 @@ mod tests {
             style: LineStyle { colour: COLOURS[0], dashed },
             points: points.to_vec(),
         };
-        let svg = plot("factor", &[4.0, 8.0], "ms", &[line(false, &[(4.0, 1.0), (8.0, 3.0)]), line(true, &[(4.0, 2.0)])]).unwrap();
+        let svg =
+            plot("factor", &[4.0, 8.0], "ms", &[line(false, &[(4.0, 1.0), (8.0, 3.0)]), line(true, &[(4.0, 2.0)])])
+                .unwrap();
         assert_eq!(svg.matches("<circle").count(), 3);
         assert!(svg.starts_with("<svg") && svg.contains("factor") && svg.trim_end().ends_with("</svg>"));
         assert!(plot("factor", &[], "ms", &[]).is_ok());
