@@ -112,6 +112,23 @@ pub fn change(old: &[f64], new: &[f64]) -> Option<Change> {
     Some(Change { ratio, confidence })
 }
 
+/// The power of `x` by which `y` grows: the slope of a straight line through their logarithms, by least squares.
+///
+/// `None` with fewer than two different `x`, or where one of either is not above zero.
+pub fn growth(points: &[(f64, f64)]) -> Option<f64> {
+    if points.iter().any(|&(x, y)| !(x > 0.0 && y > 0.0)) {
+        return None;
+    }
+    let count = points.len() as f64;
+    let logs = || points.iter().map(|(x, y)| (x.ln(), y.ln()));
+    let (x, y) = logs().fold((0.0, 0.0), |sum, (x, y)| (sum.0 + x / count, sum.1 + y / count));
+    let (both, square) = logs().fold((0.0, 0.0), |sum, at| {
+        let (dx, dy) = (at.0 - x, at.1 - y);
+        (sum.0 + dx * dy, sum.1 + dx * dx)
+    });
+    (square > 0.0).then(|| both / square)
+}
+
 /// The sum of `t^3 - t` over groups of `t` equal values.
 fn tie_correction(old: &[f64], new: &[f64]) -> Option<f64> {
     let all = sorted([old, new].concat())?;
@@ -185,6 +202,16 @@ mod tests {
         assert_eq!((equal.confidence, equal.ratio.value), (0.0, 1.0));
         assert_eq!(change(&[1.0; 8], &[0.0; 8]), None);
         assert_eq!(change(&[1.0; 8], &[1.0; 5]), None);
+    }
+
+    #[test]
+    fn growth_is_the_power() {
+        let points = |power: f64| [1.0, 8.0, 64.0, 100.0].map(|x: f64| (x, 3.0 * x.powf(power)));
+        for power in [0.0, 1.0, 1.7] {
+            assert!((growth(&points(power)).unwrap() - power).abs() < 1e-12);
+        }
+        assert_eq!(growth(&[(2.0, 1.0), (2.0, 3.0)]), None);
+        assert_eq!(growth(&[(2.0, 1.0), (3.0, 0.0)]), None);
     }
 
     #[test]

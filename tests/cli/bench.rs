@@ -85,6 +85,9 @@ fn bench_writes_tables_and_csv() {
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
     assert_eq!((lines.len(), lines[0][..3].join(" ")), (7, "mesh scheme construction".into()));
     assert_eq!((lines[4][0], lines[4][6]), ("cube x4", "24"));
+    let text = run(&format!("bench {SMALL} {few} --replicate 1,4"));
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert_eq!(text.split("\ntime grows as patches^").nth(1).map(|grown| grown.lines().count()), Some(4), "{text}");
 }
 
 #[test]
@@ -99,7 +102,7 @@ fn bench_draws_subsets_and_files() {
     let output = command.args(SMALL.split(' ')).arg(&cube).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     // Commas in names are quoted.
-    assert!(text.lines().nth(1).unwrap().starts_with(&format!("\"{}\",acc,stencil", cube.display())), "{text}");
+    assert!(text.lines().nth(1).unwrap().starts_with(&"\"a cube, of mine.obj\",acc,stencil"), "{text}");
     fails("bench --shape torus --patches irregular", 1, "torus: it has no irregular patches: choose others");
 }
 

@@ -146,6 +146,7 @@ pub(super) fn run(args: &BenchArgs, json: bool) -> Result<(), CliError> {
     if args.results.is_some() {
         text::rows(&results.rows)?;
     }
+    text::grown(&results.rows)?;
     text::published(args.preset, &results.published)?;
     results.changes.as_deref().map_or(Ok(()), text::changes)
 }
@@ -180,7 +181,11 @@ impl BenchArgs {
     fn subjects(&self, patches: Subset) -> Result<Vec<Subject>, CliError> {
         let mut meshes: Vec<(String, ControlMesh)> = Vec::new();
         for path in &self.mesh {
-            meshes.push((path.display().to_string(), read(path, &ReadOptions::default())?));
+            // Without its folder, where that is enough.
+            let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
+            let alone = self.mesh.iter().filter(|other| name(other) == name(path)).count() == 1;
+            let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
+            meshes.push((name, read(path, &ReadOptions::default())?));
         }
         let creature = ["creature".to_owned()];
         for name in if self.mesh.is_empty() && self.shape.is_empty() { &creature } else { &self.shape[..] } {

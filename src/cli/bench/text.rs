@@ -5,6 +5,7 @@ use super::super::output::{Table, with_stdout};
 use super::compare::Change;
 use super::presets::{Beside, Preset};
 use super::results::{Interval, Row, Times};
+use ash_subdiv::measure::statistics::growth;
 
 /// The rows of one mesh and factor after another.
 pub(super) fn rows(rows: &[Row]) -> Result<(), CliError> {
@@ -50,6 +51,27 @@ fn time(Times { median, mad, .. }: Times) -> String {
 
 fn ratio(interval: Option<Interval>) -> String {
     interval.map_or("-".into(), |Interval { value, low, high }| format!("{value:.3} ({low:.2} to {high:.2})"))
+}
+
+/// How time grows with patches, for each that was measured on meshes of several sizes.
+pub(super) fn grown(rows: &[Row]) -> Result<(), CliError> {
+    let mut table = Table::new(&[4, 5, 6]);
+    table.row([&"time grows as patches^", &"scheme", &"construction", &"path", &"factor", &"geometry", &"gpu"]);
+    let mut seen = Vec::new();
+    for row in rows {
+        let key = |row: &Row| (row.label(), row.spacing.clone(), row.factor.to_string());
+        if seen.contains(&key(row)) {
+            continue;
+        }
+        seen.push(key(row));
+        let same = rows.iter().filter(|other| key(other) == key(row));
+        let points = |ms: fn(&Row) -> f64| same.clone().map(|row| (row.patches as f64, ms(row))).collect::<Vec<_>>();
+        let power = |ms| growth(&points(ms)).map(|power| format!("{power:.2}"));
+        if let (Some(geometry), Some(gpu)) = (power(|row| row.geometry_ms.median), power(|row| row.gpu_ms.median)) {
+            table.row([&row.spacing, &row.scheme, &row.construction, &row.path, &row.factor, &geometry, &gpu]);
+        }
+    }
+    if table.is_empty() { Ok(()) } else { table.print() }
 }
 
 /// What a paper published beside what was measured.

@@ -4,6 +4,7 @@ use super::super::super::error::CliError;
 use super::super::results::{Interval, MeshOut, Results, Row, Times};
 use super::plots::{COLOURS, FLOOR, Line, LineStyle, plot};
 use ash_subdiv::Scheme;
+use ash_subdiv::measure::statistics::growth;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -170,7 +171,9 @@ fn plots(results: &Results) -> Result<Markup, CliError> {
             let of: Vec<&Row> =
                 rows.iter().filter(|row| row.factor == factor && row.spacing == rows[0].spacing).collect();
             let points = lines(&of, |row| Some((row.patches as f64, row.geometry_ms.median)));
-            add(format!("Growth at factor {factor}"), "patches", geometry, points)?;
+            let power = points.first().and_then(|line| growth(&line.points));
+            let power = power.map_or_else(String::new, |power| format!(": {} as patches^{power:.2}", of[0].label()));
+            add(format!("Growth at factor {factor}{power}"), "patches", geometry, points)?;
         }
     }
     let legend = unique(rows, Row::label);
