@@ -102,7 +102,7 @@ fn bench_draws_subsets_and_files() {
     let output = command.args(SMALL.split(' ')).arg(&cube).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     // Commas in names are quoted.
-    assert!(text.lines().nth(1).unwrap().starts_with(&"\"a cube, of mine.obj\",acc,stencil"), "{text}");
+    assert!(text.lines().nth(1).unwrap().starts_with("\"a cube, of mine.obj\",acc,stencil"), "{text}");
     fails("bench --shape torus --patches irregular", 1, "torus: it has no irregular patches: choose others");
 }
 
