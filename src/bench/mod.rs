@@ -20,13 +20,18 @@
 mod drawable;
 mod error;
 mod floors;
+mod options;
 mod race;
+mod row;
+mod scene;
 mod subject;
 mod surface;
 
 pub use drawable::{Setup, Traffic};
 pub use error::BenchError;
-pub use race::{Bench, BenchOptions, Event, Row, Series};
+pub use options::BenchOptions;
+pub use race::{Bench, Event};
+pub use row::{Row, Series};
 pub use subject::{Subject, Subset};
 
 use crate::patch::Scheme;

@@ -2,87 +2,12 @@
 
 use super::drawable::{Drawable, Frame, Lane, Pass, VERTEX_BYTES};
 use super::floors::device_buffer;
-use super::{BenchError, Contestant, Setup, Subject, Traffic};
-use crate::gpu::Spacing;
+use super::scene::Scene;
+use super::{BenchError, BenchOptions, Contestant, Row, Series, Setup, Subject, Traffic};
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Statistics};
 use crate::measure::statistics::{Estimate, FEWEST, paired_difference};
-use crate::renderer::{TableBytes, View};
 use ash::vk;
-use glam::{DVec3, Mat4};
 use std::time::Duration;
-
-/// How to measure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BenchOptions {
-    /// Tessellation factors, from 1 up, of all edges and insides.
-    pub factors: Vec<f32>,
-    /// Where the tessellator puts its vertices.
-    pub spacing: Spacing,
-    /// Pixels of the picture.
-    pub size: [u32; 2],
-    /// Copies of the model that a frame draws, each with a transform of its own.
-    pub instances: u32,
-    /// Passes of a frame, each of which draws all instances again, as for depth, shadows and the picture.
-    pub passes: u32,
-    /// Frames of each contestant that count, at least [`FEWEST`].
-    pub frames: u32,
-    /// Frames of each contestant that go before and do not count.
-    pub warm_up: u32,
-}
-
-impl Default for BenchOptions {
-    /// Factors 4, 8, 16 and 32, equal spacing, 1024 x 1024 pixels, one instance, one pass, 21 frames after 3.
-    fn default() -> Self {
-        Self {
-            factors: vec![4.0, 8.0, 16.0, 32.0],
-            spacing: Spacing::Equal,
-            size: [1024, 1024],
-            instances: 1,
-            passes: 1,
-            frames: 21,
-            warm_up: 3,
-        }
-    }
-}
-
-/// Frame by frame, in milliseconds.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Series {
-    /// On the device, from the first command to the last.
-    pub device: Vec<f64>,
-    /// On the host's clock, with recording, submission and the wait for the fence.
-    pub host: Vec<f64>,
-}
-
-/// What one contestant did at one factor.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// Who.
-    pub contestant: Contestant,
-    /// The factor.
-    pub factor: f32,
-    /// Patches that a frame draws, in all instances and passes.
-    pub patches: u64,
-    /// Invocations of the evaluation stage in a frame; `None` if the device cannot count.
-    pub evaluations: Option<u64>,
-    /// Invocations of compute shaders in a frame.
-    pub computed: Option<u64>,
-    /// Triangles in a frame, before clipping.
-    pub triangles: Option<u64>,
-    /// Frames with pixels.
-    pub gpu: Series,
-    /// Frames without rasterization.
-    pub geometry: Series,
-    /// What making the control points takes, in milliseconds (see the module); `None` without the bilinear floor, and for
-    /// floors.
-    pub construction: Option<Estimate>,
-    /// What went before the first frame.
-    pub setup: Setup,
-    /// Everything that drawing reads.
-    pub bytes: Vec<TableBytes>,
-    /// What a frame moves.
-    pub traffic: Traffic,
-}
 
 /// What a race tells while it runs.
 #[derive(Debug)]
@@ -347,32 +272,4 @@ impl<'h> Bench<'h> {
 
 fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
-}
-
-/// Where the instances stand, and who looks at them.
-struct Scene {
-    view: View,
-    instances: Vec<[[f32; 4]; 4]>,
-}
-
-impl Scene {
-    /// All of them in the picture, side by side.
-    fn new(subject: &Subject, options: &BenchOptions) -> Self {
-        const APART: f64 = 1.1;
-        let [low, high] = subject.mesh.bounds();
-        let step = (high - low) * APART;
-        let columns = f64::from(options.instances).sqrt().ceil() as u32;
-        let rows = options.instances.div_ceil(columns);
-        let place = |i: u32| DVec3::new(f64::from(i % columns), f64::from(i / columns), 0.0) * step;
-        let offsets: Vec<DVec3> = (0..options.instances).map(place).collect();
-        let far = DVec3::new(f64::from(columns - 1), f64::from(rows - 1), 0.0) * step;
-        let aspect = options.size[0] as f32 / options.size[1] as f32;
-        let view = View::framing([low, high + far], [-0.5, 0.3, 1.0], aspect);
-        let instances = offsets.iter().map(|offset| Mat4::from_translation(offset.as_vec3()).to_cols_array_2d());
-        Self { view, instances: instances.collect() }
-    }
-
-    fn frame(&self, factor: f32, pass: Pass) -> Frame<'_> {
-        Frame { view: &self.view, instances: &self.instances, factor, pass }
-    }
 }

@@ -1,6 +1,7 @@
 //! The compute passes of the cached construction.
 
 use super::stages::PatchStages;
+use super::{ModelId, Renderer};
 use crate::gpu::{
     ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout, shaders,
 };
@@ -109,5 +110,39 @@ impl CachedPipelines {
                 device.cmd_dispatch(cmd, groups.div_ceil(rows), rows, 1);
             }
         }
+    }
+}
+
+impl Renderer {
+    /// Records the computation of control points, for draws to read them.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, after the copies and the barrier that follows them. That and the one
+    /// before the copies have the computation wait for what read the points before.
+    pub(super) unsafe fn cmd_compute(&mut self, cmd: vk::CommandBuffer, models: &[ModelId]) {
+        if models.is_empty() {
+            return;
+        }
+        for id in models {
+            if let Some(model) = self.models.get_mut(id) {
+                // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
+                unsafe { model.cmd_compute(&self.pipelines.cached, cmd) };
+            }
+        }
+        let (compute, control) =
+            (vk::PipelineStageFlags::COMPUTE_SHADER, vk::PipelineStageFlags::TESSELLATION_CONTROL_SHADER);
+        let written = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ)];
+        let none = vk::DependencyFlags::empty();
+        // SAFETY: as the caller promises.
+        unsafe { self.context.device().cmd_pipeline_barrier(cmd, compute, control, none, &written, &[], &[]) };
+    }
+
+    /// Has a model's control points made anew in the next frame: the bench times them.
+    #[cfg(all(feature = "measure", feature = "headless"))]
+    pub(crate) fn forget_control_points(&mut self, id: ModelId) -> Result<(), super::Error> {
+        self.models.get_mut(&id).ok_or(super::Error::NoSuchModel { id })?.forget_points();
+        Ok(())
     }
 }

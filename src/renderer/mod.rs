@@ -294,28 +294,8 @@ impl Renderer {
                 }
             }
             device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
-            if computing.is_empty() {
-                return Ok(());
-            }
-            // The barrier before the copies has the computation wait, through them, for earlier readers of the points.
-            for id in &computing {
-                if let Some(model) = self.models.get_mut(id) {
-                    model.cmd_compute(&self.pipelines.cached, cmd);
-                }
-            }
-            let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
-            let after_compute = [vk::MemoryBarrier::default()
-                .src_access_mask(vk::AccessFlags::SHADER_WRITE)
-                .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE)];
-            device.cmd_pipeline_barrier(cmd, compute, readers, none, &after_compute, &[], &[]);
+            self.cmd_compute(cmd, &computing);
         }
-        Ok(())
-    }
-
-    /// Has a model's control points made anew in the next frame: the bench times them.
-    #[cfg(all(feature = "measure", feature = "headless"))]
-    pub(crate) fn forget_control_points(&mut self, id: ModelId) -> Result<(), Error> {
-        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.forget_points();
         Ok(())
     }
 

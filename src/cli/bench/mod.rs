@@ -2,13 +2,14 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `results` | what was measured, as it is written and read |
+//! | `results`, `facts` | what was measured, and on what, as it is written and read |
 //! | `text` | the same as tables |
 //! | `presets` | what papers measured |
 //! | `compare` | against results of another day |
 //! | `report` | the same as one page, with plots |
 
 mod compare;
+mod facts;
 mod presets;
 mod report;
 mod results;
@@ -24,8 +25,9 @@ use ash_subdiv::measure::{ErrorOptions, surface_errors};
 use ash_subdiv::mesh::{ReadOptions, read, replicate, shape};
 use ash_subdiv::{Construction, ControlMesh, Scheme, Spacing};
 use clap::Args;
+use facts::{DeviceOut, LeftOut, MeshOut};
 use presets::Preset;
-use results::{DeviceOut, LeftOut, MeshOut, Results, Row};
+use results::{Results, Row};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -107,8 +109,12 @@ set-up:       tables and upload, without pipelines.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
 
-JSON: program, command, measured, device, options, meshes, left_out, rows[mesh, scheme, construction, path, spacing,
-factor, patches, tes_invocations, triangles, gpu_ms{median, min, max, mad}, geometry_ms{..}, setup_ms, bytes{..}, ..].
+JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
+instances, passes, frames, warm_up, patches}, meshes[{name, vertices, faces, patches{kind}}], left_out[{mesh, scheme,
+construction, path, spacing, factor, why}], rows[{mesh, scheme, construction, path, spacing, factor, patches,
+tes_invocations, triangles, gpu_ms{median, min, max, mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low,
+high}, geometry_ratio{..}, construction_ms{..}, tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name},
+fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[], geometry[]}}], published[], changes[].
 
 Examples:
   subdiv bench --shape creature --factors 8,16

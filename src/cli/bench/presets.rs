@@ -57,7 +57,7 @@ use Scheme::{Acc, CPatch, Gregory, Pm};
 static PRESETS: [Preset; 5] = [
     Preset {
         name: "loop2009-table1",
-        title: "Loop, Schaefer, Ni, Castano 2009, table 1: 508 irregular quads",
+        title: "Loop, Schaefer, Ni, Castaño 2009, table 1: 508 irregular quads",
         note: "Published: milliseconds in a simulator of Direct3D 11 hardware, N taken as the factor. Measured: geometry alone.",
         schemes: &[Gregory, Acc, Pm],
         constructions: &[TwoStage, Stencil],
@@ -77,7 +77,7 @@ static PRESETS: [Preset; 5] = [
     },
     Preset {
         name: "loop2009-table2",
-        title: "Loop, Schaefer, Ni, Castano 2009, table 2: patches made every frame",
+        title: "Loop, Schaefer, Ni, Castaño 2009, table 2: patches made every frame",
         note: "Published: frames a second on a GTX 260, instanced grids of N points along an edge, taken as factor N - 1. \
                Measured: tessellation stages, with pixels.",
         schemes: &[Gregory, Acc, Pm],

@@ -1,7 +1,8 @@
 //! The page itself.
 
 use super::super::super::error::CliError;
-use super::super::results::{Interval, MeshOut, Results, Row, Times};
+use super::super::facts::MeshOut;
+use super::super::results::{GPU, Interval, Results, Row, Times};
 use super::plots::{COLOURS, FLOOR, Line, LineStyle, plot};
 use ash_subdiv::Scheme;
 use ash_subdiv::measure::statistics::growth;
@@ -230,7 +231,7 @@ fn rows(results: &Results) -> Markup {
                     th scope="row" { (row.label()) }
                     (time(row.gpu_ms)) (ratio(row.gpu_ratio))
                     (time(row.geometry_ms)) (ratio(row.geometry_ratio))
-                    @if let Some(&fence) = row.fence_ms.get(super::super::results::GPU) { (time(fence)) } @else { td {} }
+                    @if let Some(&fence) = row.fence_ms.get(GPU) { (time(fence)) } @else { td {} }
                     td { (row.construction_ms.map_or_else(String::new, |i| format!("{:.2}", i.value))) }
                     (milliseconds(row.tables_ms)) (milliseconds(row.upload_ms)) (milliseconds(row.first_use_ms()))
                     td { (format!("{:.1}", row.total_bytes() as f64 / 1024.0)) }
