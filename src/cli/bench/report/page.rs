@@ -3,9 +3,10 @@
 use super::super::super::error::CliError;
 use super::super::facts::MeshOut;
 use super::super::results::{GPU, Interval, Results, Row, Times};
-use super::plots::{COLOURS, FLOOR, Line, LineStyle, plot};
-use ash_subdiv::Scheme;
+use super::plots::{COLOURS, FLOOR, Line, LineStyle, MARKS, plot};
+use ash_subdiv::bench::Path;
 use ash_subdiv::measure::statistics::growth;
+use ash_subdiv::{Construction, Scheme};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -104,12 +105,13 @@ fn unique<'r, T: PartialEq>(rows: &'r [Row], of: impl Fn(&'r Row) -> T) -> Vec<T
     all
 }
 
-/// The same for a contestant in all plots: colours tell schemes apart, dashes constructions.
+/// The same for a contestant in all plots: colours tell schemes apart, marks constructions or floors.
 fn style(row: &Row) -> LineStyle {
     let scheme = Scheme::ALL.iter().position(|scheme| scheme.name() == row.scheme);
     let colour = scheme.map_or(FLOOR, |index| COLOURS[index % COLOURS.len()]);
-    let dashed = if scheme.is_none() { row.path != "bilinear" } else { row.construction != "two-stage" };
-    LineStyle { colour, dashed }
+    let construction = Construction::ALL.iter().position(|construction| construction.name() == row.construction);
+    let path = Path::ALL.iter().position(|path| path.name() == row.path);
+    LineStyle { colour, mark: MARKS[construction.or(path).unwrap_or(0) % MARKS.len()] }
 }
 
 /// A line for each contestant among these rows.
@@ -191,12 +193,13 @@ fn plots(results: &Results) -> Result<Markup, CliError> {
     })
 }
 
-fn swatch(LineStyle { colour, dashed }: LineStyle) -> Markup {
+fn swatch(LineStyle { colour, mark }: LineStyle) -> Markup {
     let colour = format!("#{:02x}{:02x}{:02x}", colour.0, colour.1, colour.2);
+    let dash = mark.dash.map(|[dash, gap]| format!("{dash} {gap}"));
     html! {
         svg width="34" height="12" aria-hidden="true" {
-            line x1="0" y1="6" x2="34" y2="6" stroke=(colour) stroke-width="2" stroke-dasharray=[dashed.then_some("5 4")] {}
-            circle cx="17" cy="6" r="4" stroke=(colour) stroke-width="2" fill=(if dashed { "none" } else { &colour }) {}
+            line x1="0" y1="6" x2="34" y2="6" stroke=(colour) stroke-width="2" stroke-dasharray=[dash] {}
+            circle cx="17" cy="6" r=(mark.radius) stroke=(colour) stroke-width="2" fill=(if mark.filled { &colour } else { "none" }) {}
         }
     }
 }

@@ -17,8 +17,25 @@ pub(super) struct Line {
 #[derive(Clone, Copy)]
 pub(super) struct LineStyle {
     pub colour: RGBColor,
-    pub dashed: bool,
+    pub mark: Mark,
 }
+
+/// What tells lines of one colour apart.
+#[derive(Clone, Copy)]
+pub(super) struct Mark {
+    /// Pixels of a dash and of the gap after it; none for a whole line.
+    pub dash: Option<[u32; 2]>,
+    /// Of the points.
+    pub radius: u32,
+    pub filled: bool,
+}
+
+/// For constructions, in their order; again from the first if there are more.
+pub(super) const MARKS: [Mark; 3] = [
+    Mark { dash: None, radius: 4, filled: true },
+    Mark { dash: Some([6, 4]), radius: 4, filled: false },
+    Mark { dash: Some([2, 4]), radius: 2, filled: true },
+];
 
 /// For schemes, in their order; seen on white and on black alike (Okabe and Ito's, a little darker or lighter).
 pub(super) const COLOURS: [RGBColor; 7] = [
@@ -62,17 +79,16 @@ pub(super) fn plot(x: &str, marks: &[f64], y: &str, lines: &[Line]) -> Result<St
         .y_label_formatter(&|y| number(*y))
         .draw()
         .map_err(|e| failed(&e))?;
-    for Line { style: LineStyle { colour, dashed }, points } in lines {
+    for Line { style: LineStyle { colour, mark }, points } in lines {
         let stroke = colour.stroke_width(2);
         let points = points.iter().copied();
-        let drawn = if *dashed {
-            chart.draw_series(DashedLineSeries::new(points.clone(), 5, 4, stroke)).map(drop)
-        } else {
-            chart.draw_series(LineSeries::new(points.clone(), stroke)).map(drop)
+        let drawn = match mark.dash {
+            Some([dash, gap]) => chart.draw_series(DashedLineSeries::new(points.clone(), dash, gap, stroke)).map(drop),
+            None => chart.draw_series(LineSeries::new(points.clone(), stroke)).map(drop),
         };
         drawn.map_err(|e| failed(&e))?;
-        let filled = if *dashed { stroke } else { colour.filled() };
-        chart.draw_series(points.map(|at| Circle::new(at, 4, filled))).map_err(|e| failed(&e))?;
+        let fill = if mark.filled { colour.filled() } else { stroke };
+        chart.draw_series(points.map(|at| Circle::new(at, mark.radius, fill))).map_err(|e| failed(&e))?;
     }
     area.present().map_err(|e| failed(&e))?;
     drop(chart);
@@ -124,13 +140,12 @@ mod tests {
 
     #[test]
     fn every_point_is_in_the_plot() {
-        let line = |dashed, points: &[(f64, f64)]| Line {
-            style: LineStyle { colour: COLOURS[0], dashed },
+        let line = |mark, points: &[(f64, f64)]| Line {
+            style: LineStyle { colour: COLOURS[0], mark: MARKS[mark] },
             points: points.to_vec(),
         };
         let svg =
-            plot("factor", &[4.0, 8.0], "ms", &[line(false, &[(4.0, 1.0), (8.0, 3.0)]), line(true, &[(4.0, 2.0)])])
-                .unwrap();
+            plot("factor", &[4.0, 8.0], "ms", &[line(0, &[(4.0, 1.0), (8.0, 3.0)]), line(1, &[(4.0, 2.0)])]).unwrap();
         assert_eq!(svg.matches("<circle").count(), 3);
         assert!(svg.starts_with("<svg") && svg.contains("factor") && svg.trim_end().ends_with("</svg>"));
         assert!(plot("factor", &[], "ms", &[]).is_ok());
