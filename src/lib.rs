@@ -27,8 +27,9 @@
 //! | floor | module | holds | knows nothing of |
 //! |---|---|---|---|
 //! | 7 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
+//! | 7 | `bench` (features `measure` and `headless`) | how long each way to draw takes | files, printing |
 //! | 6 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
-//! | 5 | `measure` (feature `measure`) | how far schemes are from the limit surface | files, printing |
+//! | 5 | `measure` (feature `measure`) | how far schemes are from the limit surface, statistics | files, printing |
 //! | 5 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
 //! | 4 | [`table`] | what the GPU reads | Vulkan |
 //! | 4 | [`limit`] | Catmull-Clark refinement and its limit surface | patch schemes |
@@ -107,6 +108,8 @@
 
 #![warn(missing_docs)]
 
+#[cfg(all(feature = "measure", feature = "headless"))]
+pub mod bench;
 #[cfg(feature = "headless")]
 pub mod capture;
 pub mod gpu;

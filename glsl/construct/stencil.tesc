@@ -31,7 +31,7 @@ layout(location = 4) in uint in_patch_number[];
 
 void main() {
     vec3 points[OWNED];
-    stencil_points(draw.first_patch + in_patch_number[0], uint(gl_InvocationID), points);
+    stencil_points(draw.first_patch + in_patch_number[0], uint(gl_InvocationID), CORNERS, points);
     for (uint i = 0u; i < OWNED; ++i) {
         owned[gl_InvocationID][i] = points[i];
     }

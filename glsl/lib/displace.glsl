@@ -14,7 +14,7 @@
 #include "draw.glsl"
 
 // The model's map: heights in red, or vectors in object space.
-layout(set = 1, binding = 12) uniform sampler2D displacement_map;
+layout(set = 1, binding = 13) uniform sampler2D displacement_map;
 
 const uint VECTOR_FLAG = 1u;  // in draw.flags
 

@@ -11,9 +11,9 @@ layout(set = 1, binding = 7, std430) readonly buffer StencilTypes { uint stencil
 const uint HEAD_WORDS = 3u;
 const uint ENTRY_WORDS = 1u + OWNED;
 
-// The control points that a corner of a patch owns. Those that faces around the corner share come out with the same bits
+// The control points that a corner of a patch with so many corners owns. Those that faces around the corner share come out with the same bits
 // for all of them: the sums go around the corner's ring from where it starts.
-void stencil_points(uint patch_index, uint corner, out vec3 points[OWNED]) {
+void stencil_points(uint patch_index, uint corner, uint corners, out vec3 points[OWNED]) {
     uvec2 place = stencil_patches[patch_index];
     uint head = place.y + HEAD_WORDS * corner;
     uint first = place.y + stencil_types[head];
@@ -28,7 +28,7 @@ void stencil_points(uint patch_index, uint corner, out vec3 points[OWNED]) {
         uint turned = i + turn - 1u;
         turned = 1u + (turned < turning ? turned : turned - turning);
         uint at = first + ENTRY_WORDS * (i >= 1u && i <= turning ? turned : i);
-        vec3 x = vertex_position(stencil_vertices[place.x + CORNERS + stencil_types[at]]);
+        vec3 x = vertex_position(stencil_vertices[place.x + corners + stencil_types[at]]);
         for (uint k = 0u; k < OWNED; ++k) {
             precise vec3 term = uintBitsToFloat(stencil_types[at + 1u + k]) * x;
             sums[k] += term;

@@ -2,6 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `bench` | `bench`: what to race, results, presets, comparisons, the report |
 //! | `camera`, `displacement`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
 //! | `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
@@ -11,6 +12,7 @@
 //! | `parse` | values of options |
 //! | `error` | what goes to the user, and the exit code |
 
+mod bench;
 mod camera;
 mod canvas;
 mod devices;
@@ -57,6 +59,7 @@ Examples:
   subdiv info model.glb --json
   subdiv error model.obj
   subdiv watertight model.glb
+  subdiv bench model.obj --report report
   subdiv sample model.obj --grid 9 --cpu --json > samples.json
 
 Exit codes: 0 done, 1 the work failed, 2 wrong usage.
@@ -72,6 +75,8 @@ enum Command {
     Patches(patches::PatchesArgs),
     /// Positions and normals on a lattice of every patch, as the GPU or the CPU evaluates them.
     Sample(sample::SampleArgs),
+    /// How long each scheme, construction and path takes to draw, on this device.
+    Bench(Box<bench::BenchArgs>),
     /// How far the patches of each scheme are from the exact surface, in position and normal. Needs no device.
     Error(errors::ErrorArgs),
     /// Prove that neighbouring patches meet, to the last bit, under any factors and displacement.
@@ -92,6 +97,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Info(args) => info::run(&args, cli.json),
         Command::Patches(args) => patches::run(&args, cli.json),
         Command::Sample(args) => sample::run(&args, cli.json),
+        Command::Bench(args) => bench::run(&args, cli.json),
         Command::Error(args) => errors::run(&args, cli.json),
         Command::Watertight(args) => watertight::run(&args, cli.json),
         Command::Shapes(args) => shapes::run(&args, cli.json),

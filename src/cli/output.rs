@@ -54,6 +54,11 @@ impl Table {
         self.rows.push(cells.map(|cell| cell.to_string()).into());
     }
 
+    /// Whether there is nothing below the head.
+    pub(super) fn is_empty(&self) -> bool {
+        self.rows.len() <= 1
+    }
+
     /// Writes the rows to standard output.
     pub(super) fn print(&self) -> Result<(), CliError> {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -89,6 +94,26 @@ impl Progress {
         }
         bar.enable_steady_tick(Duration::from_millis(120));
         Self(bar)
+    }
+
+    /// A bar that fills with `steps` steps of [`Progress::advance`], and tells how long the rest will take.
+    pub(super) fn bar(what: &'static str, steps: u64) -> Self {
+        let bar = ProgressBar::new(steps).with_message(what);
+        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {elapsed}, {eta} left") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(500));
+        Self(bar)
+    }
+
+    /// So many steps more are done.
+    pub(super) fn advance(&self, steps: u64) {
+        self.0.inc(steps);
+    }
+
+    /// Does something to the terminal without being drawn over it.
+    pub(super) fn suspend<R>(&self, work: impl FnOnce() -> R) -> R {
+        self.0.suspend(work)
     }
 
     /// What is going on now.

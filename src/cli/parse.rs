@@ -1,5 +1,6 @@
 //! Values of options.
 
+use ash_subdiv::bench::{Path, Subset};
 use ash_subdiv::{Construction, Fallback, Scheme, Spacing};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
@@ -44,6 +45,16 @@ pub(super) enum Surface {
 /// What [`scheme_or_limit`] calls the limit surface.
 pub(super) const LIMIT: &str = "limit";
 
+/// A way to draw by its name.
+pub(super) fn path() -> impl TypedValueParser<Value = Path> {
+    named(Path::ALL.map(|path| (path.name(), path)))
+}
+
+/// Some of the patches by their name.
+pub(super) fn subset() -> impl TypedValueParser<Value = Subset> {
+    named(Subset::ALL.map(|subset| (subset.name(), subset)))
+}
+
 /// A construction by its name.
 pub(super) fn construction() -> impl TypedValueParser<Value = Construction> {
     named(Construction::ALL.map(|construction| (construction.name(), construction)))
@@ -55,6 +66,11 @@ const SPACINGS: [(&str, Spacing); 3] =
 /// A spacing by its name.
 pub(super) fn spacing() -> impl TypedValueParser<Value = Spacing> {
     named(SPACINGS)
+}
+
+/// All that [`spacing`] knows.
+pub(super) fn spacings() -> impl Iterator<Item = Spacing> {
+    SPACINGS.into_iter().map(|(_, spacing)| spacing)
 }
 
 /// What [`spacing`] calls it.

@@ -18,6 +18,8 @@ enum Maker {
     TwoStage,
     /// The GPU: weighted sums in the control shader.
     Stencil,
+    /// The GPU: weighted sums in a compute shader.
+    Cached,
     /// The CPU, in f64.
     Cpu,
 }
@@ -109,6 +111,7 @@ pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
         }
         Maker::TwoStage => on_device(args, json, &mesh, Construction::TwoStage, progress),
         Maker::Stencil => on_device(args, json, &mesh, Construction::Stencil, progress),
+        Maker::Cached => on_device(args, json, &mesh, Construction::Cached, progress),
     }
 }
 

@@ -1,10 +1,11 @@
-//! Measurements: how far the patches of a scheme are from the surface they approximate. Nothing here knows files or
-//! prints.
+//! Measurements: how far the patches of a scheme are from the surface they approximate, and what repeated measurements
+//! say. Nothing here knows files or prints.
 
 mod dense;
 mod error;
 mod field;
 mod nearest;
+pub mod statistics;
 mod sums;
 #[cfg(feature = "headless")]
 pub mod watertight;

@@ -9,7 +9,7 @@ use glam::{Mat3, Mat4, Vec3};
 
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub(super) struct ViewData {
+pub(crate) struct ViewData {
     pub view_projection: [[f32; 4]; 4],
     pub eye: [f32; 4],
     pub light: [f32; 4],
@@ -20,7 +20,7 @@ pub(super) struct ViewData {
 
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub(super) struct DrawConstants {
+pub(crate) struct DrawConstants {
     /// Rows of the object-to-world matrix.
     pub transform: [[f32; 4]; 3],
     /// Rows of its cofactor matrix, which turns normals; in the last column the tessellation factor, and scale and bias of
@@ -64,7 +64,7 @@ const _: () = assert!(size_of::<DrawConstants>() == 128);
 
 impl DrawConstants {
     /// For an object-to-world matrix given by columns, with a tessellation factor, and scale and bias of the displacement.
-    pub(super) fn new(transform: &[[f32; 4]; 4], [factor, scale, bias]: [f32; 3]) -> Self {
+    pub(crate) fn new(transform: &[[f32; 4]; 4], [factor, scale, bias]: [f32; 3]) -> Self {
         let transform = Mat4::from_cols_array_2d(transform);
         let linear = Mat3::from_mat4(transform);
         let rows = [transform.row(0), transform.row(1), transform.row(2)];

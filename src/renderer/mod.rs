@@ -13,15 +13,18 @@
 //! | pass | reads | writes |
 //! |---|---|---|
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
+//! | compute, cached | vertices and weights of the patches, positions | control points, if the vertices moved |
 //! | VS, two-stage | patch corners, rings and their weights, positions | limit point and tangent frame, for each patch corner |
-//! | VS, stencil | nothing | the number of the patch, for each patch |
+//! | VS, stencil and cached | nothing | the number of the patch, for each patch |
 //! | TCS, two-stage | the frames of its corners, their rings, positions | control points, factors |
 //! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
+//! | TCS, cached | control points | control points, factors |
 //! | TES | control points, the view | position, normal, texture coordinate |
 //! | FS | those, the view | the caller's attachments |
 //!
 //! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
 
+mod cached;
 mod displacement;
 mod draw;
 mod error;
@@ -47,12 +50,19 @@ pub use tables::{Edges, ModelTables, TableBytes};
 pub use view::{MeasuredFrom, View};
 
 pub(crate) use pipelines::Capture;
+#[cfg(all(feature = "measure", feature = "headless"))]
+pub(crate) use {
+    gpu_data::{DrawConstants, ViewData},
+    pipelines::STAGES,
+    stages::spaced,
+};
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::mesh::ControlMesh;
 use crate::table::Notice;
 use ash::vk;
 use displacement::Displacements;
+#[cfg(not(all(feature = "measure", feature = "headless")))]
 use gpu_data::ViewData;
 use model::{Model, Surroundings};
 use pipelines::Pipelines;
@@ -70,6 +80,8 @@ pub struct MemoryUsage {
     pub tables: u64,
     /// Control vertices on the device, and factors of edges.
     pub positions: u64,
+    /// Control points that the cached construction keeps, on the device.
+    pub control_points: u64,
     /// Edges and faces of control meshes on the device, if a style draws them.
     pub control_meshes: u64,
     /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
@@ -81,7 +93,7 @@ pub struct MemoryUsage {
 impl MemoryUsage {
     /// All together.
     pub fn total(self) -> u64 {
-        self.tables + self.positions + self.control_meshes + self.staging + self.views
+        self.tables + self.positions + self.control_points + self.control_meshes + self.staging + self.views
     }
 }
 
@@ -274,7 +286,8 @@ impl Renderer {
     /// [`Error::NoSuchFrame`]; nothing is recorded then.
     ///
     /// # Safety
-    /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw. The device is done with what was
+    /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
+    /// [`Construction::Cached`]. The device is done with what was
     /// recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue.
     pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
         self.check_frame(frame_index)?;
@@ -283,13 +296,15 @@ impl Renderer {
             retired.frames[frame_index as usize] = false;
         }
         self.retired.retain(|retired| retired.frames.contains(&true));
-        if !self.models.values().any(|model| model.needs_copies(frame_index)) {
+        let at_rest = |model: &Model| !model.needs_copies(frame_index) && !model.needs_points(frame_index);
+        if self.models.values().all(at_rest) {
             return Ok(());
         }
         let device = self.context.device();
         let readers = vk::PipelineStageFlags::VERTEX_INPUT
             | vk::PipelineStageFlags::VERTEX_SHADER
-            | vk::PipelineStageFlags::TESSELLATION_CONTROL_SHADER;
+            | vk::PipelineStageFlags::TESSELLATION_CONTROL_SHADER
+            | vk::PipelineStageFlags::COMPUTE_SHADER;
         let transfer = vk::PipelineStageFlags::TRANSFER;
         let none = vk::DependencyFlags::empty();
         let after_copies = [vk::MemoryBarrier::default()
@@ -302,6 +317,8 @@ impl Renderer {
         unsafe {
             // The frame before may still read what is overwritten here.
             device.cmd_pipeline_barrier(cmd, readers | transfer, transfer, none, &after_writes, &[], &[]);
+            let computing: Vec<ModelId> =
+                self.models.iter().filter(|(_, model)| model.needs_points(frame_index)).map(|(&id, _)| id).collect();
             for model in self.models.values_mut().filter(|model| model.needs_copies(frame_index)) {
                 for staging in model.cmd_copy(device, cmd, frame_index) {
                     let mut frames = vec![false; self.options.frames_in_flight as usize];
@@ -310,6 +327,7 @@ impl Renderer {
                 }
             }
             device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
+            self.cmd_compute(cmd, &computing);
         }
         Ok(())
     }

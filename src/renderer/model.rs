@@ -1,9 +1,10 @@
 //! A model on the GPU.
 
+use super::cached::CachedPipelines;
 use super::pipelines::{MODEL_BUFFERS, Pipelines};
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
-use super::{DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
+use super::{Construction, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::table::PatchGroup;
 use ash::vk;
@@ -25,6 +26,10 @@ pub(super) struct Model {
     /// The factor of each patch corner's plus edge, if edges are to have their own.
     corner_factors: Option<Streamed>,
     largest_edge_factor: f32,
+    /// What the cached construction keeps.
+    control_points: Option<Buffer>,
+    /// Whether it is out of date.
+    stale: bool,
     /// Edges, then faces of the control mesh, if a style draws them.
     pub control: Option<ControlIndices>,
     /// What was not copied to the device yet.
@@ -97,6 +102,12 @@ impl Model {
         let position_bytes = 12 * tables.stored_vertices() as u64;
         check("positions", position_bytes)?;
         let frames = options.frames_in_flight;
+        let bytes = tables.control_point_bytes();
+        check("control points", bytes)?;
+        let control_points = match tables.construction() {
+            Construction::Cached => Some(device_buffer(context, &format!("{name}: control points"), bytes, storage)?),
+            _ => None,
+        };
         let stored = tables.stored_positions(control);
         let positions = Streamed::new(context, &format!("{name}: positions"), &stored, frames)?;
         drop(stored);
@@ -133,10 +144,12 @@ impl Model {
         buffers.extend(ranges.iter().map(table));
         // Every descriptor has to be written; without factors of its own a model's edges never read any.
         buffers.push(corner_factors.as_ref().map_or(positions.descriptor(), Streamed::descriptor));
+        buffers.push(control_points.as_ref().map_or(positions.descriptor(), Buffer::descriptor));
         write_set(context, set, &buffers, map);
         let ModelOptions { construction, spacing, .. } = *model_options;
-        let sharing = tables.sharing();
-        let stages = |g: &PatchGroup| PatchStages { scheme: g.scheme, kind: g.kind, construction, spacing, sharing };
+        let (sharing, stride) = (tables.sharing(), tables.cached_stride());
+        let stages =
+            |g: &PatchGroup| PatchStages { scheme: g.scheme, kind: g.kind, construction, spacing, sharing, stride };
         Ok(Self {
             id,
             stages: tables.plan.groups().iter().map(stages).collect(),
@@ -147,6 +160,8 @@ impl Model {
             positions,
             corner_factors,
             largest_edge_factor: 1.0,
+            control_points,
+            stale: false,
             control,
             uploads,
             map,
@@ -194,6 +209,27 @@ impl Model {
         !self.prepared || streams.into_iter().any(|stream| stream.is_due(frame))
     }
 
+    /// Whether control points are to be computed in this frame.
+    pub(super) fn needs_points(&self, frame: u32) -> bool {
+        self.control_points.is_some() && (self.stale || self.needs_copies(frame))
+    }
+
+    /// Has the control points computed anew in the next frame, even though nothing moved.
+    #[cfg(all(feature = "measure", feature = "headless"))]
+    pub(super) fn forget_points(&mut self) {
+        self.stale = true;
+    }
+
+    /// Records the computation of the control points.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, after the copies; `pipelines` have those of the model's kinds.
+    pub(super) unsafe fn cmd_compute(&mut self, pipelines: &CachedPipelines, cmd: vk::CommandBuffer) {
+        self.stale = false;
+        // SAFETY: as the caller promises.
+        unsafe { pipelines.cmd_compute(cmd, self.set, &self.stages, &self.tables.plan) };
+    }
+
     /// Records the copies that are due, and gives away the staging buffers to be kept until the frame is done.
     ///
     /// # Safety
@@ -219,6 +255,7 @@ impl Model {
         let [positions, staged_positions] = self.positions.bytes();
         let [factors, staged_factors] = self.corner_factors.as_ref().map_or([0; 2], Streamed::bytes);
         usage.positions += positions + factors;
+        usage.control_points += self.control_points.as_ref().map_or(0, Buffer::size);
         usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
         let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
         usage.staging += staged_positions + staged_factors + uploads;

@@ -200,7 +200,7 @@ impl Default for Options {
     }
 }
 
-/// How the control points are made on the GPU. Both give the same points but for rounding.
+/// How the control points are made on the GPU. All give the same points but for rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Construction {
     /// The vertex shader turns each control vertex and its one-ring into limit point and tangents, the control shader
@@ -209,17 +209,21 @@ pub enum Construction {
     TwoStage,
     /// The control shader sums the vertices around the patch with the weights of its type of connectivity.
     Stencil,
+    /// The same sums in a compute shader, once a frame in which the vertices moved; the control shader reads them. Takes
+    /// memory, and pays where a model is drawn in several passes or stands still. Needs a queue that computes.
+    Cached,
 }
 
 impl Construction {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::TwoStage, Self::Stencil];
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::TwoStage, Self::Stencil, Self::Cached];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
             Self::TwoStage => "two-stage",
             Self::Stencil => "stencil",
+            Self::Cached => "cached",
         }
     }
 }

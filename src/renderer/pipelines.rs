@@ -1,5 +1,6 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
+use super::cached::CachedPipelines;
 use super::stages::{PatchStages, Sharing, spaced};
 use super::{ColorEncoding, Construction, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
@@ -50,20 +51,22 @@ pub(super) struct Pipelines {
     pub view_layout: Owned<vk::DescriptorSetLayout>,
     pub model_layout: Owned<vk::DescriptorSetLayout>,
     pub layout: Owned<vk::PipelineLayout>,
+    /// For what the cached construction computes.
+    pub cached: CachedPipelines,
     made: HashMap<PipelineKey, Owned<vk::Pipeline>>,
 }
 
 /// The stages that read set 0, set 1 and the push constants.
-pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::VERTEX.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw()
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
-/// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges. The displacement
-/// map comes after them.
-pub(super) const MODEL_BUFFERS: usize = 12;
+/// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
+/// points. The displacement map comes after them.
+pub(super) const MODEL_BUFFERS: usize = 13;
 
 impl Pipelines {
     pub(super) fn new(
@@ -73,7 +76,8 @@ impl Pipelines {
         capture: Capture,
     ) -> Result<Self, GpuError> {
         let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
-        let mut model = vec![(vk::DescriptorType::STORAGE_BUFFER, STAGES); MODEL_BUFFERS];
+        let model_stages = STAGES | vk::ShaderStageFlags::COMPUTE;
+        let mut model = vec![(vk::DescriptorType::STORAGE_BUFFER, model_stages); MODEL_BUFFERS];
         model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, STAGES));
         let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
         let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;
@@ -82,6 +86,7 @@ impl Pipelines {
         let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];
         // SAFETY: the layouts are of this device; for the caller's own that is part of the contract of `Renderer::new`.
         let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
+        let cached = CachedPipelines::new(context, [view_layout.raw(), model_layout.raw()], options.pipeline_cache)?;
         Ok(Self {
             context: context.clone(),
             target: target.clone(),
@@ -93,6 +98,7 @@ impl Pipelines {
             view_layout,
             model_layout,
             layout,
+            cached,
             made: HashMap::new(),
         })
     }
@@ -107,6 +113,9 @@ impl Pipelines {
 
     /// Makes what these patches need in every style.
     pub(super) fn make(&mut self, patches: &[PatchStages]) -> Result<(), GpuError> {
+        for stages in patches.iter().filter(|stages| stages.construction == Construction::Cached) {
+            self.cached.make(*stages)?;
+        }
         for style in 0..self.styles.len() {
             if self.styles[style].geometry != Geometry::Surface {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Control })?;
@@ -139,13 +148,14 @@ impl Pipelines {
                 let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
                 let vertex = match patch.construction {
                     Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
-                    Construction::Stencil => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
+                    Construction::Stencil | Construction::Cached => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
                 };
                 let control = self.find(&patch.control(self.capture, self.texcoords))?;
                 let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
                 let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
                 let evaluation = spaced(evaluation, spacing);
-                let limits = [Specialization::float(2, self.context.properties().max_tessellation_level as f32)];
+                let most = self.context.properties().max_tessellation_level as f32;
+                let limits = [Specialization::float(2, most), Specialization::uint(3, patch.stride)];
                 let stages = [
                     vertex,
                     Shader::tess_control(control).specialized(&limits),

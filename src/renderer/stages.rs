@@ -13,6 +13,8 @@ pub(super) struct PatchStages {
     pub construction: Construction,
     pub spacing: Spacing,
     pub sharing: Sharing,
+    /// Control points that a corner has room for where they are cached, else 0.
+    pub stride: u32,
 }
 
 /// What patches share along edges and at corners.
@@ -55,7 +57,7 @@ impl PatchStages {
     pub(super) fn input_points(self) -> u32 {
         match self.construction {
             Construction::TwoStage => self.kind.corners() as u32,
-            Construction::Stencil => 1,
+            Construction::Stencil | Construction::Cached => 1,
         }
     }
 
@@ -65,6 +67,7 @@ impl PatchStages {
         let mut name = match self.construction {
             Construction::TwoStage => format!("CONSTRUCT_{file}_TESC"),
             Construction::Stencil => format!("CONSTRUCT_STENCIL_TESC_OWNED_{}", self.scheme.owned(self.kind)),
+            Construction::Cached => format!("CONSTRUCT_CACHED_TESC_OWNED_{}", self.scheme.owned(self.kind)),
         };
         name += match self.kind {
             PatchKind::Triangle => "_TRIANGLE",
@@ -99,7 +102,7 @@ impl PatchStages {
 }
 
 /// A tessellation evaluation shader with another spacing: the files all say `equal_spacing`.
-pub(super) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
+pub(crate) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
     // SPIR-V 1.6, 2.3 and 3.6: five words of header; an instruction's first word is its length and its opcode.
     const HEADER_WORDS: usize = 5;
     const OP_EXECUTION_MODE: u32 = 16;
@@ -140,7 +143,8 @@ mod tests {
                     if sharing != Sharing::Positions && !scheme.is_watertight() {
                         continue;
                     }
-                    let stages = PatchStages { scheme, kind, construction, spacing: Spacing::Equal, sharing };
+                    let stages =
+                        PatchStages { scheme, kind, construction, spacing: Spacing::Equal, sharing, stride: 8 };
                     for capture in modes {
                         for texcoords in [false, true] {
                             for name in [stages.control(capture, texcoords), stages.evaluation(capture, texcoords)] {

@@ -21,6 +21,8 @@ pub struct ModelTables {
     stencils: Option<StencilTable>,
     /// Where normals are shared.
     shared: Option<SharedTable>,
+    /// Whether control points are kept between draws, and how many a corner has room for then.
+    cached: Option<usize>,
     pub(super) texcoords: Option<Vec<[f32; 2]>>,
     edges: Option<Edges>,
     /// Pairs of control vertices: the edges of the caller's mesh.
@@ -80,7 +82,7 @@ impl ModelTables {
         // The stencil table puts the patches in its own order, so it comes first.
         let stencils = match options.construction {
             Construction::TwoStage => None,
-            Construction::Stencil => Some(StencilTable::new(&topology, &mut plan)?),
+            Construction::Stencil | Construction::Cached => Some(StencilTable::new(&topology, &mut plan)?),
         };
         let shared = match (options.displacement, options.shared_normals) {
             (Some(_), _) => Some(SharedTable::with_texcoords(&topology, &plan).ok_or(TableError::NoTexcoords)?),
@@ -91,6 +93,8 @@ impl ModelTables {
             return Err(TableError::NothingShared { scheme });
         }
         let rings = (stencils.is_none() || shared.is_some()).then(|| RingTable::new(&topology, &plan));
+        let most_owned = plan.groups().iter().map(|group| group.scheme.owned(group.kind)).max().unwrap_or(0);
+        let cached = (options.construction == Construction::Cached).then_some(most_owned);
         Ok(Self {
             texcoords: plan.texcoords(&topology),
             edges: options.edge_factors.then(|| Edges::new(&topology, &plan)),
@@ -100,6 +104,7 @@ impl ModelTables {
             rings,
             stencils,
             shared,
+            cached,
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
@@ -151,7 +156,16 @@ impl ModelTables {
     }
 
     pub(super) fn construction(&self) -> Construction {
-        if self.stencils.is_some() { Construction::Stencil } else { Construction::TwoStage }
+        match self.stencils {
+            None => Construction::TwoStage,
+            Some(_) if self.cached.is_some() => Construction::Cached,
+            Some(_) => Construction::Stencil,
+        }
+    }
+
+    /// How many control points a corner has room for, where they are kept between draws; else 0.
+    pub(super) fn cached_stride(&self) -> u32 {
+        self.cached.unwrap_or(0) as u32
     }
 
     /// What the evaluation takes from other patches.
@@ -161,6 +175,12 @@ impl ModelTables {
             Some(shared) if shared.texcoords.is_empty() => Sharing::Normals,
             Some(_) => Sharing::Displacement,
         }
+    }
+
+    /// Bytes of the control points that the cached construction keeps.
+    pub(super) fn control_point_bytes(&self) -> u64 {
+        let corners: usize = self.plan.patches().iter().map(|patch| patch.kind.corners()).sum();
+        12 * self.cached.unwrap_or(0) as u64 * corners as u64
     }
 
     /// How many patches of a kind there are.
@@ -180,7 +200,8 @@ impl ModelTables {
     pub fn bytes(&self) -> Vec<TableBytes> {
         let positions = ("positions", 12 * self.stored_vertices() as u64);
         let tables = self.bindings().into_iter().filter(|(name, array)| *name != "texcoords" && !array.is_empty());
-        std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).collect()
+        let cached = self.cached.map(|_| ("control_points", self.control_point_bytes()));
+        std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).chain(cached).collect()
     }
 
     /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need

@@ -103,7 +103,7 @@ impl View {
         )
     }
 
-    pub(super) fn data(&self) -> ViewData {
+    pub(crate) fn data(&self) -> ViewData {
         let [x, y, z] = self.eye;
         let light = Vec3::from(self.light).normalize_or(Vec3::Y);
         let MeasuredFrom { view_projection, eye: [eye_x, eye_y, eye_z], viewport: [width, height] } = self.measured();

@@ -1,6 +1,7 @@
 //! The program `subdiv`, run as a user runs it.
 #![cfg(feature = "cli")]
 
+mod bench;
 #[path = "../common/mod.rs"]
 mod common;
 mod error_maps;
@@ -138,7 +139,7 @@ fn patches_are_the_same_from_all_makers() {
     let cases = [("valences", 0, ""), ("creature-mixed", 0, "--scheme acc --fallback gregory"), ("polygons", 0, "")];
     for (shape, refine, more) in cases.into_iter().chain([("fan", 1, "")]) {
         let of = |maker| json(&format!("patches --shape {shape} --refine {refine} {more} --construction {maker}"));
-        let (cpu, two_stage, stencil) = (of("cpu"), of("two-stage"), of("stencil"));
+        let (cpu, two_stage, stencil, cached) = (of("cpu"), of("two-stage"), of("stencil"), of("cached"));
         assert_eq!(keys(&cpu), ["construction", "patches"]);
         let patches = cpu["patches"].as_array().unwrap();
         let places: Vec<_> =
@@ -154,7 +155,7 @@ fn patches_are_the_same_from_all_makers() {
                 other => panic!("{other:?}"),
             };
             assert_eq!(length(&patch["points"]), count);
-            for other in [&two_stage, &stencil] {
+            for other in [&two_stage, &stencil, &cached] {
                 let other = &other["patches"][i];
                 for key in ["face", "sub", "kind", "scheme"] {
                     assert_eq!(patch[key], other[key]);

@@ -1,0 +1,27 @@
+// A floor for the bench: the corners pass through.
+// variants: TRIANGLE
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+
+#ifdef TRIANGLE
+layout(vertices = 3) out;
+#else
+layout(vertices = 4) out;
+#endif
+
+layout(location = 0) in vec3 corner[];
+layout(location = 0) out vec3 owned[][1];
+
+void main() {
+    owned[gl_InvocationID][0] = corner[gl_InvocationID];
+    if (gl_InvocationID == 0) {
+        float factor = draw_factor();
+        gl_TessLevelOuter[0] = factor;
+        gl_TessLevelOuter[1] = factor;
+        gl_TessLevelOuter[2] = factor;
+        gl_TessLevelOuter[3] = factor;
+        gl_TessLevelInner[0] = factor;
+        gl_TessLevelInner[1] = factor;
+    }
+}

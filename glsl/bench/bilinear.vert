@@ -1,0 +1,16 @@
+// A floor for the bench: a corner of a face as it is. One invocation for each corner of each patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+#include "positions.glsl"
+
+layout(constant_id = 0) const uint CORNERS = 4u;
+
+layout(set = 1, binding = 1, std430) readonly buffer Corners { uint corners[]; };
+
+layout(location = 0) out vec3 corner;
+
+void main() {
+    uint first = uint(gl_InstanceIndex) * draw.patches_per_instance;
+    corner = vertex_position(corners[draw.first_corner + first * CORNERS + uint(gl_VertexIndex)]);
+}

@@ -1,0 +1,45 @@
+// The cached construction, in each draw: the control points are there (glsl/compute/control_points.comp). Compiled for
+// patches whose corners own 4, 5 .. control points.
+// variants: OWNED=4, OWNED=4+CAPTURE, OWNED=4+CAPTURE_POINTS, OWNED=4+TEXCOORD
+// variants: OWNED=4+SHARED, OWNED=4+SHARED+CAPTURE, OWNED=4+SHARED+TEXCOORD, OWNED=4+DISPLACED, OWNED=4+DISPLACED+CAPTURE
+// variants: OWNED=5, OWNED=5+CAPTURE, OWNED=5+CAPTURE_POINTS, OWNED=5+TEXCOORD
+// variants: OWNED=5+SHARED, OWNED=5+SHARED+CAPTURE, OWNED=5+SHARED+TEXCOORD, OWNED=5+DISPLACED, OWNED=5+DISPLACED+CAPTURE
+// variants: OWNED=6, OWNED=6+CAPTURE, OWNED=6+CAPTURE_POINTS, OWNED=6+TEXCOORD
+// variants: OWNED=6+TRIANGLE, OWNED=6+TRIANGLE+CAPTURE, OWNED=6+TRIANGLE+CAPTURE_POINTS, OWNED=6+TRIANGLE+TEXCOORD
+// variants: OWNED=6+PENTAGON, OWNED=6+PENTAGON+CAPTURE, OWNED=6+PENTAGON+CAPTURE_POINTS, OWNED=6+PENTAGON+TEXCOORD
+// variants: OWNED=8, OWNED=8+CAPTURE, OWNED=8+CAPTURE_POINTS, OWNED=8+TEXCOORD
+// variants: OWNED=5+TRIANGLE, OWNED=5+TRIANGLE+CAPTURE, OWNED=5+TRIANGLE+CAPTURE_POINTS, OWNED=5+TRIANGLE+TEXCOORD
+// variants: OWNED=5+TRIANGLE+SHARED, OWNED=5+TRIANGLE+SHARED+CAPTURE, OWNED=5+TRIANGLE+SHARED+TEXCOORD, OWNED=5+TRIANGLE+DISPLACED, OWNED=5+TRIANGLE+DISPLACED+CAPTURE
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#ifndef OWNED
+#define OWNED 4
+#endif
+// As in acc.tesc and pm.tesc.
+#if OWNED == 8
+#define HULL 4
+#elif OWNED == 6
+#define HULL 0
+#endif
+#include "control.glsl"
+#include "cached.glsl"
+#ifdef SHARED
+#include "shared.glsl"
+#endif
+
+layout(location = 4) in uint in_patch_number[];
+
+void main() {
+    uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
+    uint at = corner_points(corner);
+    for (uint i = 0u; i < OWNED; ++i) {
+        uint x = at + 3u * i;
+        owned[gl_InvocationID][i] = vec3(control_points[x], control_points[x + 1u], control_points[x + 2u]);
+    }
+    finish_corner(in_patch_number[0]);
+#ifdef SHARED
+    share_corner(corner, framed_ring(patch_corners[corner].x));
+#endif
+    barrier();
+    finish_patch(in_patch_number[0]);
+}

@@ -1,0 +1,129 @@
+//! What every path is to the race: something that can be drawn.
+
+use super::{BenchError, Contestant, Path, Subject};
+use crate::gpu::Spacing;
+use crate::headless::{Headless, OffscreenDesc};
+use crate::renderer::{TableBytes, View};
+use ash::vk;
+use std::time::Instant;
+
+/// What there is to do before the first frame, in milliseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Setup {
+    /// Everything that the GPU reads, out of the mesh: topology, plan and tables; for a vertex buffer its vertices.
+    pub tables: f64,
+    /// Buffers and copies to the device.
+    pub upload: f64,
+    /// Pipelines, once for all models.
+    pub pipelines: f64,
+    /// The first frame with new pipelines, at factor 1, once with pixels and once without.
+    pub first_frame: f64,
+}
+
+impl Setup {
+    /// What each model needs: all but pipelines and compilation.
+    pub fn per_model(&self) -> f64 {
+        self.tables + self.upload
+    }
+
+    /// What the first use of a path costs besides.
+    pub fn first_use(&self) -> f64 {
+        self.pipelines + self.first_frame
+    }
+}
+
+/// Bytes that a frame moves, by count: what a device without caches would move at least. A device may keep much of it
+/// on the chip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Traffic {
+    /// Tables, positions, vertices and indices, each byte read once an instance and pass.
+    pub tables: u64,
+    /// Control points that go from the control stage to the evaluation stage.
+    pub control_points: u64,
+    /// Evaluated vertices on their way to the rasterizer.
+    pub vertices: u64,
+}
+
+/// Bytes of a vertex on its way to the rasterizer: `gl_Position`, position and normal.
+pub(super) const VERTEX_BYTES: u64 = 16 + 12 + 12;
+
+/// What a frame shows.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pass {
+    Pixels,
+    /// The rasterizer is off.
+    Geometry,
+}
+
+impl Pass {
+    pub(super) const ALL: [Self; 2] = [Self::Pixels, Self::Geometry];
+}
+
+/// One frame of one contestant.
+pub(super) struct Frame<'a> {
+    pub view: &'a View,
+    /// Object to world of each instance, by columns.
+    pub instances: &'a [[[f32; 4]; 4]],
+    pub factor: f32,
+    pub pass: Pass,
+}
+
+/// A contestant with its pipelines and buffers, for one mesh and one spacing.
+pub(super) trait Drawable {
+    /// Before frames of another factor are drawn.
+    fn set_factor(&mut self, _factor: f32) -> Result<(), BenchError> {
+        Ok(())
+    }
+
+    /// Records what a frame does before it draws.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering; the device is done with earlier frames.
+    unsafe fn cmd_prepare(&mut self, _cmd: vk::CommandBuffer) -> Result<(), BenchError> {
+        Ok(())
+    }
+
+    /// Records the draws of a frame.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, inside rendering that fits [`Lane::target`], after [`Drawable::cmd_prepare`].
+    unsafe fn cmd_draw(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError>;
+
+    fn setup(&self) -> Setup;
+
+    /// Everything that drawing reads.
+    fn bytes(&self) -> Vec<TableBytes>;
+
+    /// Bytes of the control points of all patches, as the control stage passes them on.
+    fn control_point_bytes(&self) -> u64;
+}
+
+/// What a drawable is made for.
+#[derive(Clone, Copy)]
+pub(super) struct Lane<'a> {
+    pub headless: &'a Headless,
+    pub target: &'a OffscreenDesc,
+    pub subject: &'a Subject,
+    pub spacing: Spacing,
+    /// Calls of [`Drawable::cmd_draw`] in a frame.
+    pub passes: u32,
+}
+
+impl Contestant {
+    /// Makes everything that does not depend on the factor.
+    pub(super) fn open(self, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
+        let (scheme, construction) = self.patches.unwrap_or_default();
+        Ok(match self.path {
+            Path::Tessellation => Box::new(super::surface::Surface::new(lane, scheme, construction)?),
+            Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
+            Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
+        })
+    }
+}
+
+/// Milliseconds that some work takes.
+pub(super) fn timed<R, E>(work: impl FnOnce() -> Result<R, E>) -> Result<(R, f64), E> {
+    let start = Instant::now();
+    let done = work()?;
+    Ok((done, start.elapsed().as_secs_f64() * 1e3))
+}

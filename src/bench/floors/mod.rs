@@ -1,0 +1,171 @@
+//! What nothing that draws the surface can get below: small pipelines of the bench's own, lit and drawn as the renderer
+//! does.
+
+mod bilinear;
+mod vertex_buffer;
+
+pub(super) use bilinear::Bilinear;
+pub(super) use vertex_buffer::VertexBuffer;
+
+use super::BenchError;
+use super::drawable::{Frame, Lane, Pass};
+use crate::gpu::{
+    Buffer, BufferDesc, DepthState, DeviceContext, GpuError, GraphicsPipelineDesc, MemoryLocation, Owned, RenderTarget,
+    Shader, VkResultExt, descriptor_set_layout, pipeline_layout, shaders,
+};
+use crate::headless::Headless;
+use crate::renderer::{DrawConstants, STAGES, View, ViewData};
+use ash::vk;
+use bytemuck::NoUninit;
+use std::sync::Arc;
+
+/// The storage buffers that a floor's shaders may read in set 1.
+const BINDINGS: usize = 2;
+
+/// What comes into the vertex stage, and what it hands on.
+#[derive(Default)]
+struct Input<'a> {
+    /// Nought without tessellation.
+    patch_control_points: u32,
+    bindings: &'a [vk::VertexInputBindingDescription],
+    attributes: &'a [vk::VertexInputAttributeDescription],
+}
+
+/// Layouts and the view, as `glsl/lib/draw.glsl` has them.
+struct Kit {
+    context: Arc<DeviceContext>,
+    layout: Owned<vk::PipelineLayout>,
+    _set_layouts: [Owned<vk::DescriptorSetLayout>; 2],
+    _pool: Owned<vk::DescriptorPool>,
+    sets: [vk::DescriptorSet; 2],
+    view: Buffer,
+}
+
+impl Kit {
+    /// `storage` goes to the bindings of set 1.
+    fn new(headless: &Headless, storage: [&Buffer; BINDINGS]) -> Result<Self, GpuError> {
+        const NAME: &str = "bench floor";
+        let context = headless.context();
+        let (uniform, buffer) = (vk::DescriptorType::UNIFORM_BUFFER, vk::DescriptorType::STORAGE_BUFFER);
+        let set_layouts = [
+            descriptor_set_layout(context, NAME, &[(uniform, STAGES)])?,
+            descriptor_set_layout(context, NAME, &[(buffer, STAGES); BINDINGS])?,
+        ];
+        let raw = [set_layouts[0].raw(), set_layouts[1].raw()];
+        let size = size_of::<DrawConstants>() as u32;
+        let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size }];
+        // SAFETY: the set layouts are of this device.
+        let layout = unsafe { pipeline_layout(context, NAME, &raw, &constants)? };
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+        let desc =
+            BufferDesc { name: NAME, size: size_of::<ViewData>() as u64, usage, location: MemoryLocation::Upload };
+        let view = Buffer::new(context, &desc)?;
+        let sizes = [
+            vk::DescriptorPoolSize { ty: uniform, descriptor_count: 1 },
+            vk::DescriptorPoolSize { ty: buffer, descriptor_count: BINDINGS as u32 },
+        ];
+        let pool_info = vk::DescriptorPoolCreateInfo::default().max_sets(2).pool_sizes(&sizes);
+        let device = context.device();
+        // SAFETY: the pool is taken over by `Owned` and has room for the sets, which are new.
+        let (pool, sets) = unsafe {
+            let pool = device.create_descriptor_pool(&pool_info, None).of("vkCreateDescriptorPool", NAME)?;
+            let pool = Owned::new(context, pool, NAME);
+            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&raw);
+            let sets = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", NAME)?;
+            (pool, [sets[0], sets[1]])
+        };
+        let views = [view.descriptor()];
+        let buffers = storage.map(Buffer::descriptor);
+        let write = |set, ty| vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty);
+        let writes = [write(sets[0], uniform).buffer_info(&views), write(sets[1], buffer).buffer_info(&buffers)];
+        // SAFETY: the sets are new, and the buffers live as long as they.
+        unsafe { device.update_descriptor_sets(&writes, &[]) };
+        Ok(Self { context: context.clone(), layout, _set_layouts: set_layouts, _pool: pool, sets, view })
+    }
+
+    /// Pipelines for [`Pass::ALL`].
+    fn pipelines(&self, lane: Lane, stages: &[Shader], input: &Input) -> Result<[Owned<vk::Pipeline>; 2], GpuError> {
+        let target = RenderTarget::Dynamic {
+            color: std::slice::from_ref(&lane.target.color),
+            depth: lane.target.depth,
+            stencil: vk::Format::UNDEFINED,
+            view_mask: 0,
+        };
+        let pipeline = |pass: Pass| {
+            let mut stages = stages.to_vec();
+            if pass == Pass::Pixels {
+                stages.push(Shader::fragment(shaders::SHADE_LIT_FRAG));
+            }
+            let desc = GraphicsPipelineDesc {
+                patch_control_points: input.patch_control_points,
+                vertex_bindings: input.bindings,
+                vertex_attributes: input.attributes,
+                depth: Some(DepthState::LESS),
+                samples: lane.target.samples,
+                rasterizer_discard: pass == Pass::Geometry,
+                ..GraphicsPipelineDesc::new("bench floor", self.layout.raw(), target, &stages)
+            };
+            // SAFETY: the shaders are ours and match each other, the layout and the target.
+            unsafe { desc.create(&self.context) }
+        };
+        let [pixels, geometry] = Pass::ALL.map(pipeline);
+        Ok([pixels?, geometry?])
+    }
+
+    /// Binds the sets and writes the view.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded; the device is done with earlier frames.
+    unsafe fn cmd_bind(&mut self, cmd: vk::CommandBuffer, view: &View) -> Result<(), GpuError> {
+        self.view.write(0, &[view.data()])?;
+        let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, self.layout.raw());
+        // SAFETY: as the caller promises.
+        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, layout, 0, &self.sets, &[]) };
+        Ok(())
+    }
+
+    /// # Safety
+    /// `cmd` is being recorded.
+    unsafe fn cmd_push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
+        let bytes = bytemuck::bytes_of(constants);
+        // SAFETY: as the caller promises.
+        unsafe { self.context.device().cmd_push_constants(cmd, self.layout.raw(), STAGES, 0, bytes) };
+    }
+
+    /// # Safety
+    /// `cmd` is being recorded.
+    unsafe fn cmd_bind_pipeline(&self, cmd: vk::CommandBuffer, pipelines: &[Owned<vk::Pipeline>; 2], frame: &Frame) {
+        let pipeline = pipelines[usize::from(frame.pass == Pass::Geometry)].raw();
+        // SAFETY: as the caller promises.
+        unsafe { self.context.device().cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
+    }
+}
+
+/// A buffer on the device with this in it.
+pub(super) fn device_buffer<T: NoUninit>(
+    headless: &Headless,
+    name: &str,
+    usage: vk::BufferUsageFlags,
+    data: &[T],
+) -> Result<Buffer, BenchError> {
+    let context = headless.context();
+    let size = size_of_val(data) as u64;
+    let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
+    let buffer = Buffer::new(context, &BufferDesc { name, size, usage, location: MemoryLocation::DeviceLocal })?;
+    if data.is_empty() {
+        return Ok(buffer);
+    }
+    let staged = Buffer::with_data(context, name, vk::BufferUsageFlags::TRANSFER_SRC, data)?;
+    let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size };
+    let written = [vk::MemoryBarrier2::default()
+        .src_stage_mask(vk::PipelineStageFlags2::COPY)
+        .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+        .dst_stage_mask(vk::PipelineStageFlags2::ALL_GRAPHICS)
+        .dst_access_mask(vk::AccessFlags2::MEMORY_READ)];
+    // SAFETY: both buffers hold the range; the submission is waited for.
+    headless.submit(|cmd| unsafe {
+        headless.device().cmd_copy_buffer(cmd, staged.raw(), buffer.raw(), &[region]);
+        headless.device().cmd_pipeline_barrier2(cmd, &vk::DependencyInfo::default().memory_barriers(&written));
+    })?;
+    Ok(buffer)
+}

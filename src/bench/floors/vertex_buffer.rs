@@ -1,0 +1,199 @@
+//! Triangles that were evaluated before.
+
+use super::{Input, Kit, device_buffer};
+use crate::bench::BenchError;
+use crate::bench::drawable::{Drawable, Frame, Lane, Setup, timed};
+use crate::gpu::{Buffer, GpuError, Owned, Shader, shaders};
+use crate::patch::Scheme;
+use crate::renderer::{DrawConstants, TableBytes};
+use crate::table::CpuSurface;
+use crate::topology::PatchKind;
+use ash::vk;
+use glam::Vec3;
+
+pub(crate) struct VertexBuffer<'a> {
+    lane: Lane<'a>,
+    kit: Kit,
+    pipelines: [Owned<vk::Pipeline>; 2],
+    surface: CpuSurface<'a>,
+    points: Vec<Vec<Vec3>>,
+    drawn: Option<Triangles>,
+    setup: Setup,
+    /// For bindings that no shader here reads.
+    _nothing: Buffer,
+}
+
+struct Triangles {
+    vertices: Buffer,
+    indices: Buffer,
+    count: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Vertex {
+    position: [f32; 3],
+    normal: [f32; 3],
+}
+
+impl<'a> VertexBuffer<'a> {
+    pub(crate) fn new(lane: Lane<'a>) -> Result<Self, BenchError> {
+        // Whichever the scheme, a vertex is a vertex.
+        let surface = CpuSurface::new(&lane.subject.mesh, Scheme::Gregory, lane.subject.refine)?;
+        let points = surface.control_points(|position| position.as_vec3());
+        let nothing = device_buffer::<u32>(lane.headless, "nothing", vk::BufferUsageFlags::STORAGE_BUFFER, &[])?;
+        let kit = Kit::new(lane.headless, [&nothing, &nothing])?;
+        let bindings = [vk::VertexInputBindingDescription::default().stride(size_of::<Vertex>() as u32)];
+        let attribute = |location, offset| {
+            let format = vk::Format::R32G32B32_SFLOAT;
+            vk::VertexInputAttributeDescription::default().location(location).format(format).offset(offset)
+        };
+        let attributes = [attribute(0, 0), attribute(1, 12)];
+        let input = Input { patch_control_points: 0, bindings: &bindings, attributes: &attributes };
+        let stages = [Shader::vertex(shaders::BENCH_VERTEX_BUFFER_VERT)];
+        let (pipelines, pipelines_ms) = timed(|| kit.pipelines(lane, &stages, &input))?;
+        let setup = Setup { pipelines: pipelines_ms, ..Setup::default() };
+        Ok(Self { lane, kit, pipelines, surface, points, drawn: None, setup, _nothing: nothing })
+    }
+
+    /// What the device must hold for `n` segments an edge, before anything is evaluated.
+    fn check(&self, n: u32) -> Result<(), GpuError> {
+        let (mut vertices, mut indices) = (0, 0);
+        for kind in PatchKind::ALL {
+            let patches = u64::from(self.surface.plan().count(kind));
+            vertices += patches * lattice_vertices(kind, n);
+            indices += patches * 3 * lattice_triangles(kind, n);
+        }
+        let bytes = (vertices * size_of::<Vertex>() as u64).max(4 * indices);
+        let max = self.lane.headless.properties().max_buffer_size;
+        if bytes > max || vertices.max(indices) > u64::from(u32::MAX) {
+            let why = format!("{vertices} vertices and {indices} indices do not fit into buffers of {max} bytes");
+            return Err(GpuError::Unsupported { object: "pre-tessellated triangles".into(), why });
+        }
+        Ok(())
+    }
+
+    /// Vertices and indices of all patches with `n` segments an edge.
+    fn triangles(&self, n: u32) -> (Vec<Vertex>, Vec<u32>) {
+        let grids = self.surface.grid(&self.points, n + 1);
+        let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+        for (patch, grid) in self.surface.plan().patches().iter().zip(grids) {
+            let first = vertices.len() as u32;
+            indices.extend(lattice(patch.kind, n).into_iter().map(|i| first + i));
+            vertices.extend(grid.iter().map(|s| Vertex { position: s.position.into(), normal: s.normal.into() }));
+        }
+        (vertices, indices)
+    }
+}
+
+fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
+    let n = u64::from(n);
+    if kind == PatchKind::Triangle { (n + 1) * (n + 2) / 2 } else { (n + 1) * (n + 1) }
+}
+
+fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
+    let n = u64::from(n);
+    if kind == PatchKind::Triangle { n * n } else { 2 * n * n }
+}
+
+/// Triangles between the samples of [`grid_parameters`](crate::table::grid_parameters), `n` segments along each side.
+fn lattice(kind: PatchKind, n: u32) -> Vec<u32> {
+    let mut indices = Vec::with_capacity(3 * lattice_triangles(kind, n) as usize);
+    for row in 0..n {
+        if kind == PatchKind::Triangle {
+            let (above, below) = (row * (row + 1) / 2, (row + 1) * (row + 2) / 2);
+            for k in 0..=row {
+                indices.extend([above + k, below + k, below + k + 1]);
+                if k < row {
+                    indices.extend([above + k, below + k + 1, above + k + 1]);
+                }
+            }
+        } else {
+            let (above, below) = (row * (n + 1), (row + 1) * (n + 1));
+            for k in 0..n {
+                indices.extend([above + k, above + k + 1, below + k + 1, above + k, below + k + 1, below + k]);
+            }
+        }
+    }
+    indices
+}
+
+impl Drawable for VertexBuffer<'_> {
+    fn set_factor(&mut self, factor: f32) -> Result<(), BenchError> {
+        self.drawn = None;
+        let headless = self.lane.headless;
+        let n = self.lane.spacing.segments(factor, headless.properties().max_tessellation_level);
+        self.check(n)?;
+        let ((vertices, indices), tables) = timed(|| Ok::<_, BenchError>(self.triangles(n)))?;
+        let (drawn, upload) = timed(|| {
+            use vk::BufferUsageFlags as Usage;
+            Ok::<_, BenchError>(Triangles {
+                vertices: device_buffer(headless, "bench vertices", Usage::VERTEX_BUFFER, &vertices)?,
+                indices: device_buffer(headless, "bench indices", Usage::INDEX_BUFFER, &indices)?,
+                count: indices.len() as u32,
+            })
+        })?;
+        self.drawn = Some(drawn);
+        self.setup = Setup { tables, upload, ..self.setup };
+        Ok(())
+    }
+
+    unsafe fn cmd_draw(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
+        let Some(drawn) = &self.drawn else { return Ok(()) };
+        // SAFETY: as the caller promises.
+        unsafe {
+            self.kit.cmd_bind(cmd, frame.view)?;
+            self.kit.cmd_bind_pipeline(cmd, &self.pipelines, frame);
+            let device = self.lane.headless.device();
+            device.cmd_bind_vertex_buffers(cmd, 0, &[drawn.vertices.raw()], &[0]);
+            device.cmd_bind_index_buffer(cmd, drawn.indices.raw(), 0, vk::IndexType::UINT32);
+            for transform in frame.instances {
+                let constants =
+                    DrawConstants { colour: [0.7, 0.7, 0.7, 1.0], ..DrawConstants::new(transform, [1.0, 0.0, 0.0]) };
+                self.kit.cmd_push(cmd, &constants);
+                device.cmd_draw_indexed(cmd, drawn.count, 1, 0, 0, 0);
+            }
+        }
+        Ok(())
+    }
+
+    fn setup(&self) -> Setup {
+        self.setup
+    }
+
+    fn bytes(&self) -> Vec<TableBytes> {
+        let drawn = self.drawn.iter();
+        drawn.flat_map(|t| [("vertices", t.vertices.size()), ("indices", t.indices.size())]).collect()
+    }
+
+    fn control_point_bytes(&self) -> u64 {
+        0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::grid_parameters;
+
+    #[test]
+    fn lattices_cover_their_patch() {
+        for kind in [PatchKind::Regular, PatchKind::Triangle] {
+            for n in [1, 2, 5] {
+                let parameters = grid_parameters(kind, n + 1);
+                let indices = lattice(kind, n);
+                assert_eq!(parameters.len() as u64, lattice_vertices(kind, n));
+                assert_eq!(indices.len() as u64, 3 * lattice_triangles(kind, n));
+                let area = indices.chunks(3).map(|t| {
+                    let [a, b, c] = [t[0], t[1], t[2]].map(|i| glam::DVec2::from(parameters[i as usize]));
+                    (b - a).perp_dot(c - a) / 2.0
+                });
+                let areas: Vec<f64> = area.collect();
+                // All turned the same way.
+                assert!(areas.iter().all(|&a| a * areas[0] > 0.0));
+                let whole = if kind == PatchKind::Triangle { 0.5 } else { 1.0 };
+                assert!((areas.iter().sum::<f64>().abs() - whole).abs() < 1e-12);
+            }
+        }
+    }
+}

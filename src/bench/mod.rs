@@ -1,0 +1,104 @@
+//! How long it takes to draw a surface, each way there is, and how far that is from the floor.
+//!
+//! A [`Bench`] races [`Contestant`]s: schemes, constructions and [`Path`]s. For one mesh and one tessellation factor they
+//! draw in turns, A B C A B C, so that a machine that becomes slower or faster does so for all alike, and frame `i` of
+//! one is compared with frame `i` of the other. Nothing here knows files or prints.
+//!
+//! What is measured, in milliseconds:
+//!
+//! * **gpu**: from the first command of a frame to the last, by timestamps of the device: attachments are cleared, the
+//!   control points made anew, the surface drawn with pixels.
+//! * **geometry**: the same with the rasterizer switched off, into attachments of no size to speak of.
+//! * **fence**: for each of the two, on the host's clock: recording, submission, and the wait for the fence.
+//! * **construction**: geometry at factor 1 less that of the bilinear floor at factor 1: making the control points, and
+//!   evaluating the corners of a patch rather than passing them on. No device tells the stages of a draw apart more
+//!   closely.
+//! * **set-up**: tables from the mesh, then buffers and copies to the device; pipelines are not in it, but in:
+//! * **first use**: making the pipelines, and the first frame with them, in which some drivers compile. Drivers keep what
+//!   they compiled on the disk: for a first use in truth, switch that off (Mesa: `MESA_SHADER_CACHE_DISABLE=1`).
+
+mod drawable;
+mod error;
+mod floors;
+mod options;
+mod race;
+mod row;
+mod scene;
+mod subject;
+mod surface;
+
+pub use drawable::{Setup, Traffic};
+pub use error::BenchError;
+pub use options::BenchOptions;
+pub use race::{Bench, Event};
+pub use row::{Row, Series};
+pub use subject::{Subject, Subset};
+
+use crate::patch::Scheme;
+use crate::renderer::Construction;
+
+/// A way to get the surface drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Path {
+    /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
+    Tessellation,
+    /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
+    Bilinear,
+    /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
+    /// lattice, which has fewer, for triangles.
+    VertexBuffer,
+}
+
+impl Path {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Tessellation, Self::Bilinear, Self::VertexBuffer];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tessellation => "tessellation",
+            Self::Bilinear => "bilinear",
+            Self::VertexBuffer => "vertex-buffer",
+        }
+    }
+
+    /// Whether it does less than draw the surface from control vertices that move: what the others cannot get below.
+    pub fn is_floor(self) -> bool {
+        matches!(self, Self::Bilinear | Self::VertexBuffer)
+    }
+}
+
+/// One of those that are raced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Contestant {
+    /// How the surface is drawn.
+    pub path: Path,
+    /// From which patches, made how; `None` for a floor.
+    pub patches: Option<(Scheme, Construction)>,
+}
+
+impl Contestant {
+    /// Each path with each scheme and construction that it can be combined with.
+    ///
+    /// The first that is no floor is what the others are compared with.
+    pub fn all(paths: &[Path], schemes: &[Scheme], constructions: &[Construction]) -> Vec<Self> {
+        let of_path = |&path: &Path| -> Vec<Self> {
+            if path.is_floor() {
+                return vec![Self { path, patches: None }];
+            }
+            let pairs = schemes.iter().flat_map(|&s| constructions.iter().map(move |&c| (s, c)));
+            pairs.map(|pair| Self { path, patches: Some(pair) }).collect()
+        };
+        paths.iter().flat_map(of_path).collect()
+    }
+
+    /// The scheme as the program calls it; `none` for a floor.
+    pub fn scheme_name(self) -> &'static str {
+        self.patches.map_or("none", |(scheme, _)| scheme.name())
+    }
+
+    /// The construction as the program calls it; `none` for a floor.
+    pub fn construction_name(self) -> &'static str {
+        self.patches.map_or("none", |(_, construction)| construction.name())
+    }
+}

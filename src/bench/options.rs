@@ -1,0 +1,37 @@
+use crate::gpu::Spacing;
+#[cfg(doc)]
+use crate::measure::statistics::FEWEST;
+
+/// How to measure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BenchOptions {
+    /// Tessellation factors, from 1 up, of all edges and insides.
+    pub factors: Vec<f32>,
+    /// Where the tessellator puts its vertices.
+    pub spacing: Spacing,
+    /// Pixels of the picture.
+    pub size: [u32; 2],
+    /// Copies of the model that a frame draws, each with a transform of its own.
+    pub instances: u32,
+    /// Passes of a frame, each of which draws all instances again, as for depth, shadows and the picture.
+    pub passes: u32,
+    /// Frames of each contestant that count, at least [`FEWEST`].
+    pub frames: u32,
+    /// Frames of each contestant that go before and do not count.
+    pub warm_up: u32,
+}
+
+impl Default for BenchOptions {
+    /// Factors 4, 8, 16 and 32, equal spacing, 1024 x 1024 pixels, one instance, one pass, 21 frames after 3.
+    fn default() -> Self {
+        Self {
+            factors: vec![4.0, 8.0, 16.0, 32.0],
+            spacing: Spacing::Equal,
+            size: [1024, 1024],
+            instances: 1,
+            passes: 1,
+            frames: 21,
+            warm_up: 3,
+        }
+    }
+}

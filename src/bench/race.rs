@@ -1,0 +1,275 @@
+//! Everything that is raced on one mesh, drawn in turns.
+
+use super::drawable::{Drawable, Frame, Lane, Pass, VERTEX_BYTES};
+use super::floors::device_buffer;
+use super::scene::Scene;
+use super::{BenchError, BenchOptions, Contestant, Row, Series, Setup, Subject, Traffic};
+use crate::headless::{Headless, Offscreen, OffscreenDesc, Statistics};
+use crate::measure::statistics::{Estimate, FEWEST, paired_difference};
+use ash::vk;
+use std::time::Duration;
+
+/// What a race tells while it runs.
+#[derive(Debug)]
+pub enum Event {
+    /// So many frames more are done, or need not be drawn, of those that [`Bench::frames`] counts.
+    Frames(u64),
+    /// A contestant does not run, at this factor or at all: why.
+    LeftOut(Contestant, Option<f32>, BenchError),
+    /// All of one factor, in the order of the contestants.
+    Rows(Vec<Row>),
+}
+
+/// Races on one device.
+pub struct Bench<'h> {
+    headless: &'h Headless,
+    options: BenchOptions,
+    /// In the order of [`Pass::ALL`].
+    targets: [Offscreen; 2],
+}
+
+/// A contestant that runs.
+struct Runner<'a> {
+    contestant: Contestant,
+    drawable: Box<dyn Drawable + 'a>,
+    first_frame: f64,
+    construction: Option<Estimate>,
+}
+
+impl<'h> Bench<'h> {
+    /// Makes what is drawn into.
+    ///
+    /// # Errors
+    /// [`BenchError::BadOption`]; sizes that the device does not have, no memory.
+    pub fn new(headless: &'h Headless, options: BenchOptions) -> Result<Self, BenchError> {
+        let least = [
+            ("frames", options.frames, FEWEST as u32),
+            ("instances", options.instances, 1),
+            ("passes", options.passes, 1),
+        ];
+        if let Some(&(what, given, least)) = least.iter().find(|(_, given, least)| given < least) {
+            return Err(BenchError::BadOption { what, given, least });
+        }
+        let [width, height] = options.size;
+        let targets = [
+            Offscreen::new(headless, &OffscreenDesc::new(width, height))?,
+            Offscreen::new(headless, &OffscreenDesc::new(16, 16))?,
+        ];
+        // The first submissions of a device take longer than those after them.
+        device_buffer(headless, "warm-up", vk::BufferUsageFlags::STORAGE_BUFFER, &[0u32])?;
+        for target in &targets {
+            // SAFETY: the command buffer is being recorded, outside rendering.
+            headless.submit(|cmd| unsafe {
+                target.cmd_begin(cmd, [0.0; 4]);
+                target.cmd_end(cmd);
+            })?;
+        }
+        Ok(Self { headless, options, targets })
+    }
+
+    /// How it measures.
+    pub fn options(&self) -> &BenchOptions {
+        &self.options
+    }
+
+    /// How many frames a race of so many contestants draws.
+    pub fn frames(&self, contestants: usize) -> u64 {
+        let rounds = u64::from(self.options.frames + self.options.warm_up);
+        contestants as u64 * rounds * (1 + 2 * self.options.factors.len() as u64)
+    }
+
+    /// Races on one mesh, factor by factor.
+    ///
+    /// # Errors
+    /// Failed Vulkan calls. A contestant that has no patches for the mesh, or takes more memory than there is, is left
+    /// out, and `tell` hears of it.
+    pub fn race(
+        &self,
+        subject: &Subject,
+        contestants: &[Contestant],
+        mut tell: impl FnMut(Event),
+    ) -> Result<(), BenchError> {
+        let rounds = u64::from(self.options.frames + self.options.warm_up);
+        let lane = self.lane(subject);
+        let scene = Scene::new(subject, &self.options);
+        let mut runners = Vec::new();
+        for &contestant in contestants {
+            match self.runner(contestant, lane, &scene) {
+                Err(error) if error.leaves_out() => {
+                    tell(Event::LeftOut(contestant, None, error));
+                    tell(Event::Frames(self.frames(1)));
+                }
+                other => runners.push(other?),
+            }
+        }
+        self.construction(&mut runners, &scene, &mut tell)?;
+        for &factor in &self.options.factors {
+            let mut racing = Vec::new();
+            for runner in &mut runners {
+                match runner.drawable.set_factor(factor) {
+                    Err(error) if error.leaves_out() => {
+                        tell(Event::LeftOut(runner.contestant, Some(factor), error));
+                        tell(Event::Frames(2 * rounds));
+                    }
+                    Ok(()) => racing.push(runner),
+                    Err(error) => return Err(error),
+                }
+            }
+            let series = self.turns(&mut racing, &scene, factor, &Pass::ALL, &mut tell)?;
+            let rows =
+                racing.iter_mut().zip(series).map(|(runner, series)| self.row(runner, &scene, subject, factor, series));
+            tell(Event::Rows(rows.collect::<Result<_, _>>()?));
+        }
+        Ok(())
+    }
+
+    /// What a contestant draws: rows from the top, four bytes sRGB and opacity a pixel.
+    ///
+    /// # Errors
+    /// As [`Bench::race`], but a contestant that would be left out is an error here.
+    pub fn picture(&self, subject: &Subject, contestant: Contestant, factor: f32) -> Result<Vec<u8>, BenchError> {
+        let target = &self.targets[0];
+        let scene = Scene::new(subject, &self.options);
+        let mut drawable = contestant.open(self.lane(subject))?;
+        drawable.set_factor(factor)?;
+        // SAFETY: the command buffer is being recorded, outside rendering; each submission is waited for.
+        self.headless.try_submit(|cmd| unsafe { drawable.cmd_prepare(cmd) })?;
+        target.draw(self.headless, [0.0; 4], |cmd| {
+            // SAFETY: inside rendering that fits the target, after the frame was prepared.
+            unsafe { drawable.cmd_draw(cmd, &scene.frame(factor, Pass::Pixels)) }
+        })
+    }
+
+    fn lane<'a>(&'a self, subject: &'a Subject) -> Lane<'a> {
+        let BenchOptions { spacing, passes, .. } = self.options;
+        Lane { headless: self.headless, target: self.targets[0].desc(), subject, spacing, passes }
+    }
+
+    fn runner<'a>(&self, contestant: Contestant, lane: Lane<'a>, scene: &Scene) -> Result<Runner<'a>, BenchError> {
+        let mut drawable = contestant.open(lane)?;
+        drawable.set_factor(1.0)?;
+        let mut first_frame = 0.0;
+        for pass in Pass::ALL {
+            first_frame += milliseconds(self.frame(&mut *drawable, &scene.frame(1.0, pass))?[1]);
+        }
+        Ok(Runner { contestant, drawable, first_frame, construction: None })
+    }
+
+    /// What making the control points takes: factor 1, less the same of the bilinear floor.
+    fn construction(
+        &self,
+        runners: &mut [Runner],
+        scene: &Scene,
+        tell: &mut impl FnMut(Event),
+    ) -> Result<(), BenchError> {
+        let mut all: Vec<&mut Runner> = runners.iter_mut().collect();
+        let series = self.turns(&mut all, scene, 1.0, &[Pass::Geometry], tell)?;
+        let floor = runners.iter().position(|runner| runner.contestant.path == super::Path::Bilinear);
+        let Some(floor) = floor.map(|index| series[index][0].device.clone()) else { return Ok(()) };
+        for (runner, series) in runners.iter_mut().zip(series).filter(|(runner, _)| !runner.contestant.path.is_floor())
+        {
+            runner.construction = paired_difference(&series[0].device, &floor);
+        }
+        Ok(())
+    }
+
+    /// Warms up, and draws in turns: for each runner a series for each pass.
+    fn turns(
+        &self,
+        runners: &mut [&mut Runner],
+        scene: &Scene,
+        factor: f32,
+        passes: &[Pass],
+        tell: &mut impl FnMut(Event),
+    ) -> Result<Vec<Vec<Series>>, BenchError> {
+        let mut all = vec![vec![Series::default(); passes.len()]; runners.len()];
+        for round in 0..self.options.warm_up + self.options.frames {
+            for (runner, series) in runners.iter_mut().zip(&mut all) {
+                for (&pass, series) in passes.iter().zip(series) {
+                    let [device, host] = self.frame(&mut *runner.drawable, &scene.frame(factor, pass))?;
+                    if round >= self.options.warm_up {
+                        series.device.push(milliseconds(device));
+                        series.host.push(milliseconds(host));
+                    }
+                }
+                tell(Event::Frames(passes.len() as u64));
+            }
+        }
+        Ok(all)
+    }
+
+    /// Draws a frame: how long it takes on the device and on the host.
+    fn frame(&self, drawable: &mut dyn Drawable, frame: &Frame) -> Result<[Duration; 2], BenchError> {
+        // SAFETY: each submission is waited for.
+        let timing = self.headless.timed(|cmd| unsafe { self.record(cmd, drawable, frame) })?;
+        Ok([timing.device, timing.host])
+    }
+
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering; the device is done with earlier frames.
+    unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        drawable: &mut dyn Drawable,
+        frame: &Frame,
+    ) -> Result<(), BenchError> {
+        let target = &self.targets[usize::from(frame.pass == Pass::Geometry)];
+        // SAFETY: as the caller promises.
+        unsafe {
+            drawable.cmd_prepare(cmd)?;
+            for _ in 0..self.options.passes {
+                target.cmd_begin(cmd, [0.0; 4]);
+                drawable.cmd_draw(cmd, frame)?;
+                target.cmd_end(cmd);
+            }
+        }
+        Ok(())
+    }
+
+    fn row(
+        &self,
+        runner: &mut Runner,
+        scene: &Scene,
+        subject: &Subject,
+        factor: f32,
+        series: Vec<Series>,
+    ) -> Result<Row, BenchError> {
+        let frame = scene.frame(factor, Pass::Pixels);
+        let drawable = &mut *runner.drawable;
+        let counted = if self.headless.context().features().statistics {
+            // SAFETY: each submission is waited for.
+            Some(self.headless.counted(|cmd| unsafe { self.record(cmd, drawable, &frame) })?)
+        } else {
+            None
+        };
+        let count = |of: fn(&Statistics) -> u64| counted.as_ref().map(of);
+        let evaluations = count(|s| s.evaluation_invocations);
+        let vertices = count(|s| s.evaluation_invocations.max(s.vertex_invocations)).unwrap_or(0);
+        let times = u64::from(self.options.instances) * u64::from(self.options.passes);
+        let bytes = drawable.bytes();
+        let traffic = Traffic {
+            tables: times * bytes.iter().map(|(_, bytes)| bytes).sum::<u64>(),
+            control_points: times * drawable.control_point_bytes(),
+            vertices: VERTEX_BYTES * vertices,
+        };
+        let [gpu, geometry] = <[Series; 2]>::try_from(series).unwrap_or_default();
+        Ok(Row {
+            contestant: runner.contestant,
+            factor,
+            patches: times * subject.patches(),
+            evaluations,
+            computed: count(|s| s.compute_invocations),
+            triangles: count(|s| s.clipping_invocations),
+            gpu,
+            geometry,
+            construction: runner.construction,
+            setup: Setup { first_frame: runner.first_frame, ..drawable.setup() },
+            bytes,
+            traffic,
+        })
+    }
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}

@@ -1,0 +1,44 @@
+//! What comes out.
+
+use super::{Contestant, Setup, Traffic};
+use crate::measure::statistics::Estimate;
+use crate::renderer::TableBytes;
+
+/// Frame by frame, in milliseconds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// On the device, from the first command to the last.
+    pub device: Vec<f64>,
+    /// On the host's clock, with recording, submission and the wait for the fence.
+    pub host: Vec<f64>,
+}
+
+/// What one contestant did at one factor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Who.
+    pub contestant: Contestant,
+    /// The factor.
+    pub factor: f32,
+    /// Patches that a frame draws, in all instances and passes.
+    pub patches: u64,
+    /// Invocations of the evaluation stage in a frame; `None` if the device cannot count.
+    pub evaluations: Option<u64>,
+    /// Invocations of compute shaders in a frame.
+    pub computed: Option<u64>,
+    /// Triangles in a frame, before clipping.
+    pub triangles: Option<u64>,
+    /// Frames with pixels.
+    pub gpu: Series,
+    /// Frames without rasterization.
+    pub geometry: Series,
+    /// What making the control points takes, in milliseconds (see the module); `None` without the bilinear floor, and for
+    /// floors.
+    pub construction: Option<Estimate>,
+    /// What went before the first frame.
+    pub setup: Setup,
+    /// Everything that drawing reads.
+    pub bytes: Vec<TableBytes>,
+    /// What a frame moves.
+    pub traffic: Traffic,
+}

@@ -1,0 +1,117 @@
+//! What is drawn: a mesh, or some of its patches.
+
+use super::BenchError;
+use crate::mesh::{ControlMesh, MeshData};
+use crate::patch::{Fallback, Scheme};
+use crate::table::{PatchPlan, TableError, prepare};
+use crate::topology::{PatchKind, Topology};
+
+/// Which patches of a mesh are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Subset {
+    /// All of them.
+    #[default]
+    All,
+    /// Regular quads.
+    Regular,
+    /// Irregular quads and triangles.
+    Irregular,
+}
+
+impl Subset {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::All, Self::Regular, Self::Irregular];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Regular => "regular",
+            Self::Irregular => "irregular",
+        }
+    }
+
+    fn has(self, kind: PatchKind) -> bool {
+        match self {
+            Self::All => true,
+            Self::Regular => kind == PatchKind::Regular,
+            Self::Irregular => kind != PatchKind::Regular,
+        }
+    }
+}
+
+/// A mesh to be drawn, by name.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// What the mesh is called.
+    pub name: String,
+    /// The control mesh; faces that are not drawn are holes.
+    pub mesh: ControlMesh,
+    /// Steps of refinement before patches are made.
+    pub refine: u32,
+    counts: [u32; PatchKind::ALL.len()],
+}
+
+impl Subject {
+    /// A mesh, refined at least `refine` times, of which a subset of the patches is drawn.
+    ///
+    /// # Errors
+    /// [`BenchError::NoPatches`] if the subset has no patches; a refined mesh that cannot be addressed.
+    pub fn new(name: &str, mesh: ControlMesh, refine: u32, subset: Subset) -> Result<Self, BenchError> {
+        let prepared = prepare(&mesh, refine)?;
+        let topology = Topology::new(&prepared.mesh);
+        let plan = PatchPlan::new(&topology, Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
+        let counts = PatchKind::ALL.map(|kind| if subset.has(kind) { plan.count(kind) } else { 0 });
+        if counts == [0; PatchKind::ALL.len()] {
+            return Err(BenchError::NoPatches { mesh: name.to_owned(), subset: subset.name() });
+        }
+        let name = name.to_owned();
+        if subset == Subset::All {
+            return Ok(Self { name, mesh, refine, counts });
+        }
+        // Of a refined mesh, it is its own faces that are left out.
+        let holes = plan.patches().iter().filter(|patch| !subset.has(patch.kind)).map(|patch| patch.face);
+        let data = prepared.mesh.data();
+        let holes = data.holes.iter().copied().chain(holes).collect();
+        let mesh = ControlMesh::new(MeshData { holes, ..data.clone() })?;
+        Ok(Self { name, mesh, refine: 0, counts })
+    }
+
+    /// How many patches of a kind are drawn.
+    pub fn patch_count(&self, kind: PatchKind) -> u32 {
+        self.counts[kind as usize]
+    }
+
+    /// How many patches are drawn.
+    pub fn patches(&self) -> u64 {
+        self.counts.iter().map(|&count| u64::from(count)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape;
+
+    #[test]
+    fn subsets_are_drawn_alone_and_look_the_same() {
+        let of = |subset| Subject::new("creature-mixed", shape("creature-mixed").unwrap(), 0, subset).unwrap();
+        let [all, regular, irregular] = Subset::ALL.map(of);
+        assert_eq!(all.patches(), regular.patches() + irregular.patches());
+        assert_eq!(regular.patches(), u64::from(all.patch_count(PatchKind::Regular)));
+        assert!(irregular.patch_count(PatchKind::Triangle) > 0 && irregular.patch_count(PatchKind::Regular) == 0);
+        for subject in [&regular, &irregular] {
+            let topology = Topology::new(&subject.mesh);
+            let plan = PatchPlan::new(&topology, Scheme::Gregory, Fallback::Refuse).unwrap();
+            assert_eq!(PatchKind::ALL.map(|kind| plan.count(kind)), subject.counts);
+        }
+    }
+
+    #[test]
+    fn polygons_are_refined_before_patches_are_left_out() {
+        let subject = Subject::new("polygons", shape("polygons").unwrap(), 0, Subset::Irregular).unwrap();
+        assert!(subject.mesh.data().face_sizes.iter().all(|&size| size == 4));
+        let error = Subject::new("torus", shape("torus").unwrap(), 0, Subset::Irregular).unwrap_err();
+        assert_eq!(error.to_string(), "torus: it has no irregular patches: choose others");
+    }
+}

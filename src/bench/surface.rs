@@ -1,0 +1,100 @@
+//! The surface as the renderer draws it.
+
+use super::BenchError;
+use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
+use crate::measure::statistics::Summary;
+use crate::patch::Scheme;
+use crate::renderer::{
+    Construction, DrawItem, Error, ModelId, ModelOptions, ModelTables, Options, Renderer, Style, TableBytes, Target,
+};
+use crate::topology::PatchKind;
+use ash::vk;
+
+/// Tables are built as often as fits into this many milliseconds, and at least once; the median counts.
+const TABLES_MS: f64 = 300.0;
+const TABLES_TIMES: usize = 7;
+
+pub(super) struct Surface {
+    renderer: Renderer,
+    model: ModelId,
+    setup: Setup,
+    bytes: Vec<TableBytes>,
+    control_point_bytes: u64,
+}
+
+impl Surface {
+    pub(super) fn new(lane: Lane, scheme: Scheme, construction: Construction) -> Result<Self, BenchError> {
+        let Lane { headless, target, subject, spacing, passes } = lane;
+        let name = subject.name.clone();
+        let model_options =
+            ModelOptions { name, scheme, construction, spacing, refine: subject.refine, ..ModelOptions::default() };
+        let (tables, tables_ms) = build_tables(lane, &model_options)?;
+        // In the order of `Pass::ALL`.
+        let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
+        let options = Options { frames_in_flight: 1, views_per_frame: passes, styles, ..Options::default() };
+        let render_target = Target::dynamic(target.color, target.depth, target.samples);
+        let positions = subject.mesh.positions_f32();
+        let spare = tables.clone();
+        let ((mut renderer, first), pipelines) = timed(|| {
+            // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
+            let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options)? };
+            let model = renderer.add_tables(spare, &positions, &model_options)?;
+            Ok::<_, Error>((renderer, model))
+        })?;
+        // Once more, now that the pipelines are there.
+        renderer.remove_model(first)?;
+        let bytes = tables.bytes();
+        let points = |kind| u64::from(tables.patch_count(kind)) * 12 * scheme.points(kind) as u64;
+        let control_point_bytes = PatchKind::ALL.map(points).iter().sum();
+        let (model, upload) = timed(|| {
+            let model = renderer.add_tables(tables, &positions, &model_options)?;
+            // SAFETY: the command buffer is being recorded, outside rendering.
+            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+            Ok::<_, Error>(model)
+        })?;
+        let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
+        Ok(Self { renderer, model, setup, bytes, control_point_bytes })
+    }
+}
+
+fn build_tables(lane: Lane, options: &ModelOptions) -> Result<(ModelTables, f64), BenchError> {
+    let mut times = Vec::new();
+    loop {
+        let (tables, time) = timed(|| ModelTables::new(&lane.subject.mesh, options))?;
+        times.push(time);
+        if times.len() == TABLES_TIMES || times.iter().sum::<f64>() + time > TABLES_MS {
+            return Ok((tables, Summary::of(&times).map_or(0.0, |summary| summary.median)));
+        }
+    }
+}
+
+impl Drawable for Surface {
+    unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer) -> Result<(), BenchError> {
+        // Frames are timed as if the vertices had moved.
+        self.renderer.forget_control_points(self.model)?;
+        // SAFETY: as the caller promises.
+        unsafe { self.renderer.cmd_prepare(cmd, 0)? };
+        Ok(())
+    }
+
+    unsafe fn cmd_draw(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
+        let item =
+            DrawItem { style: usize::from(frame.pass == Pass::Geometry), ..DrawItem::new(self.model, frame.factor) };
+        let items: Vec<_> = frame.instances.iter().map(|&transform| DrawItem { transform, ..item }).collect();
+        // SAFETY: as the caller promises.
+        unsafe { self.renderer.cmd_draw(cmd, 0, frame.view, &items)? };
+        Ok(())
+    }
+
+    fn setup(&self) -> Setup {
+        self.setup
+    }
+
+    fn bytes(&self) -> Vec<TableBytes> {
+        self.bytes.clone()
+    }
+
+    fn control_point_bytes(&self) -> u64 {
+        self.control_point_bytes
+    }
+}

@@ -1,0 +1,71 @@
+//! Results of two days side by side.
+
+use super::super::error::CliError;
+use super::results::{GEOMETRY, GPU, Interval, Results, Row};
+use ash_subdiv::measure::statistics::{CONFIDENCE, change};
+use serde::{Deserialize, Serialize};
+
+/// How a row changed, with pixels or without.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Change {
+    pub mesh: String,
+    pub scheme: String,
+    pub construction: String,
+    pub path: String,
+    pub spacing: String,
+    pub factor: f32,
+    /// `gpu` or `geometry`.
+    pub what: String,
+    pub old_ms: f64,
+    pub new_ms: f64,
+    /// New over old.
+    pub ratio: Interval,
+    /// That there is a difference, from 0 to 1.
+    pub confidence: f64,
+}
+
+impl Change {
+    /// Faster or slower, if that is sure enough.
+    pub(super) fn verdict(&self) -> &'static str {
+        match self.ratio {
+            _ if self.confidence < CONFIDENCE => "the same",
+            Interval { high, .. } if high < 1.0 => "faster",
+            Interval { low, .. } if low > 1.0 => "slower",
+            _ => "the same",
+        }
+    }
+}
+
+/// The rows that both have.
+pub(super) fn changes(old: &Results, new: &Results) -> Result<Vec<Change>, CliError> {
+    let mut changes = Vec::new();
+    for row in &new.rows {
+        let before = old.rows.iter().find(|before| before.key() == row.key());
+        changes.extend(
+            before.into_iter().flat_map(|before| [GPU, GEOMETRY].map(|what| of_row(before, row, what))).flatten(),
+        );
+    }
+    if changes.is_empty() {
+        let what = "the results to compare with have no row in common with these: measure the same meshes and factors";
+        return Err(CliError::Work(what.into()));
+    }
+    Ok(changes)
+}
+
+fn of_row(old: &Row, new: &Row, what: &str) -> Option<Change> {
+    let of = change(old.frames_ms.get(what)?, new.frames_ms.get(what)?)?;
+    let median = |row: &Row| if what == GPU { row.gpu_ms.median } else { row.geometry_ms.median };
+    Some(Change {
+        mesh: new.mesh.clone(),
+        scheme: new.scheme.clone(),
+        construction: new.construction.clone(),
+        path: new.path.clone(),
+        spacing: new.spacing.clone(),
+        factor: new.factor,
+        what: what.to_owned(),
+        old_ms: median(old),
+        new_ms: median(new),
+        ratio: of.ratio.into(),
+        confidence: of.confidence,
+    })
+}

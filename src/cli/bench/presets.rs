@@ -1,0 +1,235 @@
+//! What papers measured: the same measurement, and their figures.
+
+use super::results::Row;
+use ash_subdiv::bench::Subset;
+use ash_subdiv::{Construction, Scheme};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use serde::{Deserialize, Serialize};
+
+/// A table of a paper.
+#[derive(Debug)]
+pub(super) struct Preset {
+    name: &'static str,
+    pub title: &'static str,
+    /// What is not the same, and what the figures are.
+    pub note: &'static str,
+    pub schemes: &'static [Scheme],
+    pub constructions: &'static [Construction],
+    pub factors: &'static [f32],
+    pub patches: Subset,
+    pub instances: u32,
+    unit: Unit,
+    /// Measured without pixels.
+    geometry: bool,
+    /// Of each mesh, ratios are to the first.
+    published: &'static [Published],
+}
+
+impl PartialEq for Preset {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Unit {
+    Milliseconds,
+    FramesASecond,
+}
+
+impl Unit {
+    fn name(self) -> &'static str {
+        if self == Self::Milliseconds { "ms" } else { "frames/s" }
+    }
+
+    fn milliseconds(self, figure: f64) -> f64 {
+        if self == Self::Milliseconds { figure } else { 1e3 / figure }
+    }
+}
+
+/// One figure: the mesh as the paper calls it, how it was drawn, and the figure.
+#[derive(Debug)]
+struct Published(&'static str, Scheme, Construction, f32, f64);
+
+use Construction::{Stencil, TwoStage};
+use Scheme::{Acc, CPatch, Gregory, Pm};
+
+static PRESETS: [Preset; 5] = [
+    Preset {
+        name: "loop2009-table1",
+        title: "Loop, Schaefer, Ni, Castaño 2009, table 1: 508 irregular quads",
+        note: "Published: milliseconds in a simulator of Direct3D 11 hardware, N taken as the factor. Measured: geometry alone.",
+        schemes: &[Gregory, Acc, Pm],
+        constructions: &[TwoStage, Stencil],
+        factors: &[6.0, 10.0],
+        patches: Subset::Irregular,
+        instances: 1,
+        unit: Unit::Milliseconds,
+        geometry: true,
+        published: &[
+            Published("508 irregular quads", Gregory, TwoStage, 10.0, 0.1047),
+            Published("508 irregular quads", Pm, TwoStage, 10.0, 0.1327),
+            Published("508 irregular quads", Gregory, Stencil, 10.0, 0.0913),
+            Published("508 irregular quads", Acc, Stencil, 10.0, 0.104),
+            Published("508 irregular quads", Gregory, TwoStage, 6.0, 0.0485),
+            Published("508 irregular quads", Gregory, Stencil, 6.0, 0.053),
+        ],
+    },
+    Preset {
+        name: "loop2009-table2",
+        title: "Loop, Schaefer, Ni, Castaño 2009, table 2: patches made every frame",
+        note: "Published: frames a second on a GTX 260, instanced grids of N points along an edge, taken as factor N - 1. \
+               Measured: tessellation stages, with pixels.",
+        schemes: &[Gregory, Acc, Pm],
+        constructions: &[TwoStage],
+        factors: &[16.0, 24.0],
+        patches: Subset::All,
+        instances: 1,
+        unit: Unit::FramesASecond,
+        geometry: false,
+        published: &[
+            Published("frog", Gregory, TwoStage, 16.0, 398.0),
+            Published("frog", Acc, TwoStage, 16.0, 365.0),
+            Published("frog", Pm, TwoStage, 16.0, 377.0),
+            Published("frog", Gregory, TwoStage, 24.0, 213.0),
+            Published("frog", Acc, TwoStage, 24.0, 186.0),
+            Published("frog", Pm, TwoStage, 24.0, 208.0),
+            Published("bigguy", Gregory, TwoStage, 16.0, 370.0),
+            Published("bigguy", Acc, TwoStage, 16.0, 348.0),
+            Published("bigguy", Pm, TwoStage, 16.0, 359.0),
+            Published("bigguy", Gregory, TwoStage, 24.0, 194.0),
+            Published("bigguy", Acc, TwoStage, 24.0, 176.0),
+            Published("bigguy", Pm, TwoStage, 24.0, 186.0),
+        ],
+    },
+    Preset {
+        name: "ni2008-table4",
+        title: "Ni, Yeo, Myles, Goel, Peters 2008, table 4: c-patches",
+        note: "Published: frames a second, N x N points a patch, N = 5, 9, 17, 33, taken as factor N - 1, through vertex and \
+               geometry shaders. Measured: tessellation stages, with pixels.",
+        schemes: &[CPatch],
+        constructions: &[TwoStage],
+        factors: &[4.0, 8.0, 16.0, 32.0],
+        patches: Subset::All,
+        instances: 1,
+        unit: Unit::FramesASecond,
+        geometry: false,
+        published: &[
+            Published("sword", CPatch, TwoStage, 4.0, 965.0),
+            Published("sword", CPatch, TwoStage, 8.0, 965.0),
+            Published("sword", CPatch, TwoStage, 16.0, 965.0),
+            Published("sword", CPatch, TwoStage, 32.0, 703.0),
+            Published("head", CPatch, TwoStage, 4.0, 637.0),
+            Published("head", CPatch, TwoStage, 8.0, 557.0),
+            Published("head", CPatch, TwoStage, 16.0, 376.0),
+            Published("head", CPatch, TwoStage, 32.0, 165.0),
+            Published("frog", CPatch, TwoStage, 4.0, 483.0),
+            Published("frog", CPatch, TwoStage, 8.0, 392.0),
+            Published("frog", CPatch, TwoStage, 16.0, 226.0),
+            Published("frog", CPatch, TwoStage, 32.0, 87.0),
+        ],
+    },
+    Preset {
+        name: "ni2008-table5",
+        title: "Ni, Yeo, Myles, Goel, Peters 2008, table 5: c-patches, nine instances of one model",
+        note: "The published figures are not at hand, and left out.",
+        schemes: &[CPatch],
+        constructions: &[TwoStage],
+        factors: &[4.0, 8.0, 16.0, 32.0],
+        patches: Subset::All,
+        instances: 9,
+        unit: Unit::FramesASecond,
+        geometry: false,
+        published: &[],
+    },
+    Preset {
+        name: "antal2007",
+        title: "Antal et al. 2007: Catmull-Clark subdivision of 1300 quads in geometry shaders, by levels 0, 1, 2",
+        note: "Published: frames a second on an 8800 GTX; levels taken as factors 1, 2, 4. Measured: Gregory patches through \
+               tessellation stages, with pixels.",
+        schemes: &[Gregory],
+        constructions: &[TwoStage],
+        factors: &[1.0, 2.0, 4.0],
+        patches: Subset::All,
+        instances: 1,
+        unit: Unit::FramesASecond,
+        geometry: false,
+        published: &[
+            Published("1300 quads", Gregory, TwoStage, 1.0, 1073.0),
+            Published("1300 quads", Gregory, TwoStage, 2.0, 306.0),
+            Published("1300 quads", Gregory, TwoStage, 4.0, 18.8),
+        ],
+    },
+];
+
+/// A preset by its name.
+pub(super) fn parser() -> impl TypedValueParser<Value = &'static Preset> {
+    PossibleValuesParser::new(PRESETS.iter().map(|preset| preset.name)).map(|given| {
+        // The parser lets none but these names through.
+        PRESETS.iter().find(|preset| preset.name == given).unwrap_or(&PRESETS[0])
+    })
+}
+
+/// A published figure and what was measured in its place.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Beside {
+    pub published_mesh: String,
+    pub scheme: String,
+    pub construction: String,
+    pub factor: f32,
+    pub figure: f64,
+    pub unit: String,
+    /// Of times, to the first figure of the mesh.
+    pub published_ratio: f64,
+    pub mesh: String,
+    pub ms: f64,
+    /// Of medians, to the row in place of that figure.
+    pub ratio: f64,
+}
+
+impl Preset {
+    /// Each figure with each mesh measured; with the mesh of its name alone, where there is one.
+    pub(super) fn beside(&self, rows: &[Row]) -> Vec<Beside> {
+        let mut lines = Vec::new();
+        for figures in self.published.chunk_by(|a, b| a.0 == b.0) {
+            for rows in rows.chunk_by(|a, b| a.mesh == b.mesh) {
+                let mesh = &rows[0].mesh;
+                let known = self.published.iter().find(|published| mesh.contains(published.0));
+                if known.is_none_or(|known| known.0 == figures[0].0) {
+                    lines.extend(self.lines(figures, rows));
+                }
+            }
+        }
+        lines
+    }
+
+    fn lines(&self, figures: &[Published], rows: &[Row]) -> Vec<Beside> {
+        let row = |published: &Published| {
+            let Published(_, scheme, construction, factor, _) = published;
+            let wanted = |row: &&Row| {
+                let of_patches = (&*row.scheme, &*row.construction) == (scheme.name(), construction.name());
+                of_patches && row.path == "tessellation" && row.factor == *factor
+            };
+            let row = rows.iter().find(wanted)?;
+            Some((row, if self.geometry { row.geometry_ms.median } else { row.gpu_ms.median }))
+        };
+        let Some((_, base)) = figures.first().and_then(row) else { return Vec::new() };
+        let published_base = self.unit.milliseconds(figures[0].4);
+        let line = |published: &Published| {
+            let (row, ms) = row(published)?;
+            Some(Beside {
+                published_mesh: published.0.to_owned(),
+                scheme: row.scheme.clone(),
+                construction: row.construction.clone(),
+                factor: row.factor,
+                figure: published.4,
+                unit: self.unit.name().to_owned(),
+                published_ratio: self.unit.milliseconds(published.4) / published_base,
+                mesh: row.mesh.clone(),
+                ms,
+                ratio: ms / base,
+            })
+        };
+        figures.iter().filter_map(line).collect()
+    }
+}

@@ -1,0 +1,161 @@
+//! Plots as SVG. Colours of text and axes are the page's: its style sheet overrules those given here.
+
+use super::super::super::error::CliError;
+use crate::cli::canvas::{FONT, load_font};
+use plotters::coord::ranged1d::DefaultFormatting;
+use plotters::prelude::*;
+use plotters::style::Color;
+use std::ops::Range;
+
+/// What a plot shows of one contestant.
+pub(super) struct Line {
+    pub style: LineStyle,
+    /// Both above zero: the axes are logarithmic.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// How a contestant is drawn, the same in all plots.
+#[derive(Clone, Copy)]
+pub(super) struct LineStyle {
+    pub colour: RGBColor,
+    pub mark: Mark,
+}
+
+/// What tells lines of one colour apart.
+#[derive(Clone, Copy)]
+pub(super) struct Mark {
+    /// Pixels of a dash and of the gap after it; none for a whole line.
+    pub dash: Option<[u32; 2]>,
+    /// Of the points.
+    pub radius: u32,
+    pub filled: bool,
+}
+
+/// For constructions, in their order; again from the first if there are more.
+pub(super) const MARKS: [Mark; 3] = [
+    Mark { dash: None, radius: 4, filled: true },
+    Mark { dash: Some([6, 4]), radius: 4, filled: false },
+    Mark { dash: Some([2, 4]), radius: 2, filled: true },
+];
+
+/// For schemes, in their order; seen on white and on black alike (Okabe and Ito's, a little darker or lighter).
+pub(super) const COLOURS: [RGBColor; 7] = [
+    RGBColor(0x1f, 0x77, 0xc4),
+    RGBColor(0xd5, 0x5e, 0x00),
+    RGBColor(0x0a, 0x9e, 0x73),
+    RGBColor(0xc7, 0x66, 0xa5),
+    RGBColor(0xc4, 0x90, 0x10),
+    RGBColor(0x3a, 0xa0, 0xd8),
+    RGBColor(0x9a, 0x6a, 0x4a),
+];
+/// For floors.
+pub(super) const FLOOR: RGBColor = RGBColor(0x88, 0x88, 0x88);
+
+const SIZE: (u32, u32) = (560, 380);
+
+/// A plot with both axes logarithmic.
+///
+/// Marks along x are at `marks`, or at round numbers if there are none.
+pub(super) fn plot(x: &str, marks: &[f64], y: &str, lines: &[Line]) -> Result<String, CliError> {
+    let failed = |e: &dyn std::fmt::Display| CliError::Work(format!("the plot of {y} can't be drawn: {e}"));
+    load_font();
+    let mut svg = String::new();
+    let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+    let of = |axis: fn(&(f64, f64)) -> f64| range(lines.iter().flat_map(|line| &line.points).map(axis));
+    let mut chart = ChartBuilder::on(&area)
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(56)
+        .build_cartesian_2d(axis(of(|p| p.0), marks), axis(of(|p| p.1), &[]))
+        .map_err(|e| failed(&e))?;
+    let font = (FONT, 13).into_font();
+    chart
+        .configure_mesh()
+        .x_desc(x)
+        .y_desc(y)
+        .label_style(font.clone())
+        .axis_desc_style(font)
+        .bold_line_style(BLACK.mix(0.18))
+        .light_line_style(TRANSPARENT)
+        .x_label_formatter(&|x| number(*x))
+        .y_label_formatter(&|y| number(*y))
+        .draw()
+        .map_err(|e| failed(&e))?;
+    for Line { style: LineStyle { colour, mark }, points } in lines {
+        let stroke = colour.stroke_width(2);
+        let points = points.iter().copied();
+        let drawn = match mark.dash {
+            Some([dash, gap]) => chart.draw_series(DashedLineSeries::new(points.clone(), dash, gap, stroke)).map(drop),
+            None => chart.draw_series(LineSeries::new(points.clone(), stroke)).map(drop),
+        };
+        drawn.map_err(|e| failed(&e))?;
+        let fill = if mark.filled { colour.filled() } else { stroke };
+        chart.draw_series(points.map(|at| Circle::new(at, mark.radius, fill))).map_err(|e| failed(&e))?;
+    }
+    area.present().map_err(|e| failed(&e))?;
+    drop(chart);
+    drop(area);
+    Ok(svg)
+}
+
+/// From a little below to a little above all values.
+fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
+    // Where all are the same, or there are none.
+    let (low, high) = if low <= high { (low, high) } else { (1.0, 1.0) };
+    low / 1.25..high * 1.25
+}
+
+/// A logarithmic axis with these marks, or with marks at round numbers: as many as are needed for three, or all there are.
+fn axis(range: Range<f64>, given: &[f64]) -> impl Ranged<ValueType = f64, FormatOption = DefaultFormatting> {
+    const DECADES: [&[f64]; 4] =
+        [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 5.0], &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0]];
+    if !given.is_empty() {
+        return range.log_scale().with_key_points(given.to_vec());
+    }
+    let decades = range.start.log10().floor() as i32..=range.end.log10().floor() as i32;
+    let marks = |steps: &[f64]| -> Vec<f64> {
+        let all = decades.clone().flat_map(|decade| steps.iter().map(move |step| step * 10f64.powi(decade)));
+        all.filter(|mark| range.contains(mark)).collect()
+    };
+    let all = DECADES.map(marks);
+    let enough = all.iter().find(|marks| marks.len() >= 3).unwrap_or(&all[3]).clone();
+    range.log_scale().with_key_points(enough)
+}
+
+/// Two digits that count at least, without zeros that say nothing.
+fn number(x: f64) -> String {
+    let decimals = (1.0 - x.log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{x:.decimals$}");
+    if x >= 1e5 {
+        format!("{x:.0e}")
+    } else if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_is_in_the_plot() {
+        let line = |mark, points: &[(f64, f64)]| Line {
+            style: LineStyle { colour: COLOURS[0], mark: MARKS[mark] },
+            points: points.to_vec(),
+        };
+        let svg =
+            plot("factor", &[4.0, 8.0], "ms", &[line(0, &[(4.0, 1.0), (8.0, 3.0)]), line(1, &[(4.0, 2.0)])]).unwrap();
+        assert_eq!(svg.matches("<circle").count(), 3);
+        assert!(svg.starts_with("<svg") && svg.contains("factor") && svg.trim_end().ends_with("</svg>"));
+        assert!(plot("factor", &[], "ms", &[]).is_ok());
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let numbers = [0.0025, 0.05, 0.12, 1.0, 2.5, 10.0, 12.4, 1000.0, 1e6].map(number);
+        assert_eq!(numbers, ["0.0025", "0.05", "0.12", "1", "2.5", "10", "12", "1000", "1e6"]);
+    }
+}

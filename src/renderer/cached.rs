@@ -1,0 +1,146 @@
+//! The compute passes of the cached construction.
+
+use super::stages::PatchStages;
+use super::{ModelId, Renderer};
+use crate::gpu::{
+    ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout, shaders,
+};
+use crate::table::PatchPlan;
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Invocations in a workgroup of `glsl/compute/control_points.comp`.
+const GROUP: u32 = 64;
+/// Every Vulkan device has as many workgroups along an axis.
+const MAX_GROUPS: u32 = 65_535;
+
+/// The push constants of a dispatch. GLSL twin: `Patches` in `glsl/compute/control_points.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Dispatch {
+    first_patch: u32,
+    first_corner: u32,
+    corners: u32,
+    invocations: u32,
+}
+
+/// Pipelines by the control points that a corner owns, and those it has room for.
+pub(super) struct CachedPipelines {
+    context: Arc<DeviceContext>,
+    layout: Owned<vk::PipelineLayout>,
+    cache: vk::PipelineCache,
+    made: HashMap<[usize; 2], Owned<vk::Pipeline>>,
+}
+
+impl CachedPipelines {
+    /// With the set layouts of the draws.
+    pub(super) fn new(
+        context: &Arc<DeviceContext>,
+        sets: [vk::DescriptorSetLayout; 2],
+        cache: vk::PipelineCache,
+    ) -> Result<Self, GpuError> {
+        let size = size_of::<Dispatch>() as u32;
+        let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
+        // SAFETY: the set layouts are of this device.
+        let layout = unsafe { pipeline_layout(context, "subdiv control points", &sets, &constants)? };
+        Ok(Self { context: context.clone(), layout, cache, made: HashMap::new() })
+    }
+
+    fn key(stages: PatchStages) -> [usize; 2] {
+        [stages.scheme.owned(stages.kind), stages.stride as usize]
+    }
+
+    /// Makes what patches need.
+    pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
+        let key = Self::key(stages);
+        if self.made.contains_key(&key) {
+            return Ok(());
+        }
+        let [owned, stride] = key;
+        let name = format!("COMPUTE_CONTROL_POINTS_COMP_OWNED_{owned}");
+        let missing = || GpuError::BadPipeline { object: name.clone(), message: "there is no such shader".to_owned() };
+        let stride = [Specialization::uint(3, stride as u32)];
+        let desc = ComputePipelineDesc {
+            name: &format!("subdiv control points, {owned} a corner"),
+            layout: self.layout.raw(),
+            shader: Shader::compute(shaders::find(&name).ok_or_else(missing)?).specialized(&stride),
+            cache: self.cache,
+        };
+        // SAFETY: the shader is ours and matches the layout.
+        let pipeline = unsafe { desc.create(&self.context)? };
+        self.made.insert(key, pipeline);
+        Ok(())
+    }
+
+    /// Records the dispatches for all patches of a model, whose set this is.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering; the pipelines of `stages` were made.
+    pub(super) unsafe fn cmd_compute(
+        &self,
+        cmd: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        stages: &[PatchStages],
+        plan: &PatchPlan,
+    ) {
+        let (device, layout) = (self.context.device(), self.layout.raw());
+        let point = vk::PipelineBindPoint::COMPUTE;
+        // SAFETY: as the caller promises.
+        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[set], &[]) };
+        for (&stages, group) in stages.iter().zip(plan.groups()) {
+            let Some(pipeline) = self.made.get(&Self::key(stages)) else { continue };
+            let corners = group.kind.corners() as u32;
+            let dispatch = Dispatch {
+                first_patch: group.patches.start as u32,
+                first_corner: group.first_corner as u32,
+                corners,
+                invocations: group.patches.len() as u32 * corners,
+            };
+            let groups = dispatch.invocations.div_ceil(GROUP);
+            let rows = groups.div_ceil(MAX_GROUPS);
+            // SAFETY: as the caller promises.
+            unsafe {
+                device.cmd_bind_pipeline(cmd, point, pipeline.raw());
+                let stage = vk::ShaderStageFlags::COMPUTE;
+                device.cmd_push_constants(cmd, layout, stage, 0, bytemuck::bytes_of(&dispatch));
+                device.cmd_dispatch(cmd, groups.div_ceil(rows), rows, 1);
+            }
+        }
+    }
+}
+
+impl Renderer {
+    /// Records the computation of control points, for draws to read them.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, after the copies and the barrier that follows them. That and the one
+    /// before the copies have the computation wait for what read the points before.
+    pub(super) unsafe fn cmd_compute(&mut self, cmd: vk::CommandBuffer, models: &[ModelId]) {
+        if models.is_empty() {
+            return;
+        }
+        for id in models {
+            if let Some(model) = self.models.get_mut(id) {
+                // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
+                unsafe { model.cmd_compute(&self.pipelines.cached, cmd) };
+            }
+        }
+        let (compute, control) =
+            (vk::PipelineStageFlags::COMPUTE_SHADER, vk::PipelineStageFlags::TESSELLATION_CONTROL_SHADER);
+        let written = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ)];
+        let none = vk::DependencyFlags::empty();
+        // SAFETY: as the caller promises.
+        unsafe { self.context.device().cmd_pipeline_barrier(cmd, compute, control, none, &written, &[], &[]) };
+    }
+
+    /// Has a model's control points made anew in the next frame: the bench times them.
+    #[cfg(all(feature = "measure", feature = "headless"))]
+    pub(crate) fn forget_control_points(&mut self, id: ModelId) -> Result<(), super::Error> {
+        self.models.get_mut(&id).ok_or(super::Error::NoSuchModel { id })?.forget_points();
+        Ok(())
+    }
+}

@@ -1,0 +1,147 @@
+//! The bench draws what it says it draws.
+#![cfg(all(feature = "measure", feature = "headless"))]
+
+mod common;
+
+use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Event, Path, Row, Subject, Subset};
+use ash_subdiv::headless::Headless;
+use ash_subdiv::{Construction, Scheme, Spacing, shape};
+use common::headless;
+
+const GREGORY: Contestant =
+    Contestant { path: Path::Tessellation, patches: Some((Scheme::Gregory, Construction::TwoStage)) };
+
+fn floor(path: Path) -> Contestant {
+    Contestant { path, patches: None }
+}
+
+fn options() -> BenchOptions {
+    BenchOptions { factors: vec![1.0, 3.0], size: [128, 128], frames: 6, warm_up: 0, ..BenchOptions::default() }
+}
+
+fn subject(name: &str) -> Subject {
+    Subject::new(name, shape(name).unwrap(), 0, Subset::All).unwrap()
+}
+
+fn race(headless: &Headless, options: BenchOptions, name: &str, contestants: &[Contestant]) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let bench = Bench::new(headless, options).unwrap();
+    let mut frames = 0;
+    bench
+        .race(&subject(name), contestants, |event| match event {
+            Event::Rows(more) => rows.extend(more),
+            Event::Frames(more) => frames += more,
+            Event::LeftOut(..) => {}
+        })
+        .unwrap();
+    assert_eq!(frames, bench.frames(contestants.len()));
+    rows
+}
+
+/// Pixels that differ by more than rounding makes them.
+fn different(a: &[u8], b: &[u8]) -> usize {
+    a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 12)).count()
+}
+
+fn covered(pixels: &[u8]) -> usize {
+    pixels.chunks(4).filter(|pixel| pixel[3] > 0).count()
+}
+
+#[test]
+fn a_vertex_buffer_is_the_same_surface() {
+    let headless = headless();
+    for (name, spacing) in [("creature", Spacing::Equal), ("cloth", Spacing::FractionalEven)] {
+        let bench = Bench::new(&headless, BenchOptions { spacing, ..options() }).unwrap();
+        let subject = subject(name);
+        let [drawn, before] = [GREGORY, floor(Path::VertexBuffer)].map(|c| bench.picture(&subject, c, 4.0).unwrap());
+        let (pixels, other) = (covered(&drawn), different(&drawn, &before));
+        // Rounding moves the silhouette by a pixel here and there.
+        assert!(pixels > 1500 && other * 100 <= pixels, "{name}: {other} of {pixels}");
+    }
+    headless.finish_silent();
+}
+
+#[test]
+fn the_bilinear_floor_is_the_control_mesh() {
+    let headless = headless();
+    let bench = Bench::new(&headless, options()).unwrap();
+    for name in ["cube", "tetrahedron"] {
+        let subject = subject(name);
+        let [flat, finer] = [1.0, 5.0].map(|f| bench.picture(&subject, floor(Path::Bilinear), f).unwrap());
+        // Flat faces stay flat; the surface shrinks from them.
+        assert!(different(&flat, &finer) <= 8, "{name}: {}", different(&flat, &finer));
+        assert!(covered(&bench.picture(&subject, GREGORY, 5.0).unwrap()) < covered(&flat) * 9 / 10);
+    }
+    drop(bench);
+    headless.finish_silent();
+}
+
+#[test]
+fn a_race_counts_what_was_drawn() {
+    let headless = headless();
+    let all = Contestant::all(&Path::ALL, &Scheme::ALL, &Construction::ALL);
+    let rows = race(&headless, BenchOptions { instances: 3, passes: 2, ..options() }, "cube", &all);
+    assert_eq!(rows.len(), 2 * all.len());
+    for (row, contestant) in rows.iter().zip(all.iter().cycle()) {
+        let n = row.factor as u64;
+        assert_eq!((row.contestant, row.patches), (*contestant, 36));
+        assert_eq!(row.triangles, Some(36 * 2 * n * n));
+        let evaluations = if contestant.path == Path::VertexBuffer { 0 } else { 36 * (n + 1) * (n + 1) };
+        assert_eq!(row.evaluations, Some(evaluations));
+        assert_eq!(row.traffic.vertices, 40 * 36 * (n + 1) * (n + 1));
+        let points = contestant.patches.map(|(scheme, _)| scheme.owned(ash_subdiv::topology::PatchKind::IrregularQuad));
+        let points = points.unwrap_or(if contestant.path == Path::Bilinear { 1 } else { 0 }) as u64;
+        assert_eq!(row.traffic.control_points, 12 * 4 * points * 36);
+        assert_eq!(row.construction.is_some(), !contestant.path.is_floor());
+        for series in [&row.gpu, &row.geometry] {
+            assert!(series.device.len() == 6 && series.device.iter().all(|&ms| ms > 0.0));
+            assert!(series.host.iter().zip(&series.device).all(|(host, device)| host >= device));
+        }
+        assert!(row.setup.tables > 0.0 && row.setup.upload > 0.0 && row.setup.first_use() > 0.0);
+    }
+    headless.finish_silent();
+}
+
+#[test]
+fn contestants_that_cannot_are_left_out() {
+    let headless = headless();
+    let bench = Bench::new(&headless, options()).unwrap();
+    let all = Contestant::all(&[Path::Tessellation], &[Scheme::Gregory, Scheme::Acc], &[Construction::Stencil]);
+    let mut left = Vec::new();
+    let mut rows = 0;
+    bench
+        .race(&subject("tetrahedron"), &all, |event| match event {
+            Event::LeftOut(contestant, None, why) => left.push((contestant.scheme_name(), why.to_string())),
+            Event::Rows(more) => rows += more.len(),
+            _ => {}
+        })
+        .unwrap();
+    assert_eq!((left.len(), rows), (1, 2));
+    assert!(left[0].0 == "acc" && left[0].1.contains("no patches for triangles"), "{left:?}");
+    let error = bench.picture(&subject("tetrahedron"), all[1], 1.0).unwrap_err().to_string();
+    assert!(error.contains("no patches for triangles"));
+    let few = Bench::new(&headless, BenchOptions { frames: 5, ..options() }).map(drop).unwrap_err();
+    assert_eq!(few.to_string(), "frames of BenchOptions is 5: it must be at least 6");
+    drop(bench);
+    headless.finish_silent();
+}
+
+#[test]
+fn cached_control_points_are_made_in_every_frame_that_is_timed() {
+    let headless = headless();
+    let cached = Contestant { patches: Some((Scheme::Gregory, Construction::Cached)), ..GREGORY };
+    let rows = race(&headless, BenchOptions { passes: 3, ..options() }, "creature-mixed", &[GREGORY, cached]);
+    let points = |row: &Row| row.bytes.iter().find(|(name, _)| *name == "control_points").map(|(_, bytes)| *bytes);
+    assert_eq!(points(&rows[0]), None);
+    let corners: u64 = {
+        use ash_subdiv::topology::PatchKind;
+        let subject = subject("creature-mixed");
+        PatchKind::ALL.map(|kind| u64::from(subject.patch_count(kind)) * kind.corners() as u64).iter().sum()
+    };
+    assert_eq!(points(&rows[1]), Some(12 * 5 * corners));
+    // Once a frame, whatever the number of passes: 64 invocations a group.
+    let counted = rows[1].computed.expect("lavapipe counts");
+    assert!(counted >= corners && counted < corners + 3 * 64, "{counted} for {corners}");
+    assert_eq!(rows[0].computed, Some(0));
+    headless.finish_silent();
+}
