@@ -81,11 +81,12 @@
 //!   2009, an independent implementation of the same patches in `f64` measures, as root mean squares over all faces,
 //!   2e-5 to 4e-5 of the diagonal (nearest distance) and half a degree (normal).
 //! * Neighbouring patches share their edge curve and tangent planes along it (G1; [`Scheme::Acc`]: shading normals).
-//!   The GPU evaluates the curve once for each patch: to the same bits with Gregory patches made by
-//!   [`Construction::TwoStage`], else to rounding. Normals agree to rounding. Where faces fall back to Gregory patches
+//!   The GPU evaluates the curve once for each patch: with Gregory patches, fitted or not, to the same bits in every
+//!   construction; with other schemes to rounding. Normals agree to rounding, and to the bit with
+//!   [`ModelOptions::shared_normals`]. Where faces fall back to Gregory patches
 //!   ([`Fallback`]), they share their edge curves with patches of another scheme, too, but not all tangent planes
 //!   ([`patch::FallbackRings`]).
-//! * The two constructions on the GPU ([`Construction`]) make the same control points but for rounding.
+//! * The constructions on the GPU ([`Construction`]) make the same control points but for rounding.
 //!
 //! # Where the formulas come from
 //!

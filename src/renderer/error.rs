@@ -22,7 +22,7 @@ pub enum Error {
     NoSuchDisplacement { id: DisplacementId },
     #[error("model {}: {given} positions are given, but its control mesh has {needed} vertices", id.0)]
     PositionCount { id: ModelId, given: usize, needed: usize },
-    #[error("model {}: {table} take {bytes} bytes, but a shader can see {max} at once on this device: split the mesh", id.0)]
+    #[error("model {}: {} take {bytes} bytes, but a shader can see {max} at once on this device: split the mesh", id.0, table.replace('_', " "))]
     TableTooLarge { id: ModelId, table: &'static str, bytes: u64, max: u64 },
     #[error("model {}: it was not yet prepared: record cmd_prepare after add_model and before cmd_draw", id.0)]
     NotPrepared { id: ModelId },

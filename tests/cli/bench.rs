@@ -23,9 +23,9 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
     assert_eq!(keys(&results), ["command", "device", "left_out", "measured", "meshes", "options", "program", "rows"]);
     assert!(results["command"].as_str().unwrap().starts_with("subdiv bench --size 32x32"), "{results}");
     assert_eq!(results["options"]["frames"], 6);
-    // A torus in 4 schemes and 3 constructions, a tetrahedron in 2; each in 2 floors, 2 spacings and 2 factors.
+    // A torus in 5 schemes and 3 constructions, a tetrahedron in 3; each in 2 floors, 2 spacings and 2 factors.
     let rows = results["rows"].as_array().unwrap();
-    assert_eq!((rows.len(), length(&results["left_out"])), ((4 * 3 + 2 + 2 * 3 + 2) * 4, 12));
+    assert_eq!((rows.len(), length(&results["left_out"])), ((5 * 3 + 2 + 3 * 3 + 2) * 4, 12));
     for row in rows {
         assert_eq!(
             keys(row),
@@ -199,7 +199,7 @@ fn bench_says_what_is_wrong() {
     fails(&format!("bench --results {name}"), 1, &message);
     let output = run("bench --shape tetrahedron --schemes acc --paths tessellation");
     let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(stderr.ends_with("error: nothing could be measured: face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has\n"), "{stderr}");
+    assert!(stderr.ends_with("error: nothing could be measured: face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as fallback\n"), "{stderr}");
 }
 
 /// A report of a run with everything in it.
