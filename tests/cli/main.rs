@@ -8,6 +8,7 @@ mod error_maps;
 mod errors;
 mod measures;
 mod pictures;
+mod seams;
 
 use serde_json::Value;
 use std::fs;
