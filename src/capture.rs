@@ -1,5 +1,6 @@
 //! What the tessellation stages computed, written to a buffer by the shaders themselves and read back: control points,
-//! samples on a grid, and every evaluated vertex. For tests, `subdiv patches` and `subdiv sample`.
+//! samples on a grid, every evaluated vertex, and the triangles between them. For tests, `subdiv patches`, `subdiv sample` and
+//! `subdiv screen`.
 
 use crate::gpu::{
     Buffer, BufferDesc, Domain, GpuError, MemoryLocation, Owned, VkResultExt, descriptor_set_layout,
@@ -49,6 +50,8 @@ const CONTROL_POINT_WORDS: usize = 96;
 const FACTOR_WORDS: usize = 7;
 /// In the place of a grid's size: vertices on edges as they come.
 const EDGES_ONLY: u32 = u32::MAX;
+/// Likewise: no vertices, but triangles.
+const TRIANGLES: u32 = u32::MAX - 1;
 /// Larger captures are done in several draws, each of which keeps some of the patches.
 const MAX_BYTES: u64 = 128 << 20;
 
@@ -278,8 +281,39 @@ impl<'h> Captured<'h> {
         Ok(vertices)
     }
 
-    /// Draws all patches, as often as needed to keep what each of them writes. `bytes` is for one patch; the words
-    /// come by kind of patch, in the order of the patches.
+    /// Every triangle that the tessellator makes in a draw: `see` is given those of some patches after the other, all of a
+    /// patch at once, else in no order. Vertices are in the order of the triangle's winding.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] if the device has no geometry shaders; as [`Renderer::cmd_draw`] and
+    /// [`Renderer::set_edge_factors`]; those of `see`.
+    pub fn triangles(
+        &self,
+        draw: &CaptureDraw,
+        mut see: impl FnMut(&[[CapturedVertex; 3]]) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        if !self.headless.context().features().geometry {
+            let device = self.headless.properties().name.clone();
+            return Err(Error::Unsupported { device, missing: vec!["geometryShader".into()] });
+        }
+        let most = match draw.factor {
+            Factor::Uniform(factor) => factor,
+            _ => self.factors(draw)?.iter().flat_map(|f| f.asked).fold(1.0, f32::max),
+        };
+        let segments = self.options.spacing.segments(most, self.headless.properties().max_tessellation_level);
+        // Those of a quad; triangles have fewer.
+        let bytes = 2 * u64::from(segments).pow(2) * 3 * RECORD_BYTES;
+        let head = |patches: &Range<u32>| Head {
+            first_patch: patches.start,
+            patches: patches.len() as u32,
+            grid: TRIANGLES,
+            capacity: (patches.len() as u64 * bytes / RECORD_BYTES) as u32,
+            count: 0,
+        };
+        self.capture_each(Capture::Triangles, draw, |_| bytes, head, |_, words| see(bytemuck::cast_slice(&words)))
+    }
+
+    /// What [`Captured::capture_each`] captures, together.
     fn capture(
         &self,
         mode: Capture,
@@ -287,9 +321,30 @@ impl<'h> Captured<'h> {
         bytes: impl Fn(PatchKind) -> u64,
         head: impl Fn(&Range<u32>) -> Head,
     ) -> Result<Vec<(PatchKind, Vec<f32>)>, Error> {
+        let mut captured = Vec::new();
+        self.capture_each(mode, draw, bytes, head, |kind, words| {
+            captured.push((kind, words));
+            Ok(())
+        })?;
+        Ok(captured)
+    }
+
+    /// Draws all patches, as often as needed to keep what each of them writes. `bytes` is for one patch; the words
+    /// come by kind of patch, in the order of the patches.
+    fn capture_each(
+        &self,
+        mode: Capture,
+        draw: &CaptureDraw,
+        bytes: impl Fn(PatchKind) -> u64,
+        head: impl Fn(&Range<u32>) -> Head,
+        mut take: impl FnMut(PatchKind, Vec<f32>) -> Result<(), Error>,
+    ) -> Result<(), Error> {
         let headless = self.headless;
         let context = headless.context();
-        let stages = vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
+        let mut stages = vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
+        if mode == Capture::Triangles {
+            stages |= vk::ShaderStageFlags::GEOMETRY;
+        }
         let layout = descriptor_set_layout(context, "capture", &[(vk::DescriptorType::STORAGE_BUFFER, stages)])?;
         let target = Offscreen::new(headless, &OffscreenDesc::new(4, 4))?;
         let options = Options {
@@ -314,7 +369,6 @@ impl<'h> Captured<'h> {
         let CaptureDraw { factor, cull, displacement, .. } = *draw;
         let item = DrawItem { factor, cull, displacement, ..DrawItem::new(model, 1.0) };
 
-        let mut captured = Vec::new();
         for kind in PatchKind::ALL {
             let patches = self.tables.plan().range(kind);
             let (patches, per_patch) = (patches.start as u32..patches.end as u32, bytes(kind));
@@ -348,16 +402,16 @@ impl<'h> Captured<'h> {
                     target.cmd_end(cmd);
                     Ok::<(), Error>(())
                 })?;
-                let words = if mode == Capture::Vertices {
+                let words = if matches!(mode, Capture::Vertices | Capture::Triangles) {
                     let Head { count, .. } = buffer.read::<Head>(0, 1)?[0];
                     u64::from(count) * RECORD_BYTES / 4
                 } else {
                     (size - HEAD_BYTES) / 4
                 };
-                captured.push((kind, buffer.read(HEAD_BYTES, words as usize)?));
+                take(kind, buffer.read(HEAD_BYTES, words as usize)?)?;
             }
         }
-        Ok(captured)
+        Ok(())
     }
 }
 
