@@ -3,7 +3,7 @@
 //! `subdiv screen`.
 
 use crate::gpu::{
-    Buffer, BufferDesc, Domain, GpuError, MemoryLocation, Owned, VkResultExt, descriptor_set_layout,
+    Buffer, BufferDesc, DeviceContext, Domain, GpuError, MemoryLocation, Owned, VkResultExt, descriptor_set_layout,
     tessellated_vertices,
 };
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
@@ -16,6 +16,7 @@ use crate::topology::PatchKind;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A vertex as the evaluation shader computed it, in object space.
 #[repr(C)]
@@ -50,8 +51,6 @@ const CONTROL_POINT_WORDS: usize = 96;
 const FACTOR_WORDS: usize = 7;
 /// In the place of a grid's size: vertices on edges as they come.
 const EDGES_ONLY: u32 = u32::MAX;
-/// Likewise: no vertices, but triangles.
-const TRIANGLES: u32 = u32::MAX - 1;
 /// Larger captures are done in several draws, each of which keeps some of the patches.
 const MAX_BYTES: u64 = 128 << 20;
 
@@ -306,7 +305,7 @@ impl<'h> Captured<'h> {
         let head = |patches: &Range<u32>| Head {
             first_patch: patches.start,
             patches: patches.len() as u32,
-            grid: TRIANGLES,
+            grid: 0,
             capacity: (patches.len() as u64 * bytes / RECORD_BYTES) as u32,
             count: 0,
         };
@@ -341,11 +340,17 @@ impl<'h> Captured<'h> {
     ) -> Result<(), Error> {
         let headless = self.headless;
         let context = headless.context();
-        let mut stages = vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
+        let stages = vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
+        let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, stages)];
+        // Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
+        let mut idle = None;
         if mode == Capture::Triangles {
-            stages |= vk::ShaderStageFlags::GEOMETRY;
+            bindings.push((vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::GEOMETRY));
+            let mut buffer = capture_buffer(context, HEAD_BYTES + RECORD_BYTES)?;
+            buffer.write(0, &[Head::zeroed()])?;
+            idle = Some(buffer);
         }
-        let layout = descriptor_set_layout(context, "capture", &[(vk::DescriptorType::STORAGE_BUFFER, stages)])?;
+        let layout = descriptor_set_layout(context, "capture", &bindings)?;
         let target = Offscreen::new(headless, &OffscreenDesc::new(4, 4))?;
         let options = Options {
             styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
@@ -377,20 +382,13 @@ impl<'h> Captured<'h> {
             for first in patches.clone().step_by(step) {
                 let window = first..patches.end.min(first + step as u32);
                 let size = HEAD_BYTES + window.len() as u64 * per_patch;
-                let mut buffer = Buffer::new(
-                    context,
-                    &BufferDesc {
-                        name: "capture",
-                        size,
-                        usage: vk::BufferUsageFlags::STORAGE_BUFFER,
-                        location: MemoryLocation::Readback,
-                    },
-                )?;
+                let mut buffer = capture_buffer(context, size)?;
                 // What no shader writes is NaN.
                 buffer.write(0, &vec![f32::NAN; size as usize / 4])?;
                 let head = head(&window);
                 buffer.write(0, &[head])?;
-                let (_pool, set) = capture_set(headless, layout.raw(), &buffer)?;
+                let buffers: Vec<&Buffer> = idle.iter().chain([&buffer]).collect();
+                let (_pool, set) = capture_set(headless, layout.raw(), &buffers)?;
                 let pipeline_layout = renderer.pipeline_layout();
                 // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
                 headless.try_submit(|cmd| unsafe {
@@ -415,25 +413,30 @@ impl<'h> Captured<'h> {
     }
 }
 
+fn capture_buffer(context: &Arc<DeviceContext>, size: u64) -> Result<Buffer, GpuError> {
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    Buffer::new(context, &BufferDesc { name: "capture", size, usage, location: MemoryLocation::Readback })
+}
+
 fn capture_set(
     headless: &Headless,
     layout: vk::DescriptorSetLayout,
-    buffer: &Buffer,
+    buffers: &[&Buffer],
 ) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    let sizes = [vk::DescriptorPoolSize { ty: vk::DescriptorType::STORAGE_BUFFER, descriptor_count: 1 }];
+    let ty = vk::DescriptorType::STORAGE_BUFFER;
+    let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: buffers.len() as u32 }];
     let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let (device, layouts, infos) = (headless.device(), [layout], [buffer.descriptor()]);
+    let (device, layouts) = (headless.device(), [layout]);
+    let infos: Vec<_> = buffers.iter().map(|buffer| [buffer.descriptor()]).collect();
     // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
     unsafe {
         let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", "capture")?;
         let pool = Owned::new(headless.context(), pool, "capture");
         let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
         let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", "capture")?[0];
-        let write = vk::WriteDescriptorSet::default()
-            .dst_set(set)
-            .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-            .buffer_info(&infos);
-        device.update_descriptor_sets(&[write], &[]);
+        let write = vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty);
+        let writes: Vec<_> = (0..).zip(&infos).map(|(i, info)| write.dst_binding(i).buffer_info(info)).collect();
+        device.update_descriptor_sets(&writes, &[]);
         Ok((pool, set))
     }
 }

@@ -2,6 +2,8 @@
 // src/capture.rs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+// The evaluation shader has a buffer of its own.
+#define CAPTURE_BINDING 1
 #include "capture.glsl"
 
 layout(triangles) in;

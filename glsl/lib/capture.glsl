@@ -3,10 +3,14 @@
 #ifndef CAPTURE_GLSL
 #define CAPTURE_GLSL
 
-layout(set = 2, binding = 0, std430) buffer Capture {
+#ifndef CAPTURE_BINDING
+#define CAPTURE_BINDING 0
+#endif
+
+layout(set = 2, binding = CAPTURE_BINDING, std430) buffer Capture {
     uint capture_first_patch;  // patches before this one are not captured
     uint capture_patches;      // nor those from first + patches on
-    uint capture_grid;         // samples along a side of a patch, or 0: every evaluated vertex as it comes, or one of those below
+    uint capture_grid;         // samples along a side of a patch, or 0: every evaluated vertex as it comes, or EDGES_ONLY
     uint capture_capacity;     // records that fit
     uint capture_count;        // records written when capture_grid is 0
     float captured[];
@@ -14,8 +18,7 @@ layout(set = 2, binding = 0, std430) buffer Capture {
 
 const uint CONTROL_POINT_WORDS = 96u;
 const uint FACTOR_WORDS = 7u;
-const uint EDGES_ONLY = ~0u;      // vertices on edges as they come
-const uint TRIANGLES = ~0u - 1u;  // triangles as they come: see glsl/capture/triangles.geom
+const uint EDGES_ONLY = ~0u;  // vertices on edges as they come
 const uint RECORD_WORDS = 10u;
 
 void put(uint at, vec3 x) {
@@ -54,7 +57,7 @@ void put_record(uint record, uint patch_index, vec3 coordinate, vec3 position, v
 // A vertex of a patch. With a grid, `place` is its number in the patch and `places` how many the patch has.
 void capture_sample(uint patch_index, uint place, uint places, vec3 coordinate, vec3 position, vec3 normal) {
     uint slot = patch_index - capture_first_patch;
-    if (slot >= capture_patches || capture_grid == TRIANGLES) {
+    if (slot >= capture_patches) {
         return;
     }
 #ifdef TRIANGLE

@@ -12,6 +12,7 @@ use ash_subdiv::renderer::Factor;
 use ash_subdiv::{Construction, ModelOptions, Spacing};
 use clap::Args;
 use serde::Serialize;
+use std::fmt::Display;
 
 /// The factors of OpenSubdiv's uniform levels.
 const UNIFORM: [f32; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
@@ -48,13 +49,16 @@ pub(super) struct ScreenArgs {
 const NOTES: &str = "\
 shift: pixels between the triangle and the exact surface at the same (u, v); what textures are shifted by.
 shape: its part along the normal; what outlines are off by.
+facets: pixels between the triangle and the patch itself; what more triangles would take away. The error of the
+patches is in shift and shape, and their floor.
 rms and 99 % are over the area on the screen, that of closed meshes where they face the eye; what is hidden by
-something in front counts. The error of the patches themselves is in all rows, and a floor. Triangles are counted as
-the device makes them. The first uniform factor of 1, 2, 4, 8, 16, 32 with no larger a 99 % counts as equal.
+something in front counts. Triangles are counted as the device makes them. Equal is the first uniform factor of
+1, 2, 4, 8, 16, 32 whose 99 % is no more than 2 % or 0.001 pixels larger.
 
 JSON: mesh, device, size[width, height], spacing, construction,
-rows[{metric (pixels, bend or uniform), value, triangles, samples, shift{rms, p99, max}, shape{rms, p99, max},
-equal{shift, shape} (null for uniform; each {factor, triangles}, null if no factor up to 32 is as good)}].
+rows[{metric (pixels, bend or uniform), value, triangles, samples, shift{rms, p99, max}, shape{the same},
+facets{the same}, equal{shift, shape, facets} (null for uniform; each {factor, triangles}, or null if no factor
+up to 32 is as good)}].
 
 Examples:
   subdiv screen --shape creature
@@ -78,6 +82,7 @@ struct Row {
     samples: u64,
     shift: DeviationOut,
     shape: DeviationOut,
+    facets: DeviationOut,
     equal: Option<EqualOut>,
 }
 
@@ -93,6 +98,7 @@ struct DeviationOut {
 struct EqualOut {
     shift: Option<LevelOut>,
     shape: Option<LevelOut>,
+    facets: Option<LevelOut>,
 }
 
 #[derive(Clone, Copy, Serialize)]
@@ -114,7 +120,7 @@ impl Row {
             Factor::Curvature(_) => "bend",
             Factor::Uniform(_) | Factor::Edges(_) => "uniform",
         };
-        let ScreenError { triangles, samples, shift, shape } = error;
+        let ScreenError { triangles, samples, shift, shape, facets } = error;
         Self {
             metric,
             value: factor.value(),
@@ -122,6 +128,7 @@ impl Row {
             samples,
             shift: shift.into(),
             shape: shape.into(),
+            facets: facets.into(),
             equal: None,
         }
     }
@@ -130,9 +137,10 @@ impl Row {
         format!("{} {}", self.metric, self.value)
     }
 
-    /// The first of some rows with no larger a 99 %.
+    /// The first of some rows that is as good, or as good as.
     fn equal(&self, uniform: &[Self], of: fn(&Self) -> DeviationOut) -> Option<LevelOut> {
-        let level = uniform.iter().find(|row| of(row).p99 <= of(self).p99)?;
+        let p99 = of(self).p99;
+        let level = uniform.iter().find(|row| of(row).p99 <= (1.02 * p99).max(p99 + 1e-3))?;
         Some(LevelOut { factor: level.value, triangles: level.triangles })
     }
 }
@@ -170,6 +178,7 @@ pub(super) fn run(args: &ScreenArgs, json: bool) -> Result<(), CliError> {
         row.equal = Some(EqualOut {
             shift: row.equal(&uniform, |row| row.shift),
             shape: row.equal(&uniform, |row| row.shape),
+            facets: row.equal(&uniform, |row| row.facets),
         });
     }
     adaptive.extend(uniform);
@@ -185,12 +194,17 @@ pub(super) fn run(args: &ScreenArgs, json: bool) -> Result<(), CliError> {
 }
 
 fn print(out: &ScreenOut) -> Result<(), CliError> {
-    let mut table = Table::new(&[1, 2, 3, 4, 5, 6, 7]);
-    table.row([&"factors", &"triangles", &"shift", &"99 %", &"max", &"shape", &"99 %", &"max"]);
-    for row in out.rows {
-        let [rms, p99, max] = [row.shift.rms, row.shift.p99, row.shift.max].map(output::short);
-        let [shape_rms, shape_p99, shape_max] = [row.shape.rms, row.shape.p99, row.shape.max].map(output::short);
-        table.row([&row.text(), &row.triangles, &rms, &p99, &max, &shape_rms, &shape_p99, &shape_max]);
+    let mut table = Table::new(&[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
+    let head = ["shift rms", "99 %", "max", "shape rms", "99 %", "max", "facets rms", "99 %", "max"];
+    let row = |table: &mut Table, name: &str, triangles: &dyn Display, [a, b, c, d, e, f, g, h, i]: [String; 9]| {
+        table.row([&name, triangles, &a, &b, &c, &d, &e, &f, &g, &h, &i]);
+    };
+    row(&mut table, "factors", &"triangles", head.map(String::from));
+    for r in out.rows {
+        let (shift, shape, facets) = (r.shift, r.shape, r.facets);
+        let numbers = [shift, shape, facets].map(|d| [d.rms, d.p99, d.max].map(|pixels| format!("{pixels:.4}")));
+        let [[a, b, c], [d, e, f], [g, h, i]] = numbers;
+        row(&mut table, &r.text(), &r.triangles, [a, b, c, d, e, f, g, h, i]);
     }
     table.print()?;
     output::with_stdout(|stdout| {
@@ -198,19 +212,21 @@ fn print(out: &ScreenOut) -> Result<(), CliError> {
         writeln!(stdout, "in pixels of {width} x {height}; {}, on {}", out.mesh, out.device)?;
         for row in out.rows {
             let Some(equal) = &row.equal else { continue };
-            for (what, level) in [("shift", equal.shift), ("shape", equal.shape)] {
-                let (text, triangles) = (row.text(), row.triangles);
+            let (text, triangles) = (row.text(), row.triangles);
+            for (what, level) in [("shift", equal.shift), ("shape", equal.shape), ("facets", equal.facets)] {
                 match level {
-                    Some(level) => {
-                        let times = level.triangles as f64 / triangles.max(1) as f64;
+                    Some(LevelOut { factor, triangles: uniform }) => {
+                        let times = uniform as f64 / triangles.max(1) as f64;
                         writeln!(
                             stdout,
-                            "{text} needs {triangles} triangles where the first uniform factor of no larger {what} \
-                             (99 %), {}, needs {}: {times:.2} times as many",
-                            level.factor, level.triangles
+                            "{text}, {what}: {triangles} triangles; uniform {factor} is as good with {uniform}, \
+                             {times:.2} times as many"
                         )?;
                     }
-                    None => writeln!(stdout, "{text}: no uniform factor up to 32 has as small a {what} (99 %)")?,
+                    None => writeln!(
+                        stdout,
+                        "{text}, {what}: {triangles} triangles; no uniform factor up to 32 is as good"
+                    )?,
                 }
             }
         }

@@ -52,8 +52,7 @@ impl MeshArgs {
     /// Points around which the whole surface is: the control points of its patches.
     pub(super) fn hull(&self, mesh: &ControlMesh) -> Result<Vec<DVec3>, CliError> {
         let (fallback, refine) = (self.source.fallback(), self.source.refine);
-        let mut points =
-            CpuSurface::with_fallback(mesh, self.scheme, fallback, refine)?.control_points(|p| p).concat();
+        let mut points = CpuSurface::with_fallback(mesh, self.scheme, fallback, refine)?.control_points(|p| p).concat();
         // Where nothing is drawn, such as where all faces are holes.
         if points.is_empty() {
             points.extend(mesh.bounds());

@@ -6,6 +6,7 @@ use crate::limit::LimitSurface;
 use crate::mesh::ControlMesh;
 use crate::renderer::{Error, View};
 use crate::table::{Patch, prepare};
+use crate::topology::Topology;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec3};
 use rayon::prelude::*;
 
@@ -46,6 +47,8 @@ pub struct ScreenError {
     pub shift: PixelDeviation,
     /// Its part along the normal of the surface: what outlines are off by.
     pub shape: PixelDeviation,
+    /// From the patches themselves, between points with the same parameters: what more triangles would take away.
+    pub facets: PixelDeviation,
 }
 
 /// Measures how far the triangles that a device draws are from the Catmull-Clark limit surface, on the screen.
@@ -54,7 +57,8 @@ pub struct ScreenError {
 /// middles of edges, centre), each weighted by the area on the screen that it stands for. A sample is where the triangle is
 /// flat and, with the same parameters, where the limit surface is; both are projected, and their distance counts. This is
 /// the *parametric accuracy* of Yeo, Bin and Peters, *Efficient Pixel-Accurate Rendering of Animated Curved Surfaces*,
-/// 2012. What patches themselves are off by is in it: more and smaller triangles get no closer than that.
+/// 2012. What patches themselves are off by is in it: more and smaller triangles get no closer than that
+/// ([`ScreenError::facets`] is without).
 ///
 /// **Seen** are samples in the view's frustum; of a mesh without boundary and holes only those where the limit surface faces
 /// [`View::eye`]. What is hidden by something in front counts. Triangles that reach behind the eye are left out.
@@ -77,8 +81,9 @@ pub fn screen_error(
     let screen = Screen::new(&draw.view)?;
     let both_sides = mesh.boundary_edge_count() > 0 || !mesh.data().holes.is_empty();
     let prepared = prepare(mesh, refine)?;
-    let patches = captured.tables().plan().patches();
-    let (mut triangles, mut shift, mut shape) = (0, Spread::new(), Spread::new());
+    let topology = Topology::new(&prepared.mesh);
+    let plan = captured.tables().plan();
+    let (mut triangles, mut shift, mut shape, mut facets) = (0, Spread::new(), Spread::new(), Spread::new());
     captured.triangles(draw, |captured| {
         triangles += captured.len() as u64;
         let mut captured = captured.to_vec();
@@ -87,18 +92,23 @@ pub fn screen_error(
         for chunk in of_patches.chunks(CHUNK) {
             let limit = LimitSurface::new(&prepared.mesh)?;
             let measure = |triangles: &&[[CapturedVertex; 3]]| {
-                let patch = patches[triangles[0][0].patch as usize];
-                triangles.iter().flat_map(|t| screen.measure(&limit, patch, t, both_sides)).collect()
+                let patch = plan.patches()[triangles[0][0].patch as usize];
+                let points = patch.control_points(&topology, plan.fallback_rings(), |v| prepared.mesh.position(v));
+                let surface = Surface { limit: &limit, both_sides, patch, points };
+                triangles.iter().flat_map(|triangle| screen.measure(&surface, triangle)).collect()
             };
             let seen: Vec<Vec<Seen>> = chunk.par_iter().map(measure).collect();
             for seen in seen.iter().flatten() {
                 shift.add(seen.area, seen.shift);
                 shape.add(seen.area, seen.shape);
+                facets.add(seen.area, seen.facets);
             }
         }
         Ok(())
     })?;
-    Ok(ScreenError { triangles, samples: shift.count, shift: shift.deviation(), shape: shape.deviation() })
+    let count = shift.count;
+    let [shift, shape, facets] = [&shift, &shape, &facets].map(Spread::deviation);
+    Ok(ScreenError { triangles, samples: count, shift, shape, facets })
 }
 
 /// An order that does not depend on the device's.
@@ -111,8 +121,19 @@ struct Seen {
     /// In pixels.
     shift: f64,
     shape: f64,
+    facets: f64,
     /// In square pixels.
     area: f64,
+}
+
+/// What a patch and the triangles over it approximate.
+struct Surface<'s> {
+    limit: &'s LimitSurface<'s>,
+    /// Whether what faces away is seen.
+    both_sides: bool,
+    patch: Patch,
+    /// Its control points.
+    points: Vec<DVec3>,
 }
 
 /// Where things are in the picture.
@@ -142,17 +163,11 @@ impl Screen {
     }
 
     /// The samples of a triangle that are seen.
-    fn measure(
-        &self,
-        limit: &LimitSurface,
-        patch: Patch,
-        triangle: &[CapturedVertex; 3],
-        both_sides: bool,
-    ) -> impl Iterator<Item = Seen> {
+    fn measure(&self, surface: &Surface, triangle: &[CapturedVertex; 3]) -> impl Iterator<Item = Seen> {
+        let Surface { limit, both_sides, patch, ref points } = *surface;
         let positions = triangle.map(|vertex| Vec3::from(vertex.position).as_dvec3());
         let coordinates = triangle.map(|vertex| Vec3::from(vertex.coordinate).as_dvec3());
-        let corners = positions.map(|position| self.project(position));
-        let area = match corners {
+        let area = match positions.map(|position| self.project(position)) {
             [Some((a, _)), Some((b, _)), Some((c, _))] => Some((b - a).perp_dot(c - a).abs() / 2.0),
             _ => None,
         };
@@ -160,14 +175,22 @@ impl Screen {
             let mean = |of: [DVec3; 3]| weights.iter().zip(of).map(|(&weight, x)| weight * x).sum::<DVec3>();
             let drawn = mean(positions);
             let (at, true) = self.project(drawn)? else { return None };
-            let Parameters { sub, u, v } = Parameters::of_point(patch, mean(coordinates).truncate().into());
+            let place: [f64; 2] = mean(coordinates).truncate().into();
+            let Parameters { sub, u, v } = Parameters::of_point(patch, place);
             let truth = limit.evaluate(patch.face, sub, u, v);
             if !both_sides && truth.normal.dot(self.eye - truth.position) <= 0.0 {
                 return None;
             }
-            let (truth_at, _) = self.project(truth.position)?;
-            let (off_at, _) = self.project(truth.position + (drawn - truth.position).project_onto_normalized(truth.normal))?;
-            Some(Seen { shift: at.distance(truth_at), shape: off_at.distance(truth_at), area: part * area? })
+            let smooth = patch.scheme.evaluate(patch.kind, points, place[0], place[1]).position;
+            let off = truth.position + (drawn - truth.position).dot(truth.normal) * truth.normal;
+            let [truth, off, smooth] = [truth.position, off, smooth].map(|point| self.project(point));
+            let (truth, off, smooth) = (truth?.0, off?.0, smooth?.0);
+            Some(Seen {
+                shift: at.distance(truth),
+                shape: off.distance(truth),
+                facets: at.distance(smooth),
+                area: part * area?,
+            })
         };
         SAMPLES.into_iter().filter_map(sample)
     }
