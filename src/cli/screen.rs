@@ -53,7 +53,7 @@ facets: pixels between the triangle and the patch itself; what more triangles wo
 patches is in shift and shape, and their floor.
 rms and 99 % are over the area on the screen, that of closed meshes where they face the eye; what is hidden by
 something in front counts. Triangles are counted as the device makes them. Equal is the first uniform factor of
-1, 2, 4, 8, 16, 32 whose 99 % is no more than 2 % or 0.001 pixels larger.
+1, 2, 4, 8, 16, 32 whose 99 % is no more than 5 % or 0.001 pixels larger.
 
 JSON: mesh, device, size[width, height], spacing, construction,
 rows[{metric (pixels, bend or uniform), value, triangles, samples, shift{rms, p99, max}, shape{the same},
@@ -140,7 +140,7 @@ impl Row {
     /// The first of some rows that is as good, or as good as.
     fn equal(&self, uniform: &[Self], of: fn(&Self) -> DeviationOut) -> Option<LevelOut> {
         let p99 = of(self).p99;
-        let level = uniform.iter().find(|row| of(row).p99 <= (1.02 * p99).max(p99 + 1e-3))?;
+        let level = uniform.iter().find(|row| of(row).p99 <= (1.05 * p99).max(p99 + 1e-3))?;
         Some(LevelOut { factor: level.value, triangles: level.triangles })
     }
 }

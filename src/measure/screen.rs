@@ -61,10 +61,11 @@ pub struct ScreenError {
 /// ([`ScreenError::facets`] is without).
 ///
 /// **Seen** are samples in the view's frustum; of a mesh without boundary and holes only those where the limit surface faces
-/// [`View::eye`]. What is hidden by something in front counts. Triangles that reach behind the eye are left out.
+/// [`View::eye`]. What is hidden by something in front counts; patches that are culled and triangles that reach behind the eye
+/// do not.
 ///
 /// **Approximations.** The maximum is that of the samples. The shape is of first order: the limit surface is taken to be as
-/// its tangent plane between the two points. On triangles and pentagons "the same parameters" are a convention, that of
+/// its tangent plane between the two points, and nothing is off where it has none. On triangles and pentagons "the same parameters" are a convention, that of
 /// [`surface_errors`](super::surface_errors), which the shift depends on.
 ///
 /// `mesh` and `refine` are those of the model that is captured, which is not displaced.
@@ -146,10 +147,10 @@ struct Screen {
 
 impl Screen {
     fn new(view: &View) -> Result<Self, Error> {
-        let half = DVec2::from(view.viewport.map(|side| f64::from(side) / 2.0));
-        if !(half.min_element() > 0.0) {
+        if !view.viewport.iter().all(|&side| side > 0.0) {
             return Err(Error::NoScreen);
         }
+        let half = DVec2::from(view.viewport.map(|side| f64::from(side) / 2.0));
         let eye = Vec3::from(view.eye).as_dvec3();
         Ok(Self { clip: Mat4::from_cols_array_2d(&view.view_projection).as_dmat4(), half, eye })
     }

@@ -165,11 +165,11 @@ fn the_limit_surface_is_sampled() {
 
 #[test]
 fn screen_tells_pixels_and_triangles() {
-    let out = json("screen --shape cube --size 128x96 --pixels 6,3 --bend 0.5 --cull back");
+    let out = json("screen --shape torus --size 128x96 --pixels 6,3 --bend 0.5 --cull back");
     assert_eq!(keys(&out), ["construction", "device", "mesh", "rows", "size", "spacing"]);
     assert_eq!(
         (&out["mesh"], &out["size"], &out["spacing"]),
-        (&"cube".into(), &serde_json::json!([128, 96]), &"equal".into())
+        (&"torus".into(), &serde_json::json!([128, 96]), &"equal".into())
     );
     let rows = out["rows"].as_array().unwrap();
     let names: Vec<_> =
@@ -191,11 +191,11 @@ fn screen_tells_pixels_and_triangles() {
             let Some(factor) = equal["facets"]["factor"].as_f64() else { panic!("{row}") };
             let level = &rows[3..].iter().find(|row| row["value"] == factor).unwrap();
             assert_eq!(level["triangles"], equal["facets"]["triangles"]);
-            assert!(level["facets"]["p99"].as_f64().unwrap() <= 1.02 * row["facets"]["p99"].as_f64().unwrap());
+            assert!(level["facets"]["p99"].as_f64().unwrap() <= 1.05 * row["facets"]["p99"].as_f64().unwrap());
         }
     }
-    // Half of the cube is not drawn, or more.
-    assert!(rows[3]["triangles"].as_u64().unwrap() <= 8, "{}", rows[3]);
+    // What faces away is not drawn.
+    assert!(rows[3]["triangles"].as_u64().unwrap() < 200, "{}", rows[3]);
     let text = String::from_utf8(run("screen --shape single-quad --size 64x64").stdout).unwrap();
     assert!(text.contains("\npixels 4, facets: ") && text.contains("uniform 1 is as good with 2"), "{text}");
 }
