@@ -56,17 +56,17 @@ pub struct ScreenError {
 /// The triangles are those of the device's own tessellator, as geometry shaders see them. Each has seven samples (corners,
 /// middles of edges, centre), each weighted by the area on the screen that it stands for. A sample is where the triangle is
 /// flat and, with the same parameters, where the limit surface is; both are projected, and their distance counts. This is
-/// the *parametric accuracy* of Yeo, Bin and Peters, *Efficient Pixel-Accurate Rendering of Animated Curved Surfaces*,
-/// 2012. What patches themselves are off by is in it: more and smaller triangles get no closer than that
-/// ([`ScreenError::facets`] is without).
+/// the *parametric accuracy* of Yeo, Bin and Peters, *Efficient Pixel-Accurate Rendering of Curved Surfaces*, 2012. What
+/// patches themselves are off by is in it: more and smaller triangles get no closer than that ([`ScreenError::facets`] is
+/// without).
 ///
 /// **Seen** are samples in the view's frustum; of a mesh without boundary and holes only those where the limit surface faces
 /// [`View::eye`]. What is hidden by something in front counts; patches that are culled and triangles that reach behind the eye
 /// do not.
 ///
 /// **Approximations.** The maximum is that of the samples. The shape is of first order: the limit surface is taken to be as
-/// its tangent plane between the two points, and nothing is off where it has none. On triangles and pentagons "the same parameters" are a convention, that of
-/// [`surface_errors`](super::surface_errors), which the shift depends on.
+/// its tangent plane between the two points, and nothing is off where it has none. On triangles and pentagons "the same
+/// parameters" are a convention, that of [`surface_errors`](super::surface_errors), which the shift depends on.
 ///
 /// `mesh` and `refine` are those of the model that is captured, which is not displaced.
 ///
