@@ -53,8 +53,9 @@ fn errors_fall_with_the_square_of_the_factor() {
     }
     // All faces are regular, so that patches are the surface.
     assert!(errors.iter().all(|e| (e.shift.rms - e.facets.rms).abs() < 1e-4), "{errors:?}");
-    let bounds = |e: &ScreenError| e.shape.rms < e.shift.rms && 2 * e.samples > 7 * e.triangles / 2;
-    assert!(errors.iter().all(bounds), "{errors:?}");
+    // What faces away is not seen: about half.
+    let part = |e: &ScreenError| e.samples as f64 / (7 * e.triangles) as f64;
+    assert!(errors.iter().all(|e| e.shape.rms < e.shift.rms && (0.4..0.7).contains(&part(e))), "{errors:?}");
     headless.finish_silent();
 }
 

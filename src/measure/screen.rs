@@ -55,8 +55,8 @@ pub struct ScreenError {
 ///
 /// The triangles are those of the device's own tessellator, as geometry shaders see them. Each has seven samples (corners,
 /// middles of edges, centre), each weighted by the area on the screen that it stands for. A sample is where the triangle is
-/// flat and, with the same parameters, where the limit surface is; both are projected, and their distance counts. This is
-/// the *parametric accuracy* of Yeo, Bin and Peters, *Efficient Pixel-Accurate Rendering of Curved Surfaces*, 2012. What
+/// flat and, with the same parameters, where the limit surface is; both are projected, and their distance counts, as in
+/// Yeo, Bin and Peters, *Efficient Pixel-Accurate Rendering of Curved Surfaces*, 2012. What
 /// patches themselves are off by is in it: more and smaller triangles get no closer than that ([`ScreenError::facets`] is
 /// without).
 ///
