@@ -1,8 +1,9 @@
 //! What the tessellation stages computed, written to a buffer by the shaders themselves and read back: control points,
-//! samples on a grid, and every evaluated vertex. For tests, `subdiv patches` and `subdiv sample`.
+//! samples on a grid, every evaluated vertex, and the triangles between them. For tests, `subdiv patches`, `subdiv sample` and
+//! `subdiv screen`.
 
 use crate::gpu::{
-    Buffer, BufferDesc, Domain, GpuError, MemoryLocation, Owned, VkResultExt, descriptor_set_layout,
+    Buffer, BufferDesc, DeviceContext, Domain, GpuError, MemoryLocation, Owned, VkResultExt, descriptor_set_layout,
     tessellated_vertices,
 };
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
@@ -15,6 +16,7 @@ use crate::topology::PatchKind;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A vertex as the evaluation shader computed it, in object space.
 #[repr(C)]
@@ -278,8 +280,39 @@ impl<'h> Captured<'h> {
         Ok(vertices)
     }
 
-    /// Draws all patches, as often as needed to keep what each of them writes. `bytes` is for one patch; the words
-    /// come by kind of patch, in the order of the patches.
+    /// Every triangle that the tessellator makes in a draw: `see` is given those of some patches after the other, all of a
+    /// patch at once, else in no order. Vertices are in the order of the triangle's winding.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] if the device has no geometry shaders; as [`Renderer::cmd_draw`] and
+    /// [`Renderer::set_edge_factors`]; those of `see`.
+    pub fn triangles(
+        &self,
+        draw: &CaptureDraw,
+        mut see: impl FnMut(&[[CapturedVertex; 3]]) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        if !self.headless.context().features().geometry {
+            let device = self.headless.properties().name.clone();
+            return Err(Error::Unsupported { device, missing: vec!["geometryShader".into()] });
+        }
+        let most = match draw.factor {
+            Factor::Uniform(factor) => factor,
+            _ => self.factors(draw)?.iter().flat_map(|f| f.asked).fold(1.0, f32::max),
+        };
+        let segments = self.options.spacing.segments(most, self.headless.properties().max_tessellation_level);
+        // Those of a quad; triangles have fewer.
+        let bytes = 2 * u64::from(segments).pow(2) * 3 * RECORD_BYTES;
+        let head = |patches: &Range<u32>| Head {
+            first_patch: patches.start,
+            patches: patches.len() as u32,
+            grid: 0,
+            capacity: (patches.len() as u64 * bytes / RECORD_BYTES) as u32,
+            count: 0,
+        };
+        self.capture_each(Capture::Triangles, draw, |_| bytes, head, |_, words| see(bytemuck::cast_slice(&words)))
+    }
+
+    /// What [`Captured::capture_each`] captures, together.
     fn capture(
         &self,
         mode: Capture,
@@ -287,10 +320,37 @@ impl<'h> Captured<'h> {
         bytes: impl Fn(PatchKind) -> u64,
         head: impl Fn(&Range<u32>) -> Head,
     ) -> Result<Vec<(PatchKind, Vec<f32>)>, Error> {
+        let mut captured = Vec::new();
+        self.capture_each(mode, draw, bytes, head, |kind, words| {
+            captured.push((kind, words));
+            Ok(())
+        })?;
+        Ok(captured)
+    }
+
+    /// Draws all patches, as often as needed to keep what each of them writes. `bytes` is for one patch; the words
+    /// come by kind of patch, in the order of the patches.
+    fn capture_each(
+        &self,
+        mode: Capture,
+        draw: &CaptureDraw,
+        bytes: impl Fn(PatchKind) -> u64,
+        head: impl Fn(&Range<u32>) -> Head,
+        mut take: impl FnMut(PatchKind, Vec<f32>) -> Result<(), Error>,
+    ) -> Result<(), Error> {
         let headless = self.headless;
         let context = headless.context();
         let stages = vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
-        let layout = descriptor_set_layout(context, "capture", &[(vk::DescriptorType::STORAGE_BUFFER, stages)])?;
+        let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, stages)];
+        // Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
+        let mut idle = None;
+        if mode == Capture::Triangles {
+            bindings.push((vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::GEOMETRY));
+            let mut buffer = capture_buffer(context, HEAD_BYTES + RECORD_BYTES)?;
+            buffer.write(0, &[Head::zeroed()])?;
+            idle = Some(buffer);
+        }
+        let layout = descriptor_set_layout(context, "capture", &bindings)?;
         let target = Offscreen::new(headless, &OffscreenDesc::new(4, 4))?;
         let options = Options {
             styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
@@ -314,7 +374,6 @@ impl<'h> Captured<'h> {
         let CaptureDraw { factor, cull, displacement, .. } = *draw;
         let item = DrawItem { factor, cull, displacement, ..DrawItem::new(model, 1.0) };
 
-        let mut captured = Vec::new();
         for kind in PatchKind::ALL {
             let patches = self.tables.plan().range(kind);
             let (patches, per_patch) = (patches.start as u32..patches.end as u32, bytes(kind));
@@ -323,20 +382,13 @@ impl<'h> Captured<'h> {
             for first in patches.clone().step_by(step) {
                 let window = first..patches.end.min(first + step as u32);
                 let size = HEAD_BYTES + window.len() as u64 * per_patch;
-                let mut buffer = Buffer::new(
-                    context,
-                    &BufferDesc {
-                        name: "capture",
-                        size,
-                        usage: vk::BufferUsageFlags::STORAGE_BUFFER,
-                        location: MemoryLocation::Readback,
-                    },
-                )?;
+                let mut buffer = capture_buffer(context, size)?;
                 // What no shader writes is NaN.
                 buffer.write(0, &vec![f32::NAN; size as usize / 4])?;
                 let head = head(&window);
                 buffer.write(0, &[head])?;
-                let (_pool, set) = capture_set(headless, layout.raw(), &buffer)?;
+                let buffers: Vec<&Buffer> = idle.iter().chain([&buffer]).collect();
+                let (_pool, set) = capture_set(headless, layout.raw(), &buffers)?;
                 let pipeline_layout = renderer.pipeline_layout();
                 // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
                 headless.try_submit(|cmd| unsafe {
@@ -348,38 +400,43 @@ impl<'h> Captured<'h> {
                     target.cmd_end(cmd);
                     Ok::<(), Error>(())
                 })?;
-                let words = if mode == Capture::Vertices {
+                let words = if matches!(mode, Capture::Vertices | Capture::Triangles) {
                     let Head { count, .. } = buffer.read::<Head>(0, 1)?[0];
                     u64::from(count) * RECORD_BYTES / 4
                 } else {
                     (size - HEAD_BYTES) / 4
                 };
-                captured.push((kind, buffer.read(HEAD_BYTES, words as usize)?));
+                take(kind, buffer.read(HEAD_BYTES, words as usize)?)?;
             }
         }
-        Ok(captured)
+        Ok(())
     }
+}
+
+fn capture_buffer(context: &Arc<DeviceContext>, size: u64) -> Result<Buffer, GpuError> {
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    Buffer::new(context, &BufferDesc { name: "capture", size, usage, location: MemoryLocation::Readback })
 }
 
 fn capture_set(
     headless: &Headless,
     layout: vk::DescriptorSetLayout,
-    buffer: &Buffer,
+    buffers: &[&Buffer],
 ) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    let sizes = [vk::DescriptorPoolSize { ty: vk::DescriptorType::STORAGE_BUFFER, descriptor_count: 1 }];
+    let ty = vk::DescriptorType::STORAGE_BUFFER;
+    let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: buffers.len() as u32 }];
     let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let (device, layouts, infos) = (headless.device(), [layout], [buffer.descriptor()]);
+    let (device, layouts) = (headless.device(), [layout]);
+    let infos: Vec<_> = buffers.iter().map(|buffer| [buffer.descriptor()]).collect();
     // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
     unsafe {
         let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", "capture")?;
         let pool = Owned::new(headless.context(), pool, "capture");
         let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
         let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", "capture")?[0];
-        let write = vk::WriteDescriptorSet::default()
-            .dst_set(set)
-            .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-            .buffer_info(&infos);
-        device.update_descriptor_sets(&[write], &[]);
+        let write = vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty);
+        let writes: Vec<_> = (0..).zip(&infos).map(|(i, info)| write.dst_binding(i).buffer_info(info)).collect();
+        device.update_descriptor_sets(&writes, &[]);
         Ok((pool, set))
     }
 }

@@ -3,7 +3,11 @@
 #ifndef CAPTURE_GLSL
 #define CAPTURE_GLSL
 
-layout(set = 2, binding = 0, std430) buffer Capture {
+#ifndef CAPTURE_BINDING
+#define CAPTURE_BINDING 0
+#endif
+
+layout(set = 2, binding = CAPTURE_BINDING, std430) buffer Capture {
     uint capture_first_patch;  // patches before this one are not captured
     uint capture_patches;      // nor those from first + patches on
     uint capture_grid;         // samples along a side of a patch, or 0: every evaluated vertex as it comes, or EDGES_ONLY
@@ -42,6 +46,14 @@ void capture_factors(uint patch_index, vec4 asked, vec2 inner, bool culled) {
     }
 }
 
+void put_record(uint record, uint patch_index, vec3 coordinate, vec3 position, vec3 normal) {
+    uint at = record * RECORD_WORDS;
+    put(at, coordinate);
+    captured[at + 3u] = uintBitsToFloat(patch_index);
+    put(at + 4u, position);
+    put(at + 7u, normal);
+}
+
 // A vertex of a patch. With a grid, `place` is its number in the patch and `places` how many the patch has.
 void capture_sample(uint patch_index, uint place, uint places, vec3 coordinate, vec3 position, vec3 normal) {
     uint slot = patch_index - capture_first_patch;
@@ -58,11 +70,7 @@ void capture_sample(uint patch_index, uint place, uint places, vec3 coordinate, 
     }
     uint record = capture_grid > 0u && capture_grid != EDGES_ONLY ? slot * places + place : atomicAdd(capture_count, 1u);
     if (record < capture_capacity) {
-        uint at = record * RECORD_WORDS;
-        put(at, coordinate);
-        captured[at + 3u] = uintBitsToFloat(patch_index);
-        put(at + 4u, position);
-        put(at + 7u, normal);
+        put_record(record, patch_index, coordinate, position, normal);
     }
 }
 

@@ -49,6 +49,9 @@ layout(location = 2) out vec2 out_texcoord;
 #if defined(CAPTURE) || defined(CAPTURE_GRID)
 #include "capture.glsl"
 layout(location = 9) patch in uint captured_patch;
+// For glsl/capture/triangles.geom.
+layout(location = 3) out vec3 out_coordinate;
+layout(location = 4) out uint out_patch;
 uint capture_place;
 uint capture_places;
 #endif
@@ -91,6 +94,10 @@ void emit(Sample surface, vec3 at) {
 #endif
 #ifdef CAPTURE_GRID
     capture_sample(captured_patch, capture_place, capture_places, at, surface.position, surface.normal);
+#endif
+#if defined(CAPTURE) || defined(CAPTURE_GRID)
+    out_coordinate = at;
+    out_patch = captured_patch;
 #endif
 #ifdef TEXCOORD
     out_texcoord = INTERPOLATED(texcoord, at);

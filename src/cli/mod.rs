@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `bench` | `bench`: what to race, results, presets, comparisons, the report |
 //! | `camera`, `displacement`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
+//! | `cull` | which patches are left out |
 //! | `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
 //! | `obj` | what `shapes` writes |
@@ -15,6 +16,7 @@
 mod bench;
 mod camera;
 mod canvas;
+mod cull;
 mod devices;
 mod displacement;
 mod error;
@@ -31,6 +33,7 @@ mod plot;
 mod published;
 mod render;
 mod sample;
+mod screen;
 mod shading;
 mod shapes;
 mod source;
@@ -81,6 +84,8 @@ enum Command {
     Error(errors::ErrorArgs),
     /// Prove that neighbouring patches meet, to the last bit, under any factors and displacement.
     Watertight(watertight::WatertightArgs),
+    /// How far the drawn triangles are from the exact surface on the screen, with factors by the view and with one for all.
+    Screen(screen::ScreenArgs),
     /// List the built-in shapes, or write one as OBJ.
     Shapes(shapes::ShapesArgs),
     /// List the Vulkan devices, what they can do and what they lack.
@@ -100,6 +105,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Bench(args) => bench::run(&args, cli.json),
         Command::Error(args) => errors::run(&args, cli.json),
         Command::Watertight(args) => watertight::run(&args, cli.json),
+        Command::Screen(args) => screen::run(&args, cli.json),
         Command::Shapes(args) => shapes::run(&args, cli.json),
         Command::Devices => devices::run(cli.json),
     });

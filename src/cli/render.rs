@@ -1,6 +1,7 @@
 //! `subdiv render`: a picture of a mesh.
 
 use super::camera::CameraArgs;
+use super::cull::CullArgs;
 use super::displacement::{DisplacementArgs, texture};
 use super::error::CliError;
 use super::error_map::{ErrorMap, ErrorSet};
@@ -18,9 +19,8 @@ use ash_subdiv::headless::{Headless, HeadlessError, Offscreen, OffscreenDesc, Te
 use ash_subdiv::measure::Quantity;
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::renderer::{Cull, DisplacementId, Factor};
-use ash_subdiv::table::CpuSurface;
 use ash_subdiv::{Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Spacing, Target, View};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -37,17 +37,8 @@ struct FactorArgs {
     /// Factors such that edges stray from their curves by about this many pixels: more where they are bent.
     #[arg(long, value_name = "PIXELS", value_parser = parse::positive, conflicts_with = "factor")]
     bend: Option<f32>,
-    /// Leave out patches that are not seen: `back` those that face away, `frustum` those out of the picture, `small` those
-    /// between pixels (with one sample a pixel).
-    #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
-    cull: Vec<CullArg>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum CullArg {
-    Back,
-    Frustum,
-    Small,
+    #[command(flatten)]
+    cull: CullArgs,
 }
 
 impl FactorArgs {
@@ -57,11 +48,6 @@ impl FactorArgs {
             (None, Some(pixels)) => Factor::Curvature(pixels),
             (None, None) => Factor::Uniform(self.factor),
         }
-    }
-
-    fn cull(&self) -> Cull {
-        let has = |which| self.cull.contains(&which);
-        Cull { frustum: has(CullArg::Frustum), back: has(CullArg::Back), small: has(CullArg::Small) }
     }
 
     /// In words.
@@ -282,20 +268,11 @@ impl RenderArgs {
 
     /// Points around which everything is that the picture shows.
     fn seen_points(&self, mesh: &ControlMesh) -> Result<Vec<DVec3>, CliError> {
-        let mut points = Vec::new();
-        if self.shading.shows_control_mesh() {
-            points.extend(mesh.data().positions.iter().copied().map(DVec3::from));
+        let positions = &mesh.data().positions;
+        if self.shading.shows_control_mesh() && !positions.is_empty() {
+            return Ok(positions.iter().copied().map(DVec3::from).collect());
         }
-        if points.is_empty() {
-            let (source, scheme) = (&self.mesh.source, self.mesh.scheme);
-            let surface = CpuSurface::with_fallback(mesh, scheme, source.fallback(), source.refine)?;
-            points = surface.control_points(|p| p).concat();
-        }
-        // Where nothing is drawn, such as where all faces are holes.
-        if points.is_empty() {
-            points.extend(mesh.bounds());
-        }
-        Ok(points)
+        self.mesh.hull(mesh)
     }
 
     /// Checks size and samples against the device; gives the samples.
@@ -324,7 +301,7 @@ impl RenderArgs {
         mesh: &ControlMesh,
         options: &ModelOptions,
     ) -> Result<Option<StatisticsOut>, CliError> {
-        let (factor, cull) = (self.factor.factor(), self.factor.cull());
+        let (factor, cull) = (self.factor.factor(), self.factor.cull.cull());
         let asked = cull != Cull::NONE || !matches!(factor, Factor::Uniform(_));
         if !asked || !headless.context().features().vertex_stores {
             return Ok(None);
@@ -381,7 +358,7 @@ impl RenderArgs {
         }
         let model = renderer.add_tables(tables, &mesh.positions_f32(), model_options)?;
         let item = DrawItem {
-            cull: self.factor.cull(),
+            cull: self.factor.cull.cull(),
             displacement: self.displacement.amount(mesh),
             ..DrawItem::new(model, self.factor.factor())
         };

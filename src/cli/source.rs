@@ -8,6 +8,7 @@ use ash_subdiv::mesh::{ReadOptions, read, shape};
 use ash_subdiv::table::{CpuSurface, Notice};
 use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme};
 use clap::Args;
+use glam::DVec3;
 use std::path::PathBuf;
 
 /// The mesh, and the surface it is the control mesh of.
@@ -46,6 +47,17 @@ impl MeshArgs {
     /// How the mesh is to be drawn, with this construction.
     pub(super) fn model_options(&self, construction: Construction) -> ModelOptions {
         self.source.model_options(self.scheme, construction)
+    }
+
+    /// Points around which the whole surface is: the control points of its patches.
+    pub(super) fn hull(&self, mesh: &ControlMesh) -> Result<Vec<DVec3>, CliError> {
+        let (fallback, refine) = (self.source.fallback(), self.source.refine);
+        let mut points = CpuSurface::with_fallback(mesh, self.scheme, fallback, refine)?.control_points(|p| p).concat();
+        // Where nothing is drawn, such as where all faces are holes.
+        if points.is_empty() {
+            points.extend(mesh.bounds());
+        }
+        Ok(points)
     }
 
     /// The patches of the mesh on the CPU; tells the notices about it.

@@ -5,6 +5,8 @@ mod dense;
 mod error;
 mod field;
 mod nearest;
+#[cfg(feature = "headless")]
+mod screen;
 pub mod statistics;
 mod sums;
 #[cfg(feature = "headless")]
@@ -12,3 +14,5 @@ pub mod watertight;
 
 pub use error::{Deviation, ErrorOptions, ErrorReport, FaceErrors, SchemeError, surface_errors};
 pub use field::{Quantity, error_field};
+#[cfg(feature = "headless")]
+pub use screen::{PixelDeviation, ScreenError, screen_error};

@@ -36,6 +36,8 @@ pub enum Error {
     BadFactor { id: ModelId, factor: Factor },
     #[error("model {}: factors in pixels and leaving out small patches need the size of the viewport: set View::viewport", id.0)]
     NoViewport { id: ModelId },
+    #[error("deviations on the screen need its size in pixels: set View::viewport")]
+    NoScreen,
     #[error("model {}: its edges have no factors: call set_edge_factors first", id.0)]
     NoEdgeFactors { id: ModelId },
     #[error("model {}: {given} factors are given, but its patches have {needed} edges", id.0)]

@@ -23,6 +23,8 @@ pub(crate) enum Capture {
     Vertices,
     /// The samples of a grid.
     Grid,
+    /// The vertices of each triangle.
+    Triangles,
 }
 
 /// What tells pipelines of one renderer apart.
@@ -156,12 +158,15 @@ impl Pipelines {
                 let evaluation = spaced(evaluation, spacing);
                 let most = self.context.properties().max_tessellation_level as f32;
                 let limits = [Specialization::float(2, most), Specialization::uint(3, patch.stride)];
-                let stages = [
+                let mut stages = vec![
                     vertex,
                     Shader::tess_control(control).specialized(&limits),
                     Shader::tess_evaluation(&evaluation),
-                    fragment(style, patch.sharing, &encode),
                 ];
+                if self.capture == Capture::Triangles {
+                    stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
+                }
+                stages.push(fragment(style, patch.sharing, &encode));
                 self.create(&name, style, &stages, patch.input_points())?
             }
         };

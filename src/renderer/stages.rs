@@ -77,7 +77,7 @@ impl PatchStages {
         name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Points => "_CAPTURE_POINTS",
-            Capture::Vertices | Capture::Grid => "_CAPTURE",
+            Capture::Vertices | Capture::Grid | Capture::Triangles => "_CAPTURE",
             // Displacement comes with texture coordinates.
             Capture::Off if texcoords && self.sharing != Sharing::Displacement => "_TEXCOORD",
             Capture::Off => "",
@@ -92,7 +92,7 @@ impl PatchStages {
         name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Grid => "_CAPTURE_GRID",
-            Capture::Vertices => "_CAPTURE",
+            Capture::Vertices | Capture::Triangles => "_CAPTURE",
             // Displacement comes with texture coordinates.
             Capture::Off if texcoords && self.sharing != Sharing::Displacement => "_TEXCOORD",
             Capture::Off | Capture::Points => "",
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn every_patch_has_its_shaders() {
-        let modes = [Capture::Off, Capture::Points, Capture::Vertices, Capture::Grid];
+        let modes = [Capture::Off, Capture::Points, Capture::Vertices, Capture::Grid, Capture::Triangles];
         for (scheme, kind) in Scheme::ALL.into_iter().flat_map(|scheme| PatchKind::ALL.map(|kind| (scheme, kind))) {
             if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle
                 || kind == PatchKind::Pentagon && !scheme.has_pentagons()

@@ -162,3 +162,54 @@ fn the_limit_surface_is_sampled() {
     let message = "--scheme limit: refinement does not change the limit surface: leave out --refine";
     fails("sample --shape cube --scheme limit --cpu --refine 1", 2, message);
 }
+
+#[test]
+fn screen_tells_pixels_and_triangles() {
+    let out = json("screen --shape torus --size 128x96 --pixels 6,3 --bend 0.5 --cull back");
+    assert_eq!(keys(&out), ["construction", "device", "mesh", "rows", "size", "spacing"]);
+    assert_eq!(
+        (&out["mesh"], &out["size"], &out["spacing"]),
+        (&"torus".into(), &serde_json::json!([128, 96]), &"equal".into())
+    );
+    let rows = out["rows"].as_array().unwrap();
+    let names: Vec<_> =
+        rows.iter().map(|row| (row["metric"].as_str().unwrap(), row["value"].as_f64().unwrap())).collect();
+    let uniform = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0].map(|factor| ("uniform", factor));
+    assert_eq!(names[..3], [("pixels", 6.0), ("pixels", 3.0), ("bend", 0.5)]);
+    assert_eq!(names[3..], uniform);
+    for row in rows {
+        assert_eq!(keys(row), ["equal", "facets", "metric", "samples", "shape", "shift", "triangles", "value"]);
+        for deviation in ["facets", "shape", "shift"] {
+            let [rms, p99, max] = ["rms", "p99", "max"].map(|key| row[deviation][key].as_f64().unwrap());
+            assert!(0.0 < rms && rms <= max && p99 <= max, "{row}");
+        }
+        let equal = &row["equal"];
+        if row["metric"] == "uniform" {
+            assert!(equal.is_null());
+        } else {
+            assert_eq!(keys(equal), ["facets", "shape", "shift"]);
+            let Some(factor) = equal["facets"]["factor"].as_f64() else { panic!("{row}") };
+            let level = &rows[3..].iter().find(|row| row["value"] == factor).unwrap();
+            assert_eq!(level["triangles"], equal["facets"]["triangles"]);
+            assert!(level["facets"]["p99"].as_f64().unwrap() <= 1.05 * row["facets"]["p99"].as_f64().unwrap());
+        }
+    }
+    // What faces away is not drawn.
+    assert!(rows[3]["triangles"].as_u64().unwrap() < 200, "{}", rows[3]);
+    let text = String::from_utf8(run("screen --shape single-quad --size 64x64").stdout).unwrap();
+    assert!(text.contains("\npixels 4, facets: ") && text.contains("uniform 1 is as good with 2"), "{text}");
+}
+
+#[test]
+fn screen_refuses_what_makes_no_sense() {
+    fails(
+        "screen --shape cube --pixels 0",
+        2,
+        "invalid value '0' for '--pixels <PIXELS>': it must be a number above 0",
+    );
+    fails(
+        "screen --shape cube --size 0x9",
+        2,
+        "invalid value '0x9' for '--size <WxH>': it must be WxH in pixels, such as 1024x768",
+    );
+}
