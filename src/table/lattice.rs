@@ -1,6 +1,7 @@
 //! Triangles of a patch that is evaluated on a lattice: vertices in the order of [`grid_parameters`](super::grid_parameters).
 
 use crate::topology::PatchKind;
+use std::cmp::Ordering;
 
 /// How many vertices a patch has with `n` segments along each side.
 pub(crate) fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
@@ -12,6 +13,17 @@ pub(crate) fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
 pub(crate) fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
     let n = u64::from(n);
     if kind.is_triangular() { n * n } else { 2 * n * n }
+}
+
+/// Whether the diagonal of a cell of a quad goes along u = v. As the tessellators that follow Direct3D's have it, Mesa's
+/// among them: from the corners of the patch to its middle, and between the halves as in the half where its ring begins.
+fn rises(n: u32, column: u32, row: u32) -> bool {
+    let half = |i: u32| (2 * i + 1).cmp(&n);
+    match (half(column), half(row)) {
+        (Ordering::Equal, _) => true,
+        (_, Ordering::Equal) => false,
+        (column, row) => column == row,
+    }
 }
 
 /// Three vertices for each triangle, counter-clockwise where (u, v) is.
@@ -29,7 +41,8 @@ pub(crate) fn lattice_indices(kind: PatchKind, n: u32) -> Vec<u32> {
         } else {
             let (above, below) = (row * (n + 1), (row + 1) * (n + 1));
             for k in 0..n {
-                indices.extend([above + k, above + k + 1, below + k + 1, above + k, below + k + 1, below + k]);
+                let [a, b, c, d] = [above + k, above + k + 1, below + k + 1, below + k];
+                indices.extend(if rises(n, k, row) { [a, b, c, a, c, d] } else { [a, b, d, b, c, d] });
             }
         }
     }

@@ -184,7 +184,7 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths magic",
         2,
-        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, bilinear, vertex-buffer]",
+        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, compute, bilinear, vertex-buffer]",
     );
     fails(
         "bench --results x.json --factors 1",
