@@ -42,11 +42,13 @@ vec3 owned[CORNERS][OWNED];
 
 Sample evaluate_patch(vec3 at);
 
-// The parameter of vertex i along a side, with 16 bits after the point, as the tessellator has it: from both ends of an
-// edge the same vertices, for `1 - t` is exact.
+// The parameter of vertex i along a side, with 16 bits after the point: from both ends of an edge the same vertices, for
+// `1 - t` is exact. As tessellators that follow Direct3D's have it, which step by a rounded 1 / n; they end at 64 segments.
 float along_side(uint i) {
     uint near = min(i, patches.segments - i);
-    precise float t = round(float(near) / float(patches.segments) * 65536.0) / 65536.0;
+    precise float step_size = 65536.0 / float(patches.segments);
+    precise float t = round(float(near) * (patches.segments <= 64u ? round(step_size) : step_size)) / 65536.0;
+    t = 2u * near == patches.segments ? 0.5 : t;
     return i == near ? t : 1.0 - t;
 }
 

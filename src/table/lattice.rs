@@ -20,8 +20,8 @@ pub(crate) fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
 fn rises(n: u32, column: u32, row: u32) -> bool {
     let half = |i: u32| (2 * i + 1).cmp(&n);
     match (half(column), half(row)) {
-        (Ordering::Equal, _) => true,
         (_, Ordering::Equal) => false,
+        (Ordering::Equal, _) => true,
         (column, row) => column == row,
     }
 }
