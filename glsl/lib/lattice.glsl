@@ -1,6 +1,6 @@
 // Evaluation by compute: the vertices of each patch on a lattice with the same number of segments along every side. A
-// workgroup takes some of the vertices of one patch. Rust twins: `lattice_parameters` and `Dispatch` in
-// src/renderer/evaluated.rs.
+// workgroup takes some of the vertices of one patch. Rust twins: `Dispatch` in
+// src/renderer/lattice.rs, `grid_parameters` in src/table/cpu.rs for the order.
 #ifndef LATTICE_GLSL
 #define LATTICE_GLSL
 

@@ -1,12 +1,10 @@
-//! Evaluation by compute: the vertices of all patches in one buffer, for as many draws as there are.
+//! Evaluation by compute: pipelines, vertices and dispatches.
 
-use super::model::{Model, device_buffer, upload_buffer};
-use super::stages::{PatchStages, Sharing};
-use super::{
-    Construction, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Renderer, Retired, RetiredObject,
-};
+use super::model::{device_buffer, upload_buffer};
+use super::stages::PatchStages;
+use super::{Error, ModelId};
 use crate::gpu::{
-    Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Spacing, Specialization, VkResultExt,
+    Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, VkResultExt,
     descriptor_set_layout, pipeline_layout, shaders,
 };
 use crate::table::{PatchPlan, lattice_indices, lattice_triangles, lattice_vertices};
@@ -20,7 +18,7 @@ const GROUP_VERTICES: u32 = 256;
 /// Every Vulkan device has as many workgroups along an axis.
 const MAX_GROUPS: u32 = 65_535;
 /// What the shader's arithmetic is right for.
-const MAX_SEGMENTS: u32 = 1024;
+pub(super) const MAX_SEGMENTS: u32 = 1024;
 /// About as many vertices are drawn with the same indices, of one patch at least.
 const BLOCK_VERTICES: u64 = 65_536;
 
@@ -39,14 +37,14 @@ pub(super) fn vertex_bytes(texcoords: bool) -> u32 {
     if texcoords { 32 } else { 24 }
 }
 
-/// Pipelines by the name of their shader and the control points that a corner has room for.
+/// Pipelines by what they evaluate.
 pub(super) struct LatticePipelines {
     context: Arc<DeviceContext>,
     set_layout: Owned<vk::DescriptorSetLayout>,
     layout: Owned<vk::PipelineLayout>,
     cache: vk::PipelineCache,
     texcoords: bool,
-    made: HashMap<(String, u32), Owned<vk::Pipeline>>,
+    made: HashMap<PatchStages, Owned<vk::Pipeline>>,
 }
 
 impl LatticePipelines {
@@ -67,28 +65,23 @@ impl LatticePipelines {
         Ok(Self { context: context.clone(), set_layout, layout, cache, texcoords, made: HashMap::new() })
     }
 
-    fn key(&self, stages: PatchStages) -> (String, u32) {
-        (stages.lattice(self.texcoords), stages.stride)
-    }
-
     /// Makes what patches need.
     pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
-        let key = self.key(stages);
-        if self.made.contains_key(&key) {
+        if self.made.contains_key(&stages) {
             return Ok(());
         }
-        let (name, stride) = &key;
+        let name = stages.lattice(self.texcoords);
         let missing = || GpuError::BadPipeline { object: name.clone(), message: "there is no such shader".to_owned() };
-        let stride = [Specialization::uint(3, *stride)];
+        let stride = [Specialization::uint(3, stages.stride)];
         let desc = ComputePipelineDesc {
             name: &format!("subdiv {name}"),
             layout: self.layout.raw(),
-            shader: Shader::compute(shaders::find(name).ok_or_else(missing)?).specialized(&stride),
+            shader: Shader::compute(shaders::find(&name).ok_or_else(missing)?).specialized(&stride),
             cache: self.cache,
         };
         // SAFETY: the shader is ours and matches the layout.
         let pipeline = unsafe { desc.create(&self.context)? };
-        self.made.insert(key, pipeline);
+        self.made.insert(stages, pipeline);
         Ok(())
     }
 }
@@ -129,7 +122,12 @@ impl LatticeGroup {
 }
 
 impl Lattice {
-    fn new(pipelines: &LatticePipelines, id: ModelId, plan: &PatchPlan, segments: u32) -> Result<Self, Error> {
+    pub(super) fn new(
+        pipelines: &LatticePipelines,
+        id: ModelId,
+        plan: &PatchPlan,
+        segments: u32,
+    ) -> Result<Self, Error> {
         let context = &pipelines.context;
         let max = context.properties().max_storage_buffer_range;
         let counts = plan.groups().iter().map(|g| g.patches.len() as u64 * lattice_vertices(g.kind, segments));
@@ -203,7 +201,7 @@ impl Lattice {
         // SAFETY: as the caller promises.
         unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model, self.set], &[]) };
         for ((&stages, group), lattice) in stages.iter().zip(plan.groups()).zip(&self.groups) {
-            let Some(pipeline) = pipelines.made.get(&pipelines.key(stages)) else { continue };
+            let Some(pipeline) = pipelines.made.get(&stages) else { continue };
             // SAFETY: as the caller promises.
             unsafe { device.cmd_bind_pipeline(cmd, point, pipeline.raw()) };
             let corners = group.kind.corners() as u32;
@@ -246,121 +244,5 @@ fn vertex_set(
         let write = vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty).buffer_info(&buffers);
         device.update_descriptor_sets(&[write], &[]);
         Ok((pool, set))
-    }
-}
-
-/// Tells what a model has that evaluation by compute has not.
-pub(super) fn check_evaluation(id: ModelId, options: &ModelOptions, tables: &ModelTables) -> Result<(), Error> {
-    if options.evaluation == Evaluation::Tessellation {
-        return Ok(());
-    }
-    let what = match tables.sharing() {
-        _ if tables.construction() != Construction::Cached => "constructions other than Construction::Cached",
-        Sharing::Displacement => "displacement",
-        Sharing::Normals => "shared normals",
-        Sharing::Positions if tables.edges().is_some() => "factors of edges",
-        Sharing::Positions if options.spacing != Spacing::Equal => "fractional spacing",
-        Sharing::Positions => return Ok(()),
-    };
-    Err(Error::NotByCompute { id, what })
-}
-
-/// The vertices of a model that is evaluated by compute, for your own use: for acceleration structures, or draws without
-/// this crate.
-///
-/// They are written in the compute stage by the commands of [`Renderer::cmd_prepare`], followed by a barrier for vertex
-/// input; other uses need barriers of their own, before and after. The buffer may be read as vertex buffer, as storage buffer and by
-/// copies, and lives until the model is removed or its segments change, and every frame was prepared again.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct EvaluatedVertices {
-    /// Patch by patch in the order of [`ModelTables::plan`], in each in the order of
-    /// [`grid_parameters`](crate::table::grid_parameters): position and normal in object space, three `f32` each; two more for the texture
-    /// coordinate with [`Options::texcoords`](super::Options::texcoords).
-    pub buffer: vk::Buffer,
-    /// Bytes of them all.
-    pub size: u64,
-    /// Bytes from one vertex to the next.
-    pub stride: u32,
-    /// Segments along each side of each patch.
-    pub segments: u32,
-}
-
-impl Renderer {
-    /// Sets how many segments every edge of a model has, which is [`Evaluation::Compute`]: from the next
-    /// [`Renderer::cmd_prepare`] on, until others are set. Draws name the same number as their [`Factor::Uniform`].
-    ///
-    /// Takes memory for the vertices, (n + 1)² a quad, and lets that of the segments before go when every frame has been
-    /// prepared again. The number that is set already costs nothing.
-    ///
-    /// # Errors
-    /// [`Error::NoSuchModel`]; [`Error::NotComputed`]; [`Error::BadSegments`] unless from 1 to 1024; [`Error::TableTooLarge`]
-    /// if the vertices are more than a shader of the device can see. The model is as it was before.
-    pub fn set_segments(&mut self, id: ModelId, segments: u32) -> Result<(), Error> {
-        let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
-        if model.evaluation != Evaluation::Compute {
-            return Err(Error::NotComputed { id });
-        }
-        if !(1..=MAX_SEGMENTS).contains(&segments) {
-            return Err(Error::BadSegments { id, given: segments, max: MAX_SEGMENTS });
-        }
-        if model.lattice.as_ref().is_some_and(|lattice| lattice.segments == segments) {
-            return Ok(());
-        }
-        let lattice = Lattice::new(&self.pipelines.lattice, id, &model.tables.plan, segments)?;
-        if let Some(before) = model.set_lattice(lattice) {
-            let frames = vec![true; self.options.frames_in_flight as usize];
-            self.retired.push(Retired { frames, _what: RetiredObject::Lattice(before) });
-        }
-        Ok(())
-    }
-
-    /// Where the vertices of a model are; none before [`Renderer::set_segments`].
-    ///
-    /// # Errors
-    /// [`Error::NoSuchModel`], [`Error::NotComputed`].
-    pub fn evaluated_vertices(&self, id: ModelId) -> Result<Option<EvaluatedVertices>, Error> {
-        let model = self.model(id)?;
-        if model.evaluation != Evaluation::Compute {
-            return Err(Error::NotComputed { id });
-        }
-        Ok(model.lattice.as_ref().map(|lattice| EvaluatedVertices {
-            buffer: lattice.vertices.raw(),
-            size: lattice.vertices.size(),
-            stride: vertex_bytes(self.options.texcoords),
-            segments: lattice.segments,
-        }))
-    }
-
-    /// Records the draws of a surface that was evaluated.
-    ///
-    /// # Safety
-    /// As [`Renderer::cmd_draw`]; the pipeline is bound, and `push` records the constants of a group.
-    pub(super) unsafe fn cmd_draw_lattice(
-        &self,
-        cmd: vk::CommandBuffer,
-        model: &Model,
-        factor: Factor,
-        mut push: impl FnMut(usize),
-    ) -> Result<(), Error> {
-        let segments = model.lattice.as_ref().map_or(0, |lattice| lattice.segments);
-        let fits = |lattice: &&Lattice| matches!(factor, Factor::Uniform(f) if f.ceil() == lattice.segments as f32);
-        let lattice = model.lattice.as_ref().filter(fits);
-        let lattice = lattice.ok_or(Error::NotEvaluated { id: model.id, factor, segments })?;
-        if !lattice.ready {
-            return Err(Error::NotPrepared { id: model.id });
-        }
-        let device = self.context.device();
-        // SAFETY: as the caller promises.
-        unsafe {
-            device.cmd_bind_vertex_buffers(cmd, 0, &[lattice.vertices.raw()], &[0]);
-            device.cmd_bind_index_buffer(cmd, lattice.indices.raw(), 0, vk::IndexType::UINT32);
-            for (number, group) in lattice.groups.iter().enumerate() {
-                push(number);
-                for (count, first, offset) in group.draws() {
-                    device.cmd_draw_indexed(cmd, count, 1, first, offset, 0);
-                }
-            }
-        }
-        Ok(())
     }
 }

@@ -29,6 +29,7 @@ mod cached;
 mod displacement;
 mod draw;
 mod error;
+mod evaluated;
 mod factor;
 mod gpu_data;
 mod lattice;
@@ -43,8 +44,8 @@ mod view;
 pub use displacement::{DisplacementId, DisplacementMap};
 pub use draw::DrawItem;
 pub use error::Error;
+pub use evaluated::EvaluatedVertices;
 pub use factor::{Cull, Factor};
-pub use lattice::EvaluatedVertices;
 pub use options::{
     ColorEncoding, Construction, Evaluation, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style,
     Target, check, requirements,
@@ -120,7 +121,7 @@ struct Retired {
 enum RetiredObject {
     Model(Box<Model>),
     Staging(Buffer),
-    Lattice(Lattice),
+    Lattice(Box<Lattice>),
 }
 
 /// Draws subdivision surfaces into the caller's command buffers.

@@ -1,7 +1,8 @@
 //! A model on the GPU.
 
 use super::cached::CachedPipelines;
-use super::lattice::{Lattice, LatticePipelines, check_evaluation};
+use super::evaluated::check_evaluation;
+use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::{MODEL_BUFFERS, Pipelines};
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;

@@ -191,6 +191,11 @@ fn bench_says_what_is_wrong() {
         2,
         "the argument '--results <FILE.json>' cannot be used with '--factors <FACTOR>'",
     );
+    fails(
+        "bench --paths compute --constructions stencil",
+        2,
+        "no path of --paths goes with --constructions: compute goes with cached only",
+    );
     fails("bench --compare no.json", 1, "no.json: No such file or directory (os error 2)");
     let results = folder("bench-bad").join("bad.json");
     fs::write(&results, "{}").unwrap();
