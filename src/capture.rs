@@ -9,8 +9,8 @@ use crate::gpu::{
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::mesh::ControlMesh;
 use crate::renderer::{
-    Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Factor, ModelOptions, ModelTables, Options,
-    Renderer, Style, Target, View,
+    Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Evaluation, Factor, ModelOptions, ModelTables,
+    Options, Renderer, Style, Target, View,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -128,7 +128,7 @@ impl<'h> Captured<'h> {
         let tables = ModelTables::new(mesh, options)?;
         Ok(Self {
             headless,
-            options: options.clone(),
+            options: ModelOptions { evaluation: Evaluation::Tessellation, ..options.clone() },
             tables,
             positions: mesh.positions_f32(),
             displacement: None,

@@ -86,11 +86,17 @@ fn a_race_counts_what_was_drawn() {
         let n = row.factor as u64;
         assert_eq!((row.contestant, row.patches), (*contestant, 36));
         assert_eq!(row.triangles, Some(36 * 2 * n * n));
-        let evaluations = if contestant.path == Path::VertexBuffer { 0 } else { 36 * (n + 1) * (n + 1) };
+        let tessellated = matches!(contestant.path, Path::Tessellation | Path::Bilinear);
+        let evaluations = if tessellated { 36 * (n + 1) * (n + 1) } else { 0 };
         assert_eq!(row.evaluations, Some(evaluations));
         assert_eq!(row.traffic.vertices, 40 * 36 * (n + 1) * (n + 1));
         let points = contestant.patches.map(|(scheme, _)| scheme.owned(ash_subdiv::topology::PatchKind::IrregularQuad));
-        let points = points.unwrap_or(if contestant.path == Path::Bilinear { 1 } else { 0 }) as u64;
+        let points = if tessellated { points.unwrap_or(1) as u64 } else { 0 };
+        let vertices = row.bytes.iter().find(|(name, _)| *name == "vertices").map(|(_, bytes)| *bytes);
+        if contestant.path == Path::Compute {
+            // Six patches once, with their indices.
+            assert_eq!(vertices, Some(6 * 24 * (n + 1) * (n + 1) + 6 * 4 * 6 * n * n));
+        }
         assert_eq!(row.traffic.control_points, 12 * 4 * points * 36);
         assert_eq!(row.construction.is_some(), !contestant.path.is_floor());
         for series in [&row.gpu, &row.geometry] {

@@ -9,7 +9,7 @@ use ash::vk;
 use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
-use ash_subdiv::renderer::{Cull, Factor, Fragment, Geometry};
+use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, Geometry};
 use ash_subdiv::{
     Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style, Target,
     View, shape, shapes,
@@ -60,6 +60,7 @@ struct Picture {
     spacing: Spacing,
     /// By the built-in height map, this part of the diagonal.
     displacement: Option<f32>,
+    evaluation: Evaluation,
     /// Seen from behind: what is left out when it is seen from the front.
     culled: bool,
 }
@@ -78,6 +79,7 @@ impl Picture {
             factor: Factor::Uniform(6.0),
             spacing: Spacing::Equal,
             displacement: None,
+            evaluation: Evaluation::Tessellation,
             culled: false,
         }
     }
@@ -207,10 +209,13 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     });
     // SAFETY: the texture outlives the renderer.
     let displacement = texture.as_ref().map(|texture| unsafe { renderer.add_displacement(texture.into()) });
-    let Picture { scheme, spacing, factor, .. } = *picture;
+    let Picture { scheme, spacing, factor, evaluation, .. } = *picture;
     let model_options =
-        ModelOptions { construction, fallback, scheme, spacing, displacement, ..ModelOptions::default() };
+        ModelOptions { construction, fallback, scheme, spacing, displacement, evaluation, ..ModelOptions::default() };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
+    if evaluation == Evaluation::Compute {
+        renderer.set_segments(model, factor.value() as u32).expect("segments");
+    }
     let [low, high] = mesh.bounds();
     let scale = picture.displacement.unwrap_or(0.0) * (high - low).length() as f32;
     let item = |(style, layer): (usize, &Layer)| DrawItem {
@@ -256,6 +261,38 @@ fn pictures_are_as_they_were() {
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
     headless.finish_silent();
+}
+
+/// Within triangles the lattice has vertices elsewhere than the tessellator: these pictures are left out.
+#[test]
+fn pictures_evaluated_by_compute_are_the_same() {
+    let headless = common::headless();
+    if golden::is_pinned(&headless) {
+        let mut wrong = Vec::new();
+        let mut compared = 0;
+        for picture in pictures() {
+            let fits =
+                picture.displacement.is_none() && matches!(picture.factor, Factor::Uniform(_)) && !picture.culled;
+            let lines = picture.layers.iter().any(|layer| layer.style.wireframe);
+            if fits && !lines && quads_only(picture.shape) {
+                let picture = Picture { evaluation: Evaluation::Compute, ..picture };
+                let pixels = draw(&headless, &picture, Construction::Cached, false);
+                wrong.extend(golden::check(&picture.name, "compute", [SIDE; 2], pixels, false).err());
+                compared += 1;
+            }
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+        assert!(compared >= 12, "{compared}");
+    }
+    headless.finish_silent();
+}
+
+/// Whether no patch is a triangle: faces of five and more corners are refined, and with them all others.
+fn quads_only(name: &str) -> bool {
+    shape(name).is_ok_and(|mesh| {
+        let sizes = &mesh.data().face_sizes;
+        sizes.iter().all(|&size| size == 4) || sizes.iter().any(|&size| size > 4)
+    })
 }
 
 /// A picture that passes for another one proves nothing. Also: there is a golden for each picture, and no other.

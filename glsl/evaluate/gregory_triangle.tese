@@ -1,60 +1,13 @@
-// A Gregory triangle. Rust twin: `evaluate_gregory_triangle` in src/patch/gregory.rs.
+// A Gregory triangle. Evaluated in glsl/lib/evaluate_gregory_triangle.glsl.
 // variants: TEXCOORD, CAPTURE, CAPTURE_GRID, SHARED, SHARED+TEXCOORD, SHARED+CAPTURE, SHARED+CAPTURE_GRID, DISPLACED, DISPLACED+CAPTURE, DISPLACED+CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TRIANGLE
 #define OWNED 5
 #include "evaluation.glsl"
-
-// The points of corner k.
-#define corner(k) owned[k][0]
-#define edge_plus(k) owned[k][1]
-#define edge_minus(k) owned[k][2]
-#define face_plus(k) owned[k][3]
-#define face_minus(k) owned[k][4]
-
-// The terms of corner k with coordinate x, and of its edge to the next corner, whose coordinate is y: the derivatives,
-// and of the position what vanishes on the edges. Points are given as seen from `origin`: see `evaluate_tensor`.
-void add_corner(float x, float y, float z, vec3 origin, vec3 p, vec3 plus, vec3 next_minus, vec3 f_plus, vec3 f_minus,
-                inout vec3 inner, inout vec3 dx, inout vec3 dy, inout vec3 dz) {
-    vec3 edge = x * plus + y * next_minus;
-    float scale = 3.0 * x * y * (x + y);
-    vec3 face = blend(f_plus, y, f_minus, z);
-    inner += (12.0 * x * x * y * z) * (origin + face);
-    dx += (3.0 * x * x) * p + (3.0 * y * (2.0 * x + y)) * edge + scale * plus + (24.0 * x * y * z) * face;
-    dy += (3.0 * x * (x + 2.0 * y)) * edge + scale * next_minus + (12.0 * x * x * z) * face;
-    dz += (12.0 * x * x * y) * face;
-}
-
-// The two inner terms of the cubic along an edge; the factor is 1 on the edge itself.
-vec3 edge_terms(float x, float y, vec3 plus, vec3 next_minus) {
-    precise vec3 sum = (x + y) * ((3.0 * (x * x) * y) * plus + (3.0 * (y * y) * x) * next_minus);
-    return sum;
-}
-
-// On an edge the terms of the others are zero, and what is left has the bits of `symmetric_sum` along the edge of a quad.
-vec3 position_at(float u, float v, float w, vec3 inner) {
-    precise vec3 corners = ((u * u * u) * corner(0) + (v * v * v) * corner(1)) + (w * w * w) * corner(2);
-    precise vec3 edges = (edge_terms(u, v, edge_plus(0), edge_minus(1)) + edge_terms(v, w, edge_plus(1), edge_minus(2)))
-        + edge_terms(w, u, edge_plus(2), edge_minus(0));
-    precise vec3 position = (corners + edges) + inner;
-    return position;
-}
-
-Sample evaluate_gregory_triangle(float u, float v, float w) {
-    precise vec3 o = corner(0);
-    vec3 inner = vec3(0.0), du = vec3(0.0), dv = vec3(0.0), dw = vec3(0.0);
-    add_corner(u, v, w, o, corner(0) - o, edge_plus(0) - o, edge_minus(1) - o, face_plus(0) - o,
-               face_minus(0) - o, inner, du, dv, dw);
-    add_corner(v, w, u, o, corner(1) - o, edge_plus(1) - o, edge_minus(2) - o, face_plus(1) - o,
-               face_minus(1) - o, inner, dv, dw, du);
-    add_corner(w, u, v, o, corner(2) - o, edge_plus(2) - o, edge_minus(0) - o, face_plus(2) - o,
-               face_minus(2) - o, inner, dw, du, dv);
-    vec3 chords = cross(corner(1) - corner(0), corner(2) - corner(0));
-    return Sample(position_at(u, v, w, inner), unit_normal(du - dw, dv - dw, chords));
-}
+#include "evaluate_gregory_triangle.glsl"
 
 void main() {
     vec3 at = parameter();
-    emit(evaluate_gregory_triangle(at.x, at.y, at.z), at);
+    emit(evaluate_patch(at), at);
 }

@@ -1,4 +1,4 @@
-// The first sector of a Pm-patch of a pentagon. Rust twin: `evaluate_pm_pentagon` in src/patch/pm.rs.
+// The first sector of a Pm-patch of a pentagon. Evaluated in glsl/lib/evaluate_pm_pentagon.glsl.
 // variants: TEXCOORD, CAPTURE, CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -7,23 +7,9 @@
 #define OWNED 6
 #define CORNERS 5
 #include "evaluation.glsl"
-#include "pm.glsl"
-
-PmCorner corner_of(uint k) {
-    return PmCorner(owned[k][0], owned[k][1], owned[k][2], owned[k][3], owned[k][4], owned[k][5]);
-}
-
-Sample evaluate_pm_pentagon(float x, float y, float z) {
-    PmCorner i = corner_of(0);
-    PmCorner j = corner_of(1);
-    Spoke si = pm_spoke(i, owned[4][5]);
-    Spoke sj = pm_spoke(j, owned[0][5]);
-    vec3 sum = si.b103 + sj.b103 + pm_spoke(corner_of(2), owned[1][5]).b103 + pm_spoke(corner_of(3), owned[2][5]).b103 +
-        pm_spoke(corner_of(4), owned[3][5]).b103;
-    return evaluate_sector(i, j, si, sj, sum / 5.0, x, y, z);
-}
+#include "evaluate_pm_pentagon.glsl"
 
 void main() {
     vec3 at = parameter();
-    emit(evaluate_pm_pentagon(at.x, at.y, at.z), at);
+    emit(evaluate_patch(at), at);
 }

@@ -1,38 +1,13 @@
-// A Pm-patch of a quad: a c-patch. Rust twin: `evaluate_pm_quad` in src/patch/pm.rs.
+// A Pm-patch of a quad: a c-patch. Evaluated in glsl/lib/evaluate_pm_quad.glsl.
 // variants: TEXCOORD, CAPTURE, CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 6
 #define CORNERS 4
 #include "evaluation.glsl"
-#include "pm.glsl"
-
-// A sum with the weights of the sector's corner: constant indices into the inputs are much faster than varying ones.
-vec3 pick(vec4 which, vec3 x0, vec3 x1, vec3 x2, vec3 x3) {
-    return (which.x * x0 + which.y * x1) + (which.z * x2 + which.w * x3);
-}
-
-#define PICK(which, n) pick(which, owned[0][n], owned[1][n], owned[2][n], owned[3][n])
-
-PmCorner corner_of(vec4 which) {
-    return PmCorner(PICK(which, 0), PICK(which, 1), PICK(which, 2), PICK(which, 3), PICK(which, 4), PICK(which, 5));
-}
-
-Sample evaluate_pm_quad(float u, float v) {
-    bool below = v <= u;
-    bool left = u + v <= 1.0;
-    vec4 which = below ? (left ? vec4(1, 0, 0, 0) : vec4(0, 1, 0, 0)) : (left ? vec4(0, 0, 0, 1) : vec4(0, 0, 1, 0));
-    vec3 at = below ? (left ? vec3(1.0 - u - v, u - v, 2.0 * v) : vec3(u - v, u + v - 1.0, 2.0 - 2.0 * u))
-                    : (left ? vec3(v - u, 1.0 - u - v, 2.0 * u) : vec3(u + v - 1.0, v - u, 2.0 - 2.0 * v));
-    PmCorner i = corner_of(which);
-    PmCorner j = corner_of(which.wxyz);
-    Spoke si = pm_spoke(i, PICK(which.yzwx, 5));
-    Spoke sj = pm_spoke(j, i.b112);
-    vec3 centre = 0.25 * ((owned[0][5] + owned[1][5]) + (owned[2][5] + owned[3][5]));
-    return evaluate_sector(i, j, si, sj, centre, at.x, at.y, at.z);
-}
+#include "evaluate_pm_quad.glsl"
 
 void main() {
     vec3 at = parameter();
-    emit(evaluate_pm_quad(at.x, at.y), at);
+    emit(evaluate_patch(at), at);
 }

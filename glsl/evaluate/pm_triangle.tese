@@ -1,4 +1,4 @@
-// A Pm-patch of a triangle. Rust twin: `evaluate_pm_triangle` in src/patch/pm.rs.
+// A Pm-patch of a triangle. Evaluated in glsl/lib/evaluate_pm_triangle.glsl.
 // variants: TEXCOORD, CAPTURE, CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -6,36 +6,9 @@
 #define OWNED 6
 #define CORNERS 3
 #include "evaluation.glsl"
-#include "pm.glsl"
-
-// A sum with the weights of the sector's corner: constant indices into the inputs are much faster than varying ones.
-vec3 pick(vec3 which, vec3 x0, vec3 x1, vec3 x2) {
-    return (which.x * x0 + which.y * x1) + which.z * x2;
-}
-
-#define PICK(which, n) pick(which, owned[0][n], owned[1][n], owned[2][n])
-
-PmCorner corner_of(vec3 which) {
-    return PmCorner(PICK(which, 0), PICK(which, 1), PICK(which, 2), PICK(which, 3), PICK(which, 4), PICK(which, 5));
-}
-
-Sample evaluate_pm_triangle(float u, float v, float w) {
-    // A sector is where its opposite corner's coordinate is the least.
-    bool first = w <= u && w <= v;
-    bool second = u <= v;
-    vec3 which = first ? vec3(1, 0, 0) : second ? vec3(0, 1, 0) : vec3(0, 0, 1);
-    vec3 at = first ? vec3(u - w, v - w, 3.0 * w) : second ? vec3(v - u, w - u, 3.0 * u) : vec3(w - v, u - v, 3.0 * v);
-    PmCorner i = corner_of(which);
-    PmCorner j = corner_of(which.zxy);
-    PmCorner k = corner_of(which.yzx);
-    Spoke si = pm_spoke(i, k.b112);
-    Spoke sj = pm_spoke(j, i.b112);
-    Spoke sk = pm_spoke(k, j.b112);
-    vec3 centre = (si.b103 + sj.b103 + sk.b103) / 3.0;
-    return evaluate_sector(i, j, si, sj, centre, at.x, at.y, at.z);
-}
+#include "evaluate_pm_triangle.glsl"
 
 void main() {
     vec3 at = parameter();
-    emit(evaluate_pm_triangle(at.x, at.y, at.z), at);
+    emit(evaluate_patch(at), at);
 }

@@ -94,4 +94,13 @@ vec3 blend(vec3 plus, float a, vec3 minus, float b) {
     return sum > 0.0 ? (a * plus + b * minus) * (1.0 / sum) : plus;
 }
 
+// What the corners have, at a point of the patch.
+#if defined(PENTAGON)
+#define INTERPOLATED(of, at) (at.x * of[0] + at.y * of[1] + at.z * ((of[0] + of[1] + of[2] + of[3] + of[4]) / 5.0))
+#elif defined(TRIANGLE)
+#define INTERPOLATED(of, at) (at.x * of[0] + at.y * of[1] + at.z * of[2])
+#else
+#define INTERPOLATED(of, at) mix(mix(of[0], of[1], at.x), mix(of[3], of[2], at.x), at.y)
+#endif
+
 #endif

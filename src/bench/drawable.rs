@@ -3,7 +3,7 @@
 use super::{BenchError, Contestant, Path, Subject};
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
-use crate::renderer::{TableBytes, View};
+use crate::renderer::{Evaluation, TableBytes, View};
 use ash::vk;
 use std::time::Instant;
 
@@ -94,7 +94,7 @@ pub(super) trait Drawable {
     /// Everything that drawing reads.
     fn bytes(&self) -> Vec<TableBytes>;
 
-    /// Bytes of the control points of all patches, as the control stage passes them on.
+    /// Bytes of the control points of all patches, as the control stage passes them on, if it is used.
     fn control_point_bytes(&self) -> u64;
 }
 
@@ -113,8 +113,10 @@ impl Contestant {
     /// Makes everything that does not depend on the factor.
     pub(super) fn open(self, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
         let (scheme, construction) = self.patches.unwrap_or_default();
+        let surface = |evaluation| super::surface::Surface::new(lane, scheme, construction, evaluation);
         Ok(match self.path {
-            Path::Tessellation => Box::new(super::surface::Surface::new(lane, scheme, construction)?),
+            Path::Tessellation => Box::new(surface(Evaluation::Tessellation)?),
+            Path::Compute => Box::new(surface(Evaluation::Compute)?),
             Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
             Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
         })

@@ -42,6 +42,9 @@ use crate::renderer::Construction;
 pub enum Path {
     /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
     Tessellation,
+    /// Evaluated by compute once a frame, as the renderer does with
+    /// [`Evaluation::Compute`](crate::renderer::Evaluation::Compute), and drawn as indexed triangles in each pass.
+    Compute,
     /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
     Bilinear,
     /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
@@ -51,12 +54,13 @@ pub enum Path {
 
 impl Path {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Tessellation, Self::Bilinear, Self::VertexBuffer];
+    pub const ALL: [Self; 4] = [Self::Tessellation, Self::Compute, Self::Bilinear, Self::VertexBuffer];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tessellation => "tessellation",
+            Self::Compute => "compute",
             Self::Bilinear => "bilinear",
             Self::VertexBuffer => "vertex-buffer",
         }
@@ -86,7 +90,8 @@ impl Contestant {
             if path.is_floor() {
                 return vec![Self { path, patches: None }];
             }
-            let pairs = schemes.iter().flat_map(|&s| constructions.iter().map(move |&c| (s, c)));
+            let fits = |&&c: &&Construction| path != Path::Compute || c == Construction::Cached;
+            let pairs = schemes.iter().flat_map(|&s| constructions.iter().filter(fits).map(move |&c| (s, c)));
             pairs.map(|pair| Self { path, patches: Some(pair) }).collect()
         };
         paths.iter().flat_map(of_path).collect()

@@ -5,7 +5,8 @@ use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
 use crate::measure::statistics::Summary;
 use crate::patch::Scheme;
 use crate::renderer::{
-    Construction, DrawItem, Error, ModelId, ModelOptions, ModelTables, Options, Renderer, Style, TableBytes, Target,
+    Construction, DrawItem, Error, Evaluation, ModelId, ModelOptions, ModelTables, Options, Renderer, Style,
+    TableBytes, Target,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -20,14 +21,21 @@ pub(super) struct Surface {
     setup: Setup,
     bytes: Vec<TableBytes>,
     control_point_bytes: u64,
+    evaluation: Evaluation,
 }
 
 impl Surface {
-    pub(super) fn new(lane: Lane, scheme: Scheme, construction: Construction) -> Result<Self, BenchError> {
+    pub(super) fn new(
+        lane: Lane,
+        scheme: Scheme,
+        construction: Construction,
+        evaluation: Evaluation,
+    ) -> Result<Self, BenchError> {
         let Lane { headless, target, subject, spacing, passes } = lane;
         let name = subject.name.clone();
+        let refine = subject.refine;
         let model_options =
-            ModelOptions { name, scheme, construction, spacing, refine: subject.refine, ..ModelOptions::default() };
+            ModelOptions { name, scheme, construction, evaluation, spacing, refine, ..ModelOptions::default() };
         let (tables, tables_ms) = build_tables(lane, &model_options)?;
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
@@ -45,7 +53,10 @@ impl Surface {
         renderer.remove_model(first)?;
         let bytes = tables.bytes();
         let points = |kind| u64::from(tables.patch_count(kind)) * 12 * scheme.points(kind) as u64;
-        let control_point_bytes = PatchKind::ALL.map(points).iter().sum();
+        let control_point_bytes = match evaluation {
+            Evaluation::Tessellation => PatchKind::ALL.map(points).iter().sum(),
+            Evaluation::Compute => 0,
+        };
         let (model, upload) = timed(|| {
             let model = renderer.add_tables(tables, &positions, &model_options)?;
             // SAFETY: the command buffer is being recorded, outside rendering.
@@ -53,7 +64,7 @@ impl Surface {
             Ok::<_, Error>(model)
         })?;
         let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
-        Ok(Self { renderer, model, setup, bytes, control_point_bytes })
+        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation })
     }
 }
 
@@ -69,6 +80,13 @@ fn build_tables(lane: Lane, options: &ModelOptions) -> Result<(ModelTables, f64)
 }
 
 impl Drawable for Surface {
+    fn set_factor(&mut self, factor: f32) -> Result<(), BenchError> {
+        if self.evaluation == Evaluation::Compute {
+            self.renderer.set_segments(self.model, factor.ceil() as u32)?;
+        }
+        Ok(())
+    }
+
     unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer) -> Result<(), BenchError> {
         // Frames are timed as if the vertices had moved.
         self.renderer.forget_control_points(self.model)?;
@@ -91,7 +109,8 @@ impl Drawable for Surface {
     }
 
     fn bytes(&self) -> Vec<TableBytes> {
-        self.bytes.clone()
+        let vertices = self.renderer.memory_usage().vertices;
+        self.bytes.iter().copied().chain((vertices > 0).then_some(("vertices", vertices))).collect()
     }
 
     fn control_point_bytes(&self) -> u64 {

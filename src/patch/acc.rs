@@ -112,7 +112,7 @@ impl<T: Blend> RingValues<T> {
 
 /// A patch at (u, v): the geometry, with the cross product of the tangent patches as its normal.
 ///
-/// GLSL twin: `glsl/evaluate/acc.tese`.
+/// GLSL twin: `glsl/lib/evaluate_acc.glsl`.
 pub fn evaluate_acc<P: Point>(points: &[P; POINTS], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let three = scalar::<P>(3.0);
     let b = |i: usize, j: usize| points[4 * i + j];

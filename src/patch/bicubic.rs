@@ -35,7 +35,7 @@ pub fn bicubic_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> [T; 16] {
 
 /// A bicubic Bezier patch at (u, v).
 ///
-/// GLSL twin: `glsl/evaluate/bicubic.tese`.
+/// GLSL twin: `glsl/lib/evaluate_bicubic.glsl`.
 pub fn evaluate_bicubic<P: Point>(points: &[P; 16], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     evaluate_tensor(&std::array::from_fn(|i| std::array::from_fn(|j| points[4 * i + j])), u, v)
 }

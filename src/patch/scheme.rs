@@ -1,7 +1,8 @@
 //! The schemes, each a way to approximate the Catmull-Clark surface by patches, one a face.
 //!
 //! A scheme is three things: a file beside this one with its construction and evaluation, its shaders
-//! (`glsl/construct/NAME.tesc` for the two-stage construction, `glsl/evaluate/NAME.tese`), and its arms in the `match`es of
+//! (`glsl/construct/NAME.tesc` for the two-stage construction, `glsl/lib/evaluate_NAME.glsl` with
+//! `glsl/evaluate/NAME.tese` and `.comp`), and its arms in the `match`es of
 //! this file and of `renderer/stages.rs`. Regular faces are bicubic patches in every scheme.
 
 use super::fitted::Fit;

@@ -1,4 +1,4 @@
-//! The compute passes of the cached construction.
+//! The compute passes of a frame: the control points of the cached construction, and what follows from them.
 
 use super::stages::PatchStages;
 use super::{ModelId, Renderer};
@@ -112,7 +112,7 @@ impl CachedPipelines {
 }
 
 impl Renderer {
-    /// Records the computation of control points, for draws to read them.
+    /// Records the computation of control points, and of vertices where they are evaluated by compute, for draws to read them.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after the copies and the barrier that follows them. That and the one
@@ -127,17 +127,31 @@ impl Renderer {
                 unsafe { model.cmd_compute(&self.pipelines.cached, cmd) };
             }
         }
-        let (compute, control) =
-            (vk::PipelineStageFlags::COMPUTE_SHADER, vk::PipelineStageFlags::TESSELLATION_CONTROL_SHADER);
+        use vk::PipelineStageFlags as Stage;
+        let readers = Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
         let written = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
             .dst_access_mask(vk::AccessFlags::SHADER_READ)];
         let none = vk::DependencyFlags::empty();
+        let device = self.context.device();
         // SAFETY: as the caller promises.
-        unsafe { self.context.device().cmd_pipeline_barrier(cmd, compute, control, none, &written, &[], &[]) };
+        unsafe { device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, readers, none, &written, &[], &[]) };
+        for id in models {
+            if let Some(model) = self.models.get_mut(id) {
+                // SAFETY: as above, after the control points.
+                unsafe { model.cmd_evaluate(&self.pipelines.lattice, cmd) };
+            }
+        }
+        let evaluated = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::VERTEX_ATTRIBUTE_READ)];
+        // SAFETY: as the caller promises.
+        unsafe {
+            device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, Stage::VERTEX_INPUT, none, &evaluated, &[], &[]);
+        }
     }
 
-    /// Has a model's control points made anew in the next frame: the bench times them.
+    /// Has a model's control points and vertices made anew in the next frame: the bench times them.
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(crate) fn forget_control_points(&mut self, id: ModelId) -> Result<(), super::Error> {
         self.models.get_mut(&id).ok_or(super::Error::NoSuchModel { id })?.forget_points();

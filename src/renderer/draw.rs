@@ -4,7 +4,7 @@ use super::factor::{Cull, Factor};
 use super::gpu_data::DrawConstants;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
-use super::{Error, Geometry, ModelId, Renderer, View};
+use super::{Error, Evaluation, Geometry, ModelId, Renderer, View};
 use crate::gpu::{Domain, tessellated_vertices};
 use ash::vk;
 
@@ -139,6 +139,14 @@ impl Renderer {
                     device.cmd_draw_indexed(cmd, count, 1, first, control.vertex_offset, 0);
                 }
                 return Ok(());
+            }
+            if model.evaluation == Evaluation::Compute {
+                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Lattice }, bound);
+                let push = |group: usize| {
+                    constants.colour = item.colors[model.stages[group].kind as usize];
+                    self.push(cmd, &constants);
+                };
+                return self.cmd_draw_lattice(cmd, model, item.factor, push);
             }
             for (&stages, group) in model.stages.iter().zip(model.tables.plan().groups()) {
                 let (kind, spacing) = (stages.kind, stages.spacing);

@@ -46,6 +46,14 @@ pub enum Error {
     BadEdgeFactor { id: ModelId, edge: usize, factor: f32 },
     #[error("model {}: displacement by {scale} and {bias} is not by finite numbers", id.0)]
     BadDisplacement { id: ModelId, scale: f32, bias: f32 },
+    #[error("model {}: evaluation by compute does not go with {what}: do without, or choose Evaluation::Tessellation", id.0)]
+    NotByCompute { id: ModelId, what: &'static str },
+    #[error("model {}: the tessellation stages evaluate it: set ModelOptions::evaluation to Compute", id.0)]
+    NotComputed { id: ModelId },
+    #[error("model {}: {given} segments: from 1 to {max} are possible along an edge", id.0)]
+    BadSegments { id: ModelId, given: u32, max: u32 },
+    #[error("model {}: {factor:?}: it was evaluated with {segments} segments: call set_segments before cmd_prepare, and draw with that number as uniform factor", id.0)]
+    NotEvaluated { id: ModelId, factor: Factor, segments: u32 },
     #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
     BadGrid { given: u32, max: u32 },
     #[error("{what} of Options is {given}: it must be at least 1")]

@@ -14,6 +14,7 @@
 //! |---|---|---|
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
 //! | compute, cached | vertices and weights of the patches, positions | control points, if the vertices moved |
+//! | compute, evaluation | control points | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
 //! | VS, two-stage | patch corners, rings and their weights, positions | limit point and tangent frame, for each patch corner |
 //! | VS, stencil and cached | nothing | the number of the patch, for each patch |
 //! | TCS, two-stage | the frames of its corners, their rings, positions | control points, factors |
@@ -28,8 +29,10 @@ mod cached;
 mod displacement;
 mod draw;
 mod error;
+mod evaluated;
 mod factor;
 mod gpu_data;
+mod lattice;
 mod model;
 mod options;
 mod pipelines;
@@ -41,10 +44,11 @@ mod view;
 pub use displacement::{DisplacementId, DisplacementMap};
 pub use draw::DrawItem;
 pub use error::Error;
+pub use evaluated::EvaluatedVertices;
 pub use factor::{Cull, Factor};
 pub use options::{
-    ColorEncoding, Construction, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style, Target, check,
-    requirements,
+    ColorEncoding, Construction, Evaluation, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style,
+    Target, check, requirements,
 };
 pub use tables::{Edges, ModelTables, TableBytes};
 pub use view::{MeasuredFrom, View};
@@ -64,6 +68,7 @@ use ash::vk;
 use displacement::Displacements;
 #[cfg(not(all(feature = "measure", feature = "headless")))]
 use gpu_data::ViewData;
+use lattice::Lattice;
 use model::{Model, Surroundings};
 use pipelines::Pipelines;
 use std::collections::HashMap;
@@ -82,6 +87,8 @@ pub struct MemoryUsage {
     pub positions: u64,
     /// Control points that the cached construction keeps, on the device.
     pub control_points: u64,
+    /// Vertices that were evaluated by compute, and their indices, on the device.
+    pub vertices: u64,
     /// Edges and faces of control meshes on the device, if a style draws them.
     pub control_meshes: u64,
     /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
@@ -93,7 +100,13 @@ pub struct MemoryUsage {
 impl MemoryUsage {
     /// All together.
     pub fn total(self) -> u64 {
-        self.tables + self.positions + self.control_points + self.control_meshes + self.staging + self.views
+        self.tables
+            + self.positions
+            + self.control_points
+            + self.vertices
+            + self.control_meshes
+            + self.staging
+            + self.views
     }
 }
 
@@ -108,6 +121,7 @@ struct Retired {
 enum RetiredObject {
     Model(Box<Model>),
     Staging(Buffer),
+    Lattice(Box<Lattice>),
 }
 
 /// Draws subdivision surfaces into the caller's command buffers.
@@ -213,7 +227,7 @@ impl Renderer {
         let map = self.displacements.get(options.displacement)?;
         let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
         let model = Model::new(from, id, &options, tables, positions, map)?;
-        self.pipelines.make(&model.stages)?;
+        self.pipelines.make(&model.stages, model.evaluation)?;
         self.next_id += 1;
         self.models.insert(id, model);
         Ok(id)

@@ -1,10 +1,15 @@
 //! A model on the GPU.
 
 use super::cached::CachedPipelines;
+use super::evaluated::check_evaluation;
+use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::{MODEL_BUFFERS, Pipelines};
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
-use super::{Construction, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
+use super::{
+    Construction, DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables,
+    Options,
+};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::table::PatchGroup;
 use ash::vk;
@@ -28,7 +33,10 @@ pub(super) struct Model {
     largest_edge_factor: f32,
     /// What the cached construction keeps.
     control_points: Option<Buffer>,
-    /// Whether it is out of date.
+    pub evaluation: Evaluation,
+    /// What evaluation by compute makes, once it is known how finely.
+    pub lattice: Option<Lattice>,
+    /// Whether control points and vertices are out of date.
     stale: bool,
     /// Edges, then faces of the control mesh, if a style draws them.
     pub control: Option<ControlIndices>,
@@ -62,6 +70,7 @@ impl Model {
         control: &[[f32; 3]],
         map: DisplacementMap,
     ) -> Result<Self, Error> {
+        check_evaluation(id, model_options, &tables)?;
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
         let check = |table: &'static str, bytes: u64| {
@@ -161,6 +170,8 @@ impl Model {
             corner_factors,
             largest_edge_factor: 1.0,
             control_points,
+            evaluation: model_options.evaluation,
+            lattice: None,
             stale: false,
             control,
             uploads,
@@ -206,7 +217,8 @@ impl Model {
 
     pub(super) fn needs_copies(&self, frame: u32) -> bool {
         let streams = std::iter::once(&self.positions).chain(&self.corner_factors);
-        !self.prepared || streams.into_iter().any(|stream| stream.is_due(frame))
+        let indices = self.lattice.as_ref().is_some_and(Lattice::needs_copies);
+        !self.prepared || indices || streams.into_iter().any(|stream| stream.is_due(frame))
     }
 
     /// Whether control points are to be computed in this frame.
@@ -218,6 +230,23 @@ impl Model {
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(super) fn forget_points(&mut self) {
         self.stale = true;
+    }
+
+    /// Takes a lattice in place of another, to be evaluated in the next frame.
+    pub(super) fn set_lattice(&mut self, lattice: Lattice) -> Option<Lattice> {
+        self.stale = true;
+        self.lattice.replace(lattice)
+    }
+
+    /// Records the evaluation of the lattice, if there is one.
+    ///
+    /// # Safety
+    /// As [`Lattice::cmd_evaluate`].
+    pub(super) unsafe fn cmd_evaluate(&mut self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
+        if let Some(lattice) = &mut self.lattice {
+            // SAFETY: as the caller promises.
+            unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set, &self.stages, &self.tables.plan) };
+        }
     }
 
     /// Records the computation of the control points.
@@ -235,6 +264,7 @@ impl Model {
     /// # Safety
     /// `cmd` is being recorded, outside rendering.
     pub(super) unsafe fn cmd_copy(&mut self, device: &ash::Device, cmd: vk::CommandBuffer, frame: u32) -> Vec<Buffer> {
+        self.uploads.extend(self.lattice.as_mut().and_then(Lattice::take_upload));
         // SAFETY: as the caller promises; both buffers hold the whole range.
         unsafe {
             for stream in std::iter::once(&mut self.positions).chain(&mut self.corner_factors) {
@@ -258,16 +288,18 @@ impl Model {
         usage.control_points += self.control_points.as_ref().map_or(0, Buffer::size);
         usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
         let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
-        usage.staging += staged_positions + staged_factors + uploads;
+        let [vertices, staged_indices] = self.lattice.as_ref().map_or([0; 2], Lattice::bytes);
+        usage.vertices += vertices;
+        usage.staging += staged_positions + staged_factors + staged_indices + uploads;
     }
 }
 
-fn upload_buffer(context: &Arc<DeviceContext>, name: &str, size: u64) -> Result<Buffer, GpuError> {
+pub(super) fn upload_buffer(context: &Arc<DeviceContext>, name: &str, size: u64) -> Result<Buffer, GpuError> {
     let usage = vk::BufferUsageFlags::TRANSFER_SRC;
     Buffer::new(context, &BufferDesc { name, size, usage, location: MemoryLocation::Upload })
 }
 
-fn device_buffer(
+pub(super) fn device_buffer(
     context: &Arc<DeviceContext>,
     name: &str,
     size: u64,

@@ -228,6 +228,21 @@ impl Construction {
     }
 }
 
+/// What evaluates the patches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Evaluation {
+    /// The tessellation stages, in each draw anew.
+    #[default]
+    Tessellation,
+    /// A compute shader, once a frame in which the vertices or the segments changed: on a lattice with as many segments along
+    /// every edge as [`Renderer::set_segments`](super::Renderer::set_segments) says. Draws are of indexed triangles; nothing is
+    /// culled. Takes memory for the vertices, and pays where a model is drawn in several passes or stands still.
+    ///
+    /// For [`Construction::Cached`], [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), and so far without
+    /// displacement and shared normals.
+    Compute,
+}
+
 /// How one model is drawn.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModelOptions {
@@ -239,6 +254,8 @@ pub struct ModelOptions {
     pub fallback: Fallback,
     /// How the control points are made.
     pub construction: Construction,
+    /// What evaluates the patches.
+    pub evaluation: Evaluation,
     /// Where the tessellator puts its vertices along an edge.
     pub spacing: Spacing,
     /// Give neighbouring patches the same normals along their edges and at their corners, to the last bit: positions are the

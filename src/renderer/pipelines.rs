@@ -1,8 +1,9 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
 use super::cached::CachedPipelines;
+use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
-use super::{ColorEncoding, Construction, Fragment, Geometry, Options, Pass, Style, Target};
+use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
     descriptor_set_layout, pipeline_layout, shaders,
@@ -38,6 +39,8 @@ pub(super) struct PipelineKey {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum GeometryKey {
     Patches(PatchStages),
+    /// Patches of all kinds that were evaluated by compute.
+    Lattice,
     Control,
 }
 
@@ -55,6 +58,8 @@ pub(super) struct Pipelines {
     pub layout: Owned<vk::PipelineLayout>,
     /// For what the cached construction computes.
     pub cached: CachedPipelines,
+    /// For what evaluation by compute does.
+    pub lattice: LatticePipelines,
     made: HashMap<PipelineKey, Owned<vk::Pipeline>>,
 }
 
@@ -88,7 +93,9 @@ impl Pipelines {
         let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];
         // SAFETY: the layouts are of this device; for the caller's own that is part of the contract of `Renderer::new`.
         let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
-        let cached = CachedPipelines::new(context, [view_layout.raw(), model_layout.raw()], options.pipeline_cache)?;
+        let sets = [view_layout.raw(), model_layout.raw()];
+        let cached = CachedPipelines::new(context, sets, options.pipeline_cache)?;
+        let lattice = LatticePipelines::new(context, sets, options.pipeline_cache, options.texcoords)?;
         Ok(Self {
             context: context.clone(),
             target: target.clone(),
@@ -101,6 +108,7 @@ impl Pipelines {
             model_layout,
             layout,
             cached,
+            lattice,
             made: HashMap::new(),
         })
     }
@@ -114,13 +122,20 @@ impl Pipelines {
     }
 
     /// Makes what these patches need in every style.
-    pub(super) fn make(&mut self, patches: &[PatchStages]) -> Result<(), GpuError> {
+    pub(super) fn make(&mut self, patches: &[PatchStages], evaluation: Evaluation) -> Result<(), GpuError> {
         for stages in patches.iter().filter(|stages| stages.construction == Construction::Cached) {
             self.cached.make(*stages)?;
+            if evaluation == Evaluation::Compute {
+                self.lattice.make(*stages)?;
+            }
         }
         for style in 0..self.styles.len() {
             if self.styles[style].geometry != Geometry::Surface {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Control })?;
+                continue;
+            }
+            if evaluation == Evaluation::Compute {
+                self.make_one(PipelineKey { style, geometry: GeometryKey::Lattice })?;
                 continue;
             }
             for &stages in patches {
@@ -143,7 +158,16 @@ impl Pipelines {
                     Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT),
                     fragment(style, Sharing::Positions, &encode),
                 ];
-                self.create(&name, style, &stages, 0)?
+                self.create(&name, key, &stages, 0)?
+            }
+            GeometryKey::Lattice => {
+                let name = format!("subdiv style {} of evaluated vertices", key.style);
+                let vertex = match self.texcoords {
+                    true => shaders::EVALUATE_LATTICE_VERT_TEXCOORD,
+                    false => shaders::EVALUATE_LATTICE_VERT,
+                };
+                let stages = [Shader::vertex(vertex), fragment(style, Sharing::Positions, &encode)];
+                self.create(&name, key, &stages, 0)?
             }
             GeometryKey::Patches(patch) => {
                 let name = format!("subdiv style {} {patch:?}", key.style);
@@ -167,7 +191,7 @@ impl Pipelines {
                     stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
                 }
                 stages.push(fragment(style, patch.sharing, &encode));
-                self.create(&name, style, &stages, patch.input_points())?
+                self.create(&name, key, &stages, patch.input_points())?
             }
         };
         self.made.insert(key, pipeline);
@@ -183,10 +207,12 @@ impl Pipelines {
     fn create(
         &self,
         name: &str,
-        style: &Style,
+        key: PipelineKey,
         stages: &[Shader],
         patch_control_points: u32,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
+        let style = &self.styles[key.style];
+        let lattice = key.geometry == GeometryKey::Lattice;
         let target = match &self.target.pass {
             Pass::Dynamic { color, depth, stencil, view_mask } => {
                 RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: *view_mask }
@@ -197,8 +223,18 @@ impl Pipelines {
         };
         let stages = if style.rasterizer_discard { &stages[..stages.len() - 1] } else { stages };
         let lines = style.geometry == Geometry::ControlEdges;
+        let stride = vertex_bytes(self.texcoords);
+        let bindings = [vk::VertexInputBindingDescription { binding: 0, stride, ..Default::default() }];
+        let attributes =
+            [(0, vk::Format::R32G32B32_SFLOAT), (12, vk::Format::R32G32B32_SFLOAT), (24, vk::Format::R32G32_SFLOAT)];
+        let attributes = (0..).zip(attributes).map(|(location, (offset, format))| {
+            vk::VertexInputAttributeDescription { location, binding: 0, format, offset }
+        });
+        let attributes: Vec<_> = attributes.filter(|attribute| attribute.offset < stride).collect();
         let desc = GraphicsPipelineDesc {
             patch_control_points,
+            vertex_bindings: if lattice { &bindings } else { &[] },
+            vertex_attributes: if lattice { &attributes } else { &[] },
             topology: if lines { vk::PrimitiveTopology::LINE_LIST } else { vk::PrimitiveTopology::TRIANGLE_LIST },
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,

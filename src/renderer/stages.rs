@@ -39,7 +39,7 @@ impl Sharing {
     }
 }
 
-/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch.
+/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` (and `_.comp`) of a kind of patch.
 fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
     match (kind, scheme) {
         (PatchKind::Regular, _) => ["REGULAR", "BICUBIC"],
@@ -83,6 +83,12 @@ impl PatchStages {
             Capture::Off => "",
         };
         name
+    }
+
+    /// The name of the compute shader that evaluates a lattice.
+    pub(super) fn lattice(self, texcoords: bool) -> String {
+        let [_, file] = files(self.scheme, self.kind);
+        format!("EVALUATE_{file}_COMP{}", if texcoords { "_TEXCOORD" } else { "" })
     }
 
     /// The name of the evaluation shader.

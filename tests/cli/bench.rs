@@ -184,12 +184,17 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths magic",
         2,
-        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, bilinear, vertex-buffer]",
+        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, compute, bilinear, vertex-buffer]",
     );
     fails(
         "bench --results x.json --factors 1",
         2,
         "the argument '--results <FILE.json>' cannot be used with '--factors <FACTOR>'",
+    );
+    fails(
+        "bench --paths compute --constructions stencil",
+        2,
+        "no path of --paths goes with --constructions: compute goes with cached only",
     );
     fails("bench --compare no.json", 1, "no.json: No such file or directory (os error 2)");
     let results = folder("bench-bad").join("bad.json");

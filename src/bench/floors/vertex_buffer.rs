@@ -6,7 +6,7 @@ use crate::bench::drawable::{Drawable, Frame, Lane, Setup, timed};
 use crate::gpu::{Buffer, GpuError, Owned, Shader, shaders};
 use crate::patch::Scheme;
 use crate::renderer::{DrawConstants, TableBytes};
-use crate::table::CpuSurface;
+use crate::table::{CpuSurface, lattice_indices, lattice_triangles, lattice_vertices};
 use crate::topology::PatchKind;
 use ash::vk;
 use glam::Vec3;
@@ -50,7 +50,7 @@ impl<'a> VertexBuffer<'a> {
         };
         let attributes = [attribute(0, 0), attribute(1, 12)];
         let input = Input { patch_control_points: 0, bindings: &bindings, attributes: &attributes };
-        let stages = [Shader::vertex(shaders::BENCH_VERTEX_BUFFER_VERT)];
+        let stages = [Shader::vertex(shaders::EVALUATE_LATTICE_VERT)];
         let (pipelines, pipelines_ms) = timed(|| kit.pipelines(lane, &stages, &input))?;
         let setup = Setup { pipelines: pipelines_ms, ..Setup::default() };
         Ok(Self { lane, kit, pipelines, surface, points, drawn: None, setup, _nothing: nothing })
@@ -79,43 +79,11 @@ impl<'a> VertexBuffer<'a> {
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
         for (patch, grid) in self.surface.plan().patches().iter().zip(grids) {
             let first = vertices.len() as u32;
-            indices.extend(lattice(patch.kind, n).into_iter().map(|i| first + i));
+            indices.extend(lattice_indices(patch.kind, n).into_iter().map(|i| first + i));
             vertices.extend(grid.iter().map(|s| Vertex { position: s.position.into(), normal: s.normal.into() }));
         }
         (vertices, indices)
     }
-}
-
-fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
-    let n = u64::from(n);
-    if kind == PatchKind::Triangle { (n + 1) * (n + 2) / 2 } else { (n + 1) * (n + 1) }
-}
-
-fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
-    let n = u64::from(n);
-    if kind == PatchKind::Triangle { n * n } else { 2 * n * n }
-}
-
-/// Triangles between the samples of [`grid_parameters`](crate::table::grid_parameters), `n` segments along each side.
-fn lattice(kind: PatchKind, n: u32) -> Vec<u32> {
-    let mut indices = Vec::with_capacity(3 * lattice_triangles(kind, n) as usize);
-    for row in 0..n {
-        if kind == PatchKind::Triangle {
-            let (above, below) = (row * (row + 1) / 2, (row + 1) * (row + 2) / 2);
-            for k in 0..=row {
-                indices.extend([above + k, below + k, below + k + 1]);
-                if k < row {
-                    indices.extend([above + k, below + k + 1, above + k + 1]);
-                }
-            }
-        } else {
-            let (above, below) = (row * (n + 1), (row + 1) * (n + 1));
-            for k in 0..n {
-                indices.extend([above + k, above + k + 1, below + k + 1, above + k, below + k + 1, below + k]);
-            }
-        }
-    }
-    indices
 }
 
 impl Drawable for VertexBuffer<'_> {
@@ -168,32 +136,5 @@ impl Drawable for VertexBuffer<'_> {
 
     fn control_point_bytes(&self) -> u64 {
         0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::table::grid_parameters;
-
-    #[test]
-    fn lattices_cover_their_patch() {
-        for kind in [PatchKind::Regular, PatchKind::Triangle] {
-            for n in [1, 2, 5] {
-                let parameters = grid_parameters(kind, n + 1);
-                let indices = lattice(kind, n);
-                assert_eq!(parameters.len() as u64, lattice_vertices(kind, n));
-                assert_eq!(indices.len() as u64, 3 * lattice_triangles(kind, n));
-                let area = indices.chunks(3).map(|t| {
-                    let [a, b, c] = [t[0], t[1], t[2]].map(|i| glam::DVec2::from(parameters[i as usize]));
-                    (b - a).perp_dot(c - a) / 2.0
-                });
-                let areas: Vec<f64> = area.collect();
-                // All turned the same way.
-                assert!(areas.iter().all(|&a| a * areas[0] > 0.0));
-                let whole = if kind == PatchKind::Triangle { 0.5 } else { 1.0 };
-                assert!((areas.iter().sum::<f64>().abs() - whole).abs() < 1e-12);
-            }
-        }
     }
 }

@@ -1,4 +1,5 @@
-// A floor for the bench: a vertex that was evaluated long ago.
+// A vertex that was evaluated by compute: see glsl/lib/lattice.glsl.
+// variants: TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
@@ -8,9 +9,16 @@ layout(location = 1) in vec3 normal;
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
+#ifdef TEXCOORD
+layout(location = 2) in vec2 texcoord;
+layout(location = 2) out vec2 out_texcoord;
+#endif
 
 void main() {
     world_position = to_world(position);
     world_normal = normal_to_world(normal);
-    gl_Position = view.view_projection * vec4(world_position, 1.0);
+    gl_Position = to_clip(world_position);
+#ifdef TEXCOORD
+    out_texcoord = texcoord;
+#endif
 }

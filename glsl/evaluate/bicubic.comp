@@ -1,0 +1,11 @@
+// A regular patch. On a lattice, for draws to share: see glsl/lib/lattice.glsl.
+// variants: TEXCOORD
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define OWNED 4
+#include "lattice.glsl"
+#include "evaluate_bicubic.glsl"
+
+void main() {
+    evaluate_lattice();
+}

@@ -1,0 +1,12 @@
+// A Gregory triangle. On a lattice, for draws to share: see glsl/lib/lattice.glsl.
+// variants: TEXCOORD
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define TRIANGLE
+#define OWNED 5
+#include "lattice.glsl"
+#include "evaluate_gregory_triangle.glsl"
+
+void main() {
+    evaluate_lattice();
+}

@@ -1,0 +1,248 @@
+//! Evaluation by compute: pipelines, vertices and dispatches.
+
+use super::model::{device_buffer, upload_buffer};
+use super::stages::PatchStages;
+use super::{Error, ModelId};
+use crate::gpu::{
+    Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, VkResultExt,
+    descriptor_set_layout, pipeline_layout, shaders,
+};
+use crate::table::{PatchPlan, lattice_indices, lattice_triangles, lattice_vertices};
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Vertices of a patch that a workgroup takes. GLSL twin: `GROUP_VERTICES` in `glsl/lib/lattice.glsl`.
+const GROUP_VERTICES: u32 = 256;
+/// Every Vulkan device has as many workgroups along an axis.
+const MAX_GROUPS: u32 = 65_535;
+/// What the shader's arithmetic is right for.
+pub(super) const MAX_SEGMENTS: u32 = 1024;
+/// About as many vertices are drawn with the same indices, of one patch at least.
+const BLOCK_VERTICES: u64 = 65_536;
+
+/// The push constants of a dispatch. GLSL twin: `Patches` in `glsl/lib/lattice.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Dispatch {
+    first_corner: u32,
+    first_vertex: u32,
+    segments: u32,
+    vertices: u32,
+}
+
+/// Bytes of a vertex: position, normal, and the texture coordinate if there is one.
+pub(super) fn vertex_bytes(texcoords: bool) -> u32 {
+    if texcoords { 32 } else { 24 }
+}
+
+/// Pipelines by what they evaluate.
+pub(super) struct LatticePipelines {
+    context: Arc<DeviceContext>,
+    set_layout: Owned<vk::DescriptorSetLayout>,
+    layout: Owned<vk::PipelineLayout>,
+    cache: vk::PipelineCache,
+    texcoords: bool,
+    made: HashMap<PatchStages, Owned<vk::Pipeline>>,
+}
+
+impl LatticePipelines {
+    /// With the set layouts of the draws.
+    pub(super) fn new(
+        context: &Arc<DeviceContext>,
+        [view, model]: [vk::DescriptorSetLayout; 2],
+        cache: vk::PipelineCache,
+        texcoords: bool,
+    ) -> Result<Self, GpuError> {
+        let vertices = (vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::COMPUTE);
+        let set_layout = descriptor_set_layout(context, "subdiv vertices", &[vertices])?;
+        let size = size_of::<Dispatch>() as u32;
+        let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
+        // SAFETY: the set layouts are of this device.
+        let layout =
+            unsafe { pipeline_layout(context, "subdiv evaluation", &[view, model, set_layout.raw()], &constants)? };
+        Ok(Self { context: context.clone(), set_layout, layout, cache, texcoords, made: HashMap::new() })
+    }
+
+    /// Makes what patches need.
+    pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
+        if self.made.contains_key(&stages) {
+            return Ok(());
+        }
+        let name = stages.lattice(self.texcoords);
+        let missing = || GpuError::BadPipeline { object: name.clone(), message: "there is no such shader".to_owned() };
+        let stride = [Specialization::uint(3, stages.stride)];
+        let desc = ComputePipelineDesc {
+            name: &format!("subdiv {name}"),
+            layout: self.layout.raw(),
+            shader: Shader::compute(shaders::find(&name).ok_or_else(missing)?).specialized(&stride),
+            cache: self.cache,
+        };
+        // SAFETY: the shader is ours and matches the layout.
+        let pipeline = unsafe { desc.create(&self.context)? };
+        self.made.insert(stages, pipeline);
+        Ok(())
+    }
+}
+
+/// The vertices of a model's patches, with as many segments along every side.
+pub(super) struct Lattice {
+    pub segments: u32,
+    pub vertices: Buffer,
+    pub indices: Buffer,
+    /// How the patches of each group are drawn, in the order of the plan.
+    pub groups: Vec<LatticeGroup>,
+    /// Whether the vertices were evaluated.
+    pub ready: bool,
+    staged: Option<Buffer>,
+    set: vk::DescriptorSet,
+    _pool: Owned<vk::DescriptorPool>,
+}
+
+/// Patches whose vertices follow one another, drawn block by block.
+#[derive(Clone, Copy)]
+pub(super) struct LatticeGroup {
+    first_vertex: u32,
+    vertices: u32,
+    first_index: u32,
+    indices: u32,
+    patches: u32,
+    block: u32,
+}
+
+impl LatticeGroup {
+    /// The draws: how many indices, from which, and what is added to them.
+    pub(super) fn draws(self) -> impl Iterator<Item = (u32, u32, i32)> {
+        (0..self.patches).step_by(self.block as usize).map(move |patch| {
+            let count = self.indices * self.block.min(self.patches - patch);
+            (count, self.first_index, (self.first_vertex + patch * self.vertices) as i32)
+        })
+    }
+}
+
+impl Lattice {
+    pub(super) fn new(
+        pipelines: &LatticePipelines,
+        id: ModelId,
+        plan: &PatchPlan,
+        segments: u32,
+    ) -> Result<Self, Error> {
+        let context = &pipelines.context;
+        let max = context.properties().max_storage_buffer_range;
+        let counts = plan.groups().iter().map(|g| g.patches.len() as u64 * lattice_vertices(g.kind, segments));
+        let bytes = counts.sum::<u64>() * u64::from(vertex_bytes(pipelines.texcoords));
+        if bytes > max {
+            return Err(Error::TableTooLarge { id, table: "evaluated vertices", bytes, max });
+        }
+        // What fits into the buffer can be counted by 32 bits.
+        let (mut groups, mut indices) = (Vec::new(), Vec::new());
+        let mut first_vertex = 0;
+        let mut blocks: [Option<(u32, u32)>; 2] = [None; 2];
+        for group in plan.groups() {
+            let (kind, patches) = (group.kind, group.patches.len() as u32);
+            let vertices = lattice_vertices(kind, segments);
+            let (first_index, block) = *blocks[usize::from(kind.is_triangular())].get_or_insert_with(|| {
+                let alike = plan.groups().iter().filter(|g| g.kind.is_triangular() == kind.is_triangular());
+                let most = alike.map(|g| g.patches.len() as u64).max().unwrap_or(1);
+                let block = (BLOCK_VERTICES / vertices).clamp(1, most);
+                let (first, of_patch) = (indices.len() as u32, lattice_indices(kind, segments));
+                let starts = (0..block).map(|patch| (patch * vertices) as u32);
+                indices.extend(starts.flat_map(|start| of_patch.iter().map(move |i| start + i)));
+                (first, block as u32)
+            });
+            let of_patch = 3 * lattice_triangles(kind, segments) as u32;
+            let vertices = vertices as u32;
+            groups.push(LatticeGroup { first_vertex, vertices, first_index, indices: of_patch, patches, block });
+            first_vertex += patches * vertices;
+        }
+        use vk::BufferUsageFlags as Usage;
+        // A buffer of no bytes is no buffer.
+        let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC;
+        let vertices = device_buffer(context, "subdiv vertices", bytes.max(4), usage)?;
+        let index_bytes = (4 * indices.len() as u64).max(4);
+        let mut staged = upload_buffer(context, "subdiv indices to copy", index_bytes)?;
+        staged.write(0, &indices)?;
+        let indices = device_buffer(context, "subdiv indices", index_bytes, Usage::INDEX_BUFFER)?;
+        let (pool, set) = vertex_set(context, pipelines.set_layout.raw(), &vertices)?;
+        Ok(Self { segments, vertices, indices, groups, ready: false, staged: Some(staged), set, _pool: pool })
+    }
+
+    pub(super) fn needs_copies(&self) -> bool {
+        self.staged.is_some()
+    }
+
+    /// Gives away what is to be copied to the device, and whereto.
+    pub(super) fn take_upload(&mut self) -> Option<(Buffer, vk::Buffer)> {
+        self.staged.take().map(|staged| (staged, self.indices.raw()))
+    }
+
+    /// Bytes on the device, and on the host.
+    pub(super) fn bytes(&self) -> [u64; 2] {
+        [self.vertices.size() + self.indices.size(), self.staged.as_ref().map_or(0, Buffer::size)]
+    }
+
+    /// Records the dispatches for all patches of a model, whose set and stages these are.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, after what makes the control points; the pipelines of `stages` were
+    /// made.
+    pub(super) unsafe fn cmd_evaluate(
+        &mut self,
+        pipelines: &LatticePipelines,
+        cmd: vk::CommandBuffer,
+        model: vk::DescriptorSet,
+        stages: &[PatchStages],
+        plan: &PatchPlan,
+    ) {
+        self.ready = true;
+        let (device, layout) = (pipelines.context.device(), pipelines.layout.raw());
+        let point = vk::PipelineBindPoint::COMPUTE;
+        // SAFETY: as the caller promises.
+        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model, self.set], &[]) };
+        for ((&stages, group), lattice) in stages.iter().zip(plan.groups()).zip(&self.groups) {
+            let Some(pipeline) = pipelines.made.get(&stages) else { continue };
+            // SAFETY: as the caller promises.
+            unsafe { device.cmd_bind_pipeline(cmd, point, pipeline.raw()) };
+            let corners = group.kind.corners() as u32;
+            for patch in (0..lattice.patches).step_by(MAX_GROUPS as usize) {
+                let dispatch = Dispatch {
+                    first_corner: group.first_corner as u32 + patch * corners,
+                    first_vertex: lattice.first_vertex + patch * lattice.vertices,
+                    segments: self.segments,
+                    vertices: lattice.vertices,
+                };
+                let patches = MAX_GROUPS.min(lattice.patches - patch);
+                // SAFETY: as the caller promises.
+                unsafe {
+                    let stage = vk::ShaderStageFlags::COMPUTE;
+                    device.cmd_push_constants(cmd, layout, stage, 0, bytemuck::bytes_of(&dispatch));
+                    device.cmd_dispatch(cmd, patches, lattice.vertices.div_ceil(GROUP_VERTICES), 1);
+                }
+            }
+        }
+    }
+}
+
+fn vertex_set(
+    context: &Arc<DeviceContext>,
+    layout: vk::DescriptorSetLayout,
+    vertices: &Buffer,
+) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
+    const NAME: &str = "subdiv vertices";
+    let ty = vk::DescriptorType::STORAGE_BUFFER;
+    let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: 1 }];
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+    let (layouts, buffers) = ([layout], [vertices.descriptor()]);
+    // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
+    unsafe {
+        let device = context.device();
+        let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", NAME)?;
+        let pool = Owned::new(context, pool, NAME);
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
+        let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", NAME)?[0];
+        let write = vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty).buffer_info(&buffers);
+        device.update_descriptor_sets(&[write], &[]);
+        Ok((pool, set))
+    }
+}

@@ -1,0 +1,77 @@
+//! Triangles of a patch that is evaluated on a lattice: vertices in the order of [`grid_parameters`](super::grid_parameters).
+
+use crate::topology::PatchKind;
+use std::cmp::Ordering;
+
+/// How many vertices a patch has with `n` segments along each side.
+pub(crate) fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
+    let n = u64::from(n);
+    if kind.is_triangular() { (n + 1) * (n + 2) / 2 } else { (n + 1) * (n + 1) }
+}
+
+/// How many triangles.
+pub(crate) fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
+    let n = u64::from(n);
+    if kind.is_triangular() { n * n } else { 2 * n * n }
+}
+
+/// Whether the diagonal of a cell of a quad goes along u = v. As the tessellators that follow Direct3D's have it, Mesa's
+/// among them: from the corners of the patch to its middle, and between the halves as in the half where its ring begins.
+fn rises(n: u32, column: u32, row: u32) -> bool {
+    let half = |i: u32| (2 * i + 1).cmp(&n);
+    match (half(column), half(row)) {
+        (_, Ordering::Equal) => false,
+        (Ordering::Equal, _) => true,
+        (column, row) => column == row,
+    }
+}
+
+/// Three vertices for each triangle, counter-clockwise where (u, v) is.
+pub(crate) fn lattice_indices(kind: PatchKind, n: u32) -> Vec<u32> {
+    let mut indices = Vec::with_capacity(3 * lattice_triangles(kind, n) as usize);
+    for row in 0..n {
+        if kind.is_triangular() {
+            let (above, below) = (row * (row + 1) / 2, (row + 1) * (row + 2) / 2);
+            for k in 0..=row {
+                indices.extend([above + k, below + k, below + k + 1]);
+                if k < row {
+                    indices.extend([above + k, below + k + 1, above + k + 1]);
+                }
+            }
+        } else {
+            let (above, below) = (row * (n + 1), (row + 1) * (n + 1));
+            for k in 0..n {
+                let [a, b, c, d] = [above + k, above + k + 1, below + k + 1, below + k];
+                indices.extend(if rises(n, k, row) { [a, b, c, a, c, d] } else { [a, b, d, b, c, d] });
+            }
+        }
+    }
+    indices
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::grid_parameters;
+
+    #[test]
+    fn lattices_cover_their_patch() {
+        for kind in PatchKind::ALL {
+            for n in [1, 2, 5] {
+                let parameters = grid_parameters(kind, n + 1);
+                let indices = lattice_indices(kind, n);
+                assert_eq!(parameters.len() as u64, lattice_vertices(kind, n));
+                assert_eq!(indices.len() as u64, 3 * lattice_triangles(kind, n));
+                let area = indices.chunks(3).map(|t| {
+                    let [a, b, c] = [t[0], t[1], t[2]].map(|i| glam::DVec2::from(parameters[i as usize]));
+                    (b - a).perp_dot(c - a) / 2.0
+                });
+                let areas: Vec<f64> = area.collect();
+                // All turned the same way.
+                assert!(areas.iter().all(|&area| area > 0.0));
+                let whole = if kind.is_triangular() { 0.5 } else { 1.0 };
+                assert!((areas.iter().sum::<f64>() - whole).abs() < 1e-12);
+            }
+        }
+    }
+}
