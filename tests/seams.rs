@@ -11,6 +11,7 @@ use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::renderer::{Cull, Factor};
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, ReadOptions, Spacing, View, read, shape, shapes};
 use common::random::{random_creased_mesh, random_mesh};
+use glam::Vec3;
 use std::path::Path;
 use std::process::Command;
 
@@ -186,11 +187,18 @@ fn closed_shapes_have_no_holes_in_pictures() {
 
 /// A shader compiled with one thing left out.
 fn faulty(file: &str, defines: &[&str]) -> Vec<u32> {
+    compiled(file, defines, &[])
+}
+
+/// A shader of ours compiled with macros, and with folders in which includes are looked for first.
+fn compiled(file: &str, defines: &[&str], folders: &[&str]) -> Vec<u32> {
     let compiler = std::env::var("GLSLANG").unwrap_or_else(|_| "glslangValidator".into());
     let output =
         Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}{}.spv", file.replace('/', "_"), defines.concat()));
     let status = Command::new(compiler)
-        .args(["-V", "--target-env", "vulkan1.3", "--quiet", "-Iglsl/lib", "-o"])
+        .args(["-V", "--target-env", "vulkan1.3", "--quiet"])
+        .args(folders.iter().map(|folder| format!("-I{folder}")))
+        .args(["-Iglsl/lib", "-o"])
         .arg(&output)
         .args(defines.iter().map(|define| format!("-D{define}")))
         .arg(format!("glsl/{file}"))
@@ -249,6 +257,35 @@ fn every_rule_is_needed() {
     // A compiler that may do sums in any order.
     let imprecise = tally_with(&headless, &texture, false, false, "precise=");
     assert!(imprecise.position_mismatches > 100, "{imprecise:?}");
+    drop(texture);
+    headless.finish_silent();
+}
+
+/// As `glsl/lib/displace.glsl` says.
+#[test]
+fn callers_displace_as_they_like() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    let mesh = shape("creature-mixed").expect("built in");
+    let shader = |file: &str| {
+        let name = format!("EVALUATE_{}_TESE_DISPLACED_CAPTURE", file.to_uppercase());
+        (name, compiled(&format!("evaluate/{file}.tese"), &["DISPLACED", "CAPTURE"], &["tests/glsl/own"]))
+    };
+    // SAFETY: the texture outlives what is captured.
+    let displaced = unsafe { Captured::displaced(&headless, &mesh, &ModelOptions::default(), (&texture).into()) };
+    let displaced = displaced.expect("a model").with_shaders(EVALUATIONS.map(shader).into());
+    let plain = Captured::new(&headless, &mesh, &ModelOptions { shared_normals: true, ..ModelOptions::default() });
+    let [moved, plain] = [&displaced, &plain.expect("a model")].map(|captured| {
+        let mut vertices = captured.vertices(3.0).expect("a capture");
+        vertices.sort_by_key(|v| (v.patch, v.coordinate.map(f32::to_bits)));
+        vertices
+    });
+    assert_eq!(moved.len(), plain.len());
+    for (moved, plain) in moved.iter().zip(&plain) {
+        let expected = Vec3::from(plain.position) + Vec3::new(0.0, 0.0, 0.25);
+        assert!(expected.distance(moved.position.into()) < 1e-6, "{plain:?} {moved:?}");
+    }
+    drop(displaced);
     drop(texture);
     headless.finish_silent();
 }

@@ -50,8 +50,9 @@ vec4 to_clip(vec3 world) {
 }
 
 vec3 normal_to_world(vec3 normal) {
-    return vec3(dot(draw.normal_transform[0].xyz, normal), dot(draw.normal_transform[1].xyz, normal),
-                dot(draw.normal_transform[2].xyz, normal));
+    precise vec3 world = vec3(dot(draw.normal_transform[0].xyz, normal), dot(draw.normal_transform[1].xyz, normal),
+                              dot(draw.normal_transform[2].xyz, normal));
+    return world;
 }
 
 #endif

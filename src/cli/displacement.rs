@@ -52,6 +52,13 @@ impl DisplacementArgs {
         }
     }
 
+    /// How far the map moves a point along an axis, at most.
+    pub(super) fn reach(&self, mesh: &ControlMesh, texels: &Texels) -> f64 {
+        let [scale, bias] = self.amount(mesh);
+        let ends = texels.range().map(|value| f64::from(scale * value + bias).abs());
+        ends[0].max(ends[1])
+    }
+
     /// Scale and bias in the mesh's own units.
     pub(super) fn amount(&self, mesh: &ControlMesh) -> [f32; 2] {
         let diagonal = diagonal(mesh);

@@ -172,7 +172,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let patches = Patches::of(&tables);
     let [width, height] = args.size;
     let size = [width, height - legend];
-    let view = args.camera.view(&args.seen_points(&mesh)?, f64::from(size[0]) / f64::from(size[1]))?;
+    let view = args.camera.view(&args.seen_points(&mesh, texels.as_ref())?, f64::from(size[0]) / f64::from(size[1]))?;
     let view = view.sized(size[0], size[1]);
     progress.now("drawing");
     let (samples, device, mut pixels, statistics) = args.device.run(|headless| {
@@ -267,12 +267,16 @@ impl RenderArgs {
     }
 
     /// Points around which everything is that the picture shows.
-    fn seen_points(&self, mesh: &ControlMesh) -> Result<Vec<DVec3>, CliError> {
+    fn seen_points(&self, mesh: &ControlMesh, texels: Option<&Texels>) -> Result<Vec<DVec3>, CliError> {
         let positions = &mesh.data().positions;
         if self.shading.shows_control_mesh() && !positions.is_empty() {
             return Ok(positions.iter().copied().map(DVec3::from).collect());
         }
-        self.mesh.hull(mesh)
+        let hull = self.mesh.hull(mesh)?;
+        let Some(texels) = texels else { return Ok(hull) };
+        // Wherever displacement moves them.
+        let reach = DVec3::splat(self.displacement.reach(mesh, texels));
+        Ok(hull.into_iter().flat_map(|point| [point - reach, point + reach]).collect())
     }
 
     /// Checks size and samples against the device; gives the samples.

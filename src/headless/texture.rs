@@ -216,3 +216,48 @@ fn upload(headless: &Headless, image: &Image, levels: &[Texels]) -> Result<(), G
         device.cmd_pipeline_barrier2(cmd, &vk::DependencyInfo::default().image_memory_barriers(&after));
     })
 }
+
+#[cfg(all(test, feature = "exr"))]
+mod tests {
+    use super::*;
+    use image::{DynamicImage, ImageFormat};
+    use std::io::Cursor;
+
+    fn encoded(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn pictures_of_8_16_and_32_bits_are_read() {
+        let heights = |bytes: &[u8]| Texels::decode(bytes, false).unwrap();
+        let eight = image::GrayImage::from_raw(2, 1, vec![0, 51]).unwrap();
+        let eight = heights(&encoded(&eight.into(), ImageFormat::Png));
+        assert!(eight.values[0] == 0.0 && (eight.values[1] - 0.2).abs() < 1e-6, "{eight:?}");
+        let sixteen: image::ImageBuffer<image::Luma<u16>, _> =
+            image::ImageBuffer::from_raw(2, 1, vec![1, 65535]).unwrap();
+        let sixteen = heights(&encoded(&sixteen.into(), ImageFormat::Png));
+        assert!((sixteen.values[0] - 1.0 / 65535.0).abs() < 1e-9 && sixteen.values[1] == 1.0, "{sixteen:?}");
+        let values = vec![-2.5, 0.125, 7.0, 1.0, 3.0, 1e-3, 0.0, 1.0];
+        let float = image::Rgba32FImage::from_raw(2, 1, values.clone()).unwrap();
+        let bytes = encoded(&float.into(), ImageFormat::OpenExr);
+        assert_eq!(heights(&bytes).values, [-2.5, 3.0]);
+        assert_eq!(heights(&bytes).range(), [-2.5, 3.0]);
+        let vectors = Texels::decode(&bytes, true).unwrap();
+        assert_eq!((vectors.channels, &vectors.values), (4, &values));
+        assert_eq!(vectors.range(), [-2.5, 7.0]);
+        assert!(Texels::decode(b"no picture", false).is_err());
+    }
+
+    #[test]
+    fn levels_are_means() {
+        let texels = Texels { width: 3, height: 2, channels: 1, values: vec![1.0, 2.0, 3.0, 5.0, 6.0, 7.0] };
+        let half = texels.halved();
+        assert_eq!((half.width, half.height, half.values.as_slice()), (1, 1, &[4.0][..]));
+        let tiled = texels.tiled(2);
+        assert_eq!((tiled.width, tiled.height), (6, 4));
+        assert_eq!(tiled.values[..6], [1.0, 2.0, 3.0, 1.0, 2.0, 3.0]);
+        assert_eq!(tiled.values[18..], [5.0, 6.0, 7.0, 5.0, 6.0, 7.0]);
+    }
+}
