@@ -269,7 +269,10 @@ fn callers_displace_as_they_like() {
     let mesh = shape("creature-mixed").expect("built in");
     let shader = |file: &str| {
         let name = format!("EVALUATE_{}_TESE_DISPLACED_CAPTURE", file.to_uppercase());
-        (name, compiled(&format!("evaluate/{file}.tese"), &["DISPLACED", "CAPTURE"], &["tests/glsl/own"]))
+        (
+            name,
+            compiled(&format!("evaluate/{file}.tese"), &["DISPLACED", "CAPTURE", "OWN_DISPLACE"], &["tests/glsl/own"]),
+        )
     };
     // SAFETY: the texture outlives what is captured.
     let displaced = unsafe { Captured::displaced(&headless, &mesh, &ModelOptions::default(), (&texture).into()) };

@@ -1,13 +1,13 @@
 // Where a displaced surface goes: the one function to write anew for a displacement of your own.
 //
 // The evaluation shaders call `displace` with what all patches at a point share, so whatever it makes of these alone is
-// without cracks. To have your own, put a file of this name before this one: in a folder with your `displace.glsl`,
+// without cracks. To have your own, write a file `own_displace.glsl` with a function like the one below, and
 //
-//     glslangValidator -V --target-env vulkan1.3 -DDISPLACED -I. -I$ash_subdiv/glsl/lib
+//     glslangValidator -V --target-env vulkan1.3 -DDISPLACED -DOWN_DISPLACE -I. -I$ash_subdiv/glsl/lib
 //         $ash_subdiv/glsl/evaluate/gregory_quad.tese -o gregory_quad.spv     (one line)
 //
 // and give the SPIR-V to the renderer as `Options::shaders` under the name "EVALUATE_GREGORY_QUAD_TESE_DISPLACED"; the same
-// for `bicubic` and `gregory_triangle`. `displaced_normal` is for fragment shaders; write it anew, too, if you use ours.
+// for `bicubic` and `gregory_triangle`. Light knows nothing of it: bring a fragment shader of your own.
 #ifndef DISPLACE_GLSL
 #define DISPLACE_GLSL
 

@@ -35,7 +35,11 @@ layout(location = 2) out vec2 out_texcoord;
 #include "edges.glsl"
 #endif
 #ifdef DISPLACED
+#ifdef OWN_DISPLACE
+#include "own_displace.glsl"
+#else
 #include "displace.glsl"
+#endif
 #endif
 
 #if defined(CAPTURE) || defined(CAPTURE_GRID)
