@@ -1,9 +1,9 @@
 //! What every path is to the race: something that can be drawn.
 
-use super::{BenchError, Contestant, Path, Subject};
+use super::{BenchError, Contestant, Normals, Path, Subject};
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
-use crate::renderer::{Evaluation, TableBytes, View};
+use crate::renderer::{Evaluation, ModelOptions, TableBytes, View};
 use ash::vk;
 use std::time::Instant;
 
@@ -113,7 +113,22 @@ impl Contestant {
     /// Makes everything that does not depend on the factor.
     pub(super) fn open(self, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
         let (scheme, construction) = self.patches.unwrap_or_default();
-        let surface = |evaluation| super::surface::Surface::new(lane, scheme, construction, evaluation);
+        let shared_normals = self.normals == Normals::Shared;
+        let surface = |evaluation| {
+            let Lane { subject, spacing, .. } = lane;
+            let (name, refine) = (subject.name.clone(), subject.refine);
+            let options = ModelOptions {
+                name,
+                scheme,
+                construction,
+                evaluation,
+                spacing,
+                shared_normals,
+                refine,
+                ..ModelOptions::default()
+            };
+            super::surface::Surface::new(lane, options, self.cull)
+        };
         Ok(match self.path {
             Path::Tessellation => Box::new(surface(Evaluation::Tessellation)?),
             Path::Compute => Box::new(surface(Evaluation::Compute)?),

@@ -62,7 +62,7 @@ impl Factor {
 /// Which patches the control shader leaves out. No choice changes the factors of the patches that stay.
 ///
 /// Pm- and c-patches are never left out, triangles only by the frustum and as small.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Cull {
     /// Those beyond a plane of the view frustum; their hull grows by what displacement can move them.
     pub frustum: bool,
