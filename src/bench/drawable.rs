@@ -112,29 +112,29 @@ pub(super) struct Lane<'a> {
 impl Contestant {
     /// Makes everything that does not depend on the factor.
     pub(super) fn open(self, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
-        let (scheme, construction) = self.patches.unwrap_or_default();
-        let shared_normals = self.normals == Normals::Shared;
-        let surface = |evaluation| {
-            let Lane { subject, spacing, .. } = lane;
-            let (name, refine) = (subject.name.clone(), subject.refine);
-            let options = ModelOptions {
-                name,
-                scheme,
-                construction,
-                evaluation,
-                spacing,
-                shared_normals,
-                refine,
-                ..ModelOptions::default()
-            };
-            super::surface::Surface::new(lane, options, self.cull)
-        };
         Ok(match self.path {
-            Path::Tessellation => Box::new(surface(Evaluation::Tessellation)?),
-            Path::Compute => Box::new(surface(Evaluation::Compute)?),
+            Path::Tessellation | Path::Compute => {
+                Box::new(super::surface::Surface::new(lane, self.model_options(lane), self.cull)?)
+            }
             Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
             Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
         })
+    }
+
+    /// For paths that are the renderer's own.
+    pub(super) fn model_options(self, lane: Lane) -> ModelOptions {
+        let evaluation = if self.path == Path::Compute { Evaluation::Compute } else { Evaluation::Tessellation };
+        let (scheme, construction) = self.patches.unwrap_or_default();
+        ModelOptions {
+            name: lane.subject.name.clone(),
+            scheme,
+            construction,
+            evaluation,
+            spacing: lane.spacing,
+            shared_normals: self.normals == Normals::Shared,
+            refine: lane.subject.refine,
+            ..ModelOptions::default()
+        }
     }
 }
 

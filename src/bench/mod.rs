@@ -16,12 +16,14 @@
 //! * **set-up**: tables from the mesh, then buffers and copies to the device; pipelines are not in it, but in:
 //! * **first use**: making the pipelines, and the first frame with them, in which some drivers compile. Drivers keep what
 //!   they compiled on the disk: for a first use in truth, switch that off (Mesa: `MESA_SHADER_CACHE_DISABLE=1`).
+//! * **recording** ([`Bench::recording`]): what the host takes to record a frame of many models.
 
 mod drawable;
 mod error;
 mod floors;
 mod options;
 mod race;
+mod recording;
 mod row;
 mod scene;
 mod subject;
@@ -31,6 +33,7 @@ pub use drawable::{Setup, Traffic};
 pub use error::BenchError;
 pub use options::{BenchOptions, Camera};
 pub use race::{Bench, Event};
+pub use recording::{Crowd, Recording};
 pub use row::{Row, Series};
 pub use subject::{Subject, Subset};
 

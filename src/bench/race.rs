@@ -150,7 +150,16 @@ impl<'h> Bench<'h> {
         self.options.cameras.iter().map(|&camera| Scene::new(subject, &self.options, camera)).collect()
     }
 
-    fn lane<'a>(&'a self, subject: &'a Subject) -> Lane<'a> {
+    pub(super) fn headless(&self) -> &'h Headless {
+        self.headless
+    }
+
+    /// Of no size to speak of.
+    pub(super) fn geometry_target(&self) -> &Offscreen {
+        &self.targets[1]
+    }
+
+    pub(super) fn lane<'a>(&'a self, subject: &'a Subject) -> Lane<'a> {
         let BenchOptions { spacing, passes, .. } = self.options;
         Lane { headless: self.headless, target: self.targets[0].desc(), subject, spacing, passes }
     }

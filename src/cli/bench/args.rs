@@ -70,6 +70,10 @@ pub(in super::super) struct BenchArgs {
     /// Frames of each row that go before.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(super) warm_up: u32,
+    /// Measure instead how long the host takes to record a frame of so many models: of one model drawn so many times, of so
+    /// many models, and of as many whose vertices move.
+    #[arg(long, value_name = "MODELS", conflicts_with_all = ["csv", "preset", "compare", "results"], value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(super) recording: Option<u32>,
     /// Measure what a paper measured, and set its figures beside.
     #[arg(long, value_name = "NAME", value_parser = presets::parser())]
     pub(super) preset: Option<&'static Preset>,
@@ -111,7 +115,8 @@ factor, why}], rows[{setting, who, factor, patches, tes_invocations, triangles, 
 mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low, high}, geometry_ratio{..}, construction_ms{..},
 tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name}, fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[],
 geometry[]}}], growth[{setting, who, factor, geometry{value, low, high}, gpu{..}, bytes}], break_even[{..}], views[{..}],
-published[], changes[]; setting: mesh, spacing, view, passes; who: scheme, construction, path, normals, cull.
+published[], changes[], recording[{mesh, who, crowd, models, prepare_ms{median, min, max, mad}, draw_ms{..}, frame_ms{..}}];
+setting: mesh, spacing, view, passes; who: scheme, construction, path, normals, cull.
 
 Examples:
   subdiv bench --shape creature --factors 8,16
@@ -119,6 +124,7 @@ Examples:
   subdiv bench --replicate 1,8,64,512 --factors 2 --paths tessellation --report growth
   subdiv bench --paths tessellation,compute --passes 1,2,3,4
   subdiv bench --paths tessellation,bilinear --normals own,shared --cull frustum --view fit,clipped
+  subdiv bench --recording 1000
   subdiv bench --preset loop2009-table1
   subdiv bench model.obj --json > today.json; subdiv bench model.obj --compare today.json";
 

@@ -6,6 +6,7 @@
 //! | `results`, `facts` | what was measured, and on what, as it is written and read |
 //! | `findings` | what rows say together |
 //! | `text` | all of it as tables |
+//! | `recorded` | what the host takes to record a frame |
 //! | `presets` | what papers measured |
 //! | `compare` | against results of another day |
 //! | `report` | the same as one page, with plots |
@@ -15,6 +16,7 @@ mod compare;
 mod facts;
 mod findings;
 mod presets;
+mod recorded;
 mod report;
 mod results;
 mod text;
@@ -55,6 +57,7 @@ pub(super) fn run(args: &BenchArgs, json: bool) -> Result<(), CliError> {
     if args.results.is_some() {
         text::rows(&results.rows)?;
     }
+    text::recording(&results.recording)?;
     text::findings(&results.findings)?;
     text::published(args.preset, &results.published)?;
     results.changes.as_deref().map_or(Ok(()), text::changes)
@@ -93,10 +96,13 @@ impl BenchArgs {
                 }
                 results.meshes.push(mesh);
             }
-            self.race(headless, &subjects, &contestants, &options, show, &mut results)?;
+            match self.recording {
+                Some(models) => recorded::record(headless, &subjects, &contestants, &options, models, &mut results)?,
+                None => self.race(headless, &subjects, &contestants, &options, show, &mut results)?,
+            }
             Ok(results)
         })?;
-        if results.rows.is_empty() {
+        if results.rows.is_empty() && results.recording.is_empty() {
             let why = results.left_out.pop().map_or_else(String::new, |left| format!(": {}", left.why));
             return Err(CliError::Work(format!("nothing could be measured{why}")));
         }

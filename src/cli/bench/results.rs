@@ -7,6 +7,7 @@ use super::compare::Change;
 use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line};
 use super::findings::Findings;
 use super::presets::Beside;
+use super::recorded::Recorded;
 use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use serde::{Deserialize, Serialize};
@@ -30,6 +31,8 @@ pub(super) struct Results {
     pub left_out: Vec<LeftOut>,
     #[serde(flatten)]
     pub findings: Findings,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub recording: Vec<Recorded>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Beside>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -117,6 +120,7 @@ impl Results {
             rows: Vec::new(),
             left_out: Vec::new(),
             findings: Findings::default(),
+            recording: Vec::new(),
             published: Vec::new(),
             changes: None,
         }
@@ -321,7 +325,7 @@ fn with_total(bytes: &[(&str, u64)]) -> BTreeMap<String, u64> {
 }
 
 impl Times {
-    fn of(values: &[f64]) -> Option<Self> {
+    pub(super) fn of(values: &[f64]) -> Option<Self> {
         let Summary { median, min, max, mad } = Summary::of(values)?;
         Some(Self { median, min, max, mad })
     }

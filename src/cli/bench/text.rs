@@ -5,7 +5,8 @@ use super::super::output::{Table, with_stdout};
 use super::compare::Change;
 use super::findings::{Finding, Findings};
 use super::presets::{Beside, Preset};
-use super::results::{Interval, Row, Times};
+use super::recorded::Recorded;
+use super::results::{Interval, Row, Times, Who};
 
 /// The rows of one mesh and factor after another.
 pub(super) fn rows(rows: &[Row]) -> Result<(), CliError> {
@@ -52,6 +53,31 @@ fn time(Times { median, mad, .. }: Times) -> String {
 
 fn ratio(interval: Option<Interval>) -> String {
     interval.map_or("-".into(), |Interval { value, low, high }| format!("{value:.3} ({low:.2} to {high:.2})"))
+}
+
+/// What the host takes.
+pub(super) fn recording(recording: &[Recorded]) -> Result<(), CliError> {
+    if recording.is_empty() {
+        return Ok(());
+    }
+    let mut table = Table::new(&[5, 6, 7, 8]);
+    table.row([
+        &"recorded",
+        &"scheme",
+        &"construction",
+        &"path",
+        &"crowd",
+        &"models",
+        &"prepare ms",
+        &"draw ms",
+        &"frame ms",
+    ]);
+    for Recorded { mesh, who, crowd, models, prepare_ms, draw_ms, frame_ms } in recording {
+        let Who { scheme, construction, .. } = who;
+        let [prepare, draw, frame] = [prepare_ms, draw_ms, frame_ms].map(|&times| time(times));
+        table.row([mesh, scheme, construction, &who.path_label(), crowd, models, &prepare, &draw, &frame]);
+    }
+    table.print()
 }
 
 /// What rows say together.

@@ -3,6 +3,7 @@
 use super::super::super::error::CliError;
 use super::super::facts::MeshOut;
 use super::super::findings::Findings;
+use super::super::recorded::Recorded;
 use super::super::results::{GPU, Interval, NONE, Results, Row, Setting, Times, Who};
 use super::super::unique;
 use super::plots::{COLOURS, FLOOR, Line, LineStyle, MARKS, plot};
@@ -36,6 +37,7 @@ pub(super) fn page(results: &Results, csv: &[u8], json: &str) -> Result<String, 
                 div.meshes { @for mesh in &results.meshes { (picture(mesh)) } }
                 (plots(results)?)
                 (findings(&results.findings))
+                (recording(&results.recording))
                 (changes(results))
                 (published(results))
                 h2 { "Rows" }
@@ -259,6 +261,24 @@ fn findings(findings: &Findings) -> Markup {
                     th scope="row" { (f.setting.mesh) ", " (f.setting.title()) }
                     td { (f.who.label()) } td { (f.factor) } td { (f.geometry) } td { (f.gpu) }
                     td { (f.bytes.map_or_else(String::new, |power| format!("{power:.2}"))) }
+                } } }
+            } }
+        }
+    }
+}
+
+fn recording(recording: &[Recorded]) -> Markup {
+    html! {
+        @if !recording.is_empty() {
+            h2 { "What the host takes to record a frame" }
+            div.wide { table {
+                thead { tr {
+                    @for head in ["", "", "crowd", "models", "prepare ms", "draw ms", "frame ms"] { th scope="col" { (head) } }
+                } }
+                tbody { @for r in recording { tr {
+                    th scope="row" { (r.mesh) }
+                    td { (r.who.label()) } td { (r.crowd) } td { (r.models) }
+                    (time(r.prepare_ms)) (time(r.draw_ms)) (time(r.frame_ms))
                 } } }
             } }
         }
