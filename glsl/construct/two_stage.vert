@@ -8,9 +8,9 @@
 #define SHARED
 #endif
 #include "draw.glsl"
-#include "rings.glsl"
+#include "corner_faces.glsl"
 #ifdef GREGORY
-#include "corner_gregory.glsl"
+#define INNER 2
 #elif defined(ACC)
 #include "corner_acc.glsl"
 #elif defined(PM)
@@ -54,16 +54,25 @@ void main() {
     vec3 here = edge_neighbour(ring, place.y), next = edge_neighbour(ring, minus_edge);
     plus = edge_vector(ring, place.y, centre, here, a, b);
     minus = edge_vector(ring, minus_edge, centre, next, a, b);
-#ifdef INNER
-    // The edges before and after the corner's own, and the three faces between.
-    uint before = edge_before(ring, place.y), after = edge_after(ring, minus_edge);
-    bool has_before = !(ring.open && place.y == 0u), has_after = !(ring.open && minus_edge == ring.faces);
-    CornerFaces faces = CornerFaces(has_before, has_after, centre, edge_neighbour(ring, before), here, next, edge_neighbour(ring, after),
-                          ring_face(ring, before), ring_face(ring, place.y), ring_face(ring, has_after ? minus_edge : 0u));
-    inner_values(ring, place.y, minus_edge, faces, plus, minus, p, a, b, inner);
+#if defined(INNER) || defined(SHARED)
+    CornerFaces faces = corner_faces(ring, place.y, minus_edge, centre, here, next);
+#endif
+#if defined(GREGORY) || defined(SHARED)
+    vec3 r[2] = transversals(ring, place.y, minus_edge, faces, a, b);
+#endif
+#ifdef GREGORY
+    inner = r;
+#elif defined(ACC)
+    inner = acc_corner(ring, faces, p, plus, minus);
+#elif defined(PM)
+    inner = pm_corner(faces);
 #endif
 #ifdef SHARED
-    SharedCorner with = share_corner(corner, FramedRing(place.x, ring, centre, p, a, b));
+    vec3 e_before = edge_vector(ring, edge_before(ring, place.y), centre, faces.before, a, b);
+    vec3 e_after = edge_vector(ring, edge_after(ring, minus_edge), centre, faces.after, a, b);
+    SharedEdge own_plus = SharedEdge(across(ring, place.y, e_before, plus, minus), r[0]);
+    SharedEdge own_minus = SharedEdge(across(ring, minus_edge, plus, minus, e_after), r[1]);
+    SharedCorner with = share_corner(corner, FramedRing(place.x, ring, centre, p, a, b), own_plus, own_minus);
     shared_with = with.vectors;
     shared_bits = with.bits;
 #ifdef DISPLACED

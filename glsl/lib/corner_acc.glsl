@@ -19,8 +19,8 @@ vec3 acc_inner(float n, Face face, vec3 centre, vec3 first, vec3 second) {
     return (n * centre + 2.0 * (first + second) + diagonal) / (n + 5.0);
 }
 
-void inner_values(Ring ring, uint plus_edge, uint minus_edge, CornerFaces at, vec3 plus, vec3 minus, vec3 p, vec3 a, vec3 b,
-                  out vec3 inner[INNER]) {
+vec3[INNER] acc_corner(Ring ring, CornerFaces at, vec3 p, vec3 plus, vec3 minus) {
+    vec3 inner[INNER];
     float n = acc_valence(ring);
     vec3 before = acc_inner(n, at.face_before, at.centre, at.before, at.here);
     inner[0] = acc_inner(n, at.face, at.centre, at.here, at.next);
@@ -33,6 +33,7 @@ void inner_values(Ring ring, uint plus_edge, uint minus_edge, CornerFaces at, ve
     // Where a face falls back, the curve along the edge is the frame's.
     inner[3] = ring.fallback ? p + plus : inner[1];
     inner[4] = ring.fallback ? p + minus : inner[2];
+    return inner;
 }
 
 #endif

@@ -12,12 +12,10 @@ vec3 pm_face(Face face, vec3 centre, vec3 first, vec3 second) {
     return (4.0 * centre + 2.0 * (first + second) + diagonal) / 9.0;
 }
 
-void inner_values(Ring ring, uint plus_edge, uint minus_edge, CornerFaces at, vec3 plus, vec3 minus, vec3 p, vec3 a, vec3 b,
-                  out vec3 inner[INNER]) {
+vec3[INNER] pm_corner(CornerFaces at) {
     vec3 f = pm_face(at.face, at.centre, at.here, at.next);
-    inner[0] = f;
-    inner[1] = 0.5 * (f + pm_face(at.face_before, at.centre, at.before, at.here));
-    inner[2] = 0.5 * (f + pm_face(at.face_after, at.centre, at.next, at.after));
+    return vec3[INNER](f, 0.5 * (f + pm_face(at.face_before, at.centre, at.before, at.here)),
+                       0.5 * (f + pm_face(at.face_after, at.centre, at.next, at.after)));
 }
 
 #endif

@@ -5,13 +5,13 @@
 
 #include "patch.glsl"
 
-Sample evaluate_bicubic(float u, float v) {
+Surface evaluate_bicubic(float u, float v) {
 #define CORNER(k) TensorCorner(owned[k][0], owned[k][1], owned[k][2], owned[k][3])
     return evaluate_tensor(CORNER(0), CORNER(1), CORNER(2), CORNER(3), u, v);
 #undef CORNER
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_bicubic(at.x, at.y);
 }
 

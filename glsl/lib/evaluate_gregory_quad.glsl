@@ -5,7 +5,7 @@
 
 #include "patch.glsl"
 
-Sample evaluate_gregory_quad(float u, float v) {
+Surface evaluate_gregory_quad(float u, float v) {
     float s = 1.0 - u;
     float t = 1.0 - v;
 #define CORNER(k, x, y) TensorCorner(owned[k][0], owned[k][1], owned[k][2], blend(owned[k][3], x, owned[k][4], y))
@@ -13,7 +13,7 @@ Sample evaluate_gregory_quad(float u, float v) {
 #undef CORNER
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_gregory_quad(at.x, at.y);
 }
 

@@ -38,16 +38,16 @@ vec3 position_at(float u, float v, float w, vec3 inner) {
     return position;
 }
 
-Sample evaluate_gregory_triangle(float u, float v, float w) {
+Surface evaluate_gregory_triangle(float u, float v, float w) {
     precise vec3 o = corner(0), b = corner(1) - o, c = corner(2) - o;
     vec3 inner = vec3(0.0), du = vec3(0.0), dv = vec3(0.0), dw = vec3(0.0);
     add_corner(u, v, w, o, vec3(0.0), owned[0][1], b + owned[1][2], owned[0][3], owned[0][4], inner, du, dv, dw);
     add_corner(v, w, u, o, b, b + owned[1][1], c + owned[2][2], b + owned[1][3], b + owned[1][4], inner, dv, dw, du);
     add_corner(w, u, v, o, c, c + owned[2][1], owned[0][2], c + owned[2][3], c + owned[2][4], inner, dw, du, dv);
-    return Sample(position_at(u, v, w, inner), unit_normal(du - dw, dv - dw, cross(b, c)));
+    return Surface(position_at(u, v, w, inner), du - dw, dv - dw, cross(b, c));
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_gregory_triangle(at.x, at.y, at.z);
 }
 

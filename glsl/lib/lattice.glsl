@@ -40,7 +40,7 @@ layout(push_constant, std430) uniform Patches {
 // The control points that each corner of the patch owns.
 vec3 owned[CORNERS][OWNED];
 
-Sample evaluate_patch(vec3 at);
+Surface evaluate_surface(vec3 at);
 
 // The parameter of vertex i along a side, with 16 bits after the point: from both ends of an edge the same vertices, for
 // `1 - t` is exact. As tessellators that follow Direct3D's have it, which step by a rounded 1 / n; they end at 64 segments.
@@ -93,7 +93,7 @@ void evaluate_lattice() {
     uint end = min(start + GROUP_VERTICES, patches.vertices);
     for (uint i = start + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) {
         vec3 at = lattice_parameter(i);
-        Sample surface = evaluate_patch(at);
+        Sample surface = sample_of(evaluate_surface(at));
         uint word = VERTEX_WORDS * (first_vertex + i);
         put(word, surface.position);
         put(word + 3u, surface.normal);

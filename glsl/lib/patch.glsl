@@ -4,6 +4,13 @@
 #ifndef PATCH_GLSL
 #define PATCH_GLSL
 
+// What evaluating a patch gives: of the derivatives only the direction counts.
+struct Surface {
+    vec3 position;
+    vec3 du, dv;
+    vec3 facing;  // about where the normal goes where the derivatives are parallel
+};
+
 struct Sample {
     vec3 position;
     vec3 normal;
@@ -69,6 +76,17 @@ vec3 from_corner(vec3 p, vec3 vector) {
 #define CONTROL_POINT(k, i) from_corner(owned[k][0], owned[k][i])
 #endif
 
+Sample sample_of(Surface surface) {
+    return Sample(surface.position, unit_normal(surface.du, surface.dv, surface.facing));
+}
+
+// A third of the derivative along a cubic: from its ends `near` and `far` to the points beside them, and between these. From either
+// end the same but for its sign.
+vec3 edge_slope(vec3 slope, vec3 near, vec3 middle, vec3 far) {
+    precise vec3 sum = (slope.x * near - slope.z * far) + slope.y * middle;
+    return sum;
+}
+
 // What a corner of a tensor-product patch owns: its point and, as seen from there, those along its plus and its minus edge, and
 // inside.
 struct TensorCorner {
@@ -79,8 +97,8 @@ struct TensorCorner {
 //
 // The row of points beside an edge is the row of the edge and vectors from there, so that slopes across an edge are made of
 // those vectors alone: with points, they would be differences of nearly equal numbers where a patch is small and far from the
-// origin.
-Sample evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCorner d, float u, float v) {
+// origin. The derivative along an edge has the same bits for both its patches, but for its sign.
+Surface evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCorner d, float u, float v) {
     Basis bu = cubic_basis(u);
     Basis bv = cubic_basis(v);
     // From a to b, and from d to c.
@@ -97,14 +115,14 @@ Sample evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCor
     vec3 position = symmetric_sum(bv.value, x, x_beside, y_beside, y);
 
     // A third of the derivatives.
-    vec3 dv = bv.slope.x * x_in + bv.slope.y * (y_beside - x_beside) - bv.slope.z * y_in;
-    vec3 dx = bu.slope.x * a.plus + bu.slope.y * (x2 - x1) - bu.slope.z * b.minus;
-    vec3 dy = bu.slope.x * d.minus + bu.slope.y * (y2 - y1) - bu.slope.z * c.plus;
+    vec3 dv = edge_slope(bv.slope, x_in, y_beside - x_beside, y_in);
+    vec3 dx = edge_slope(bu.slope, a.plus, x2 - x1, b.minus);
+    vec3 dy = edge_slope(bu.slope, d.minus, y2 - y1, c.plus);
     vec3 dx_in = bu.slope.x * (v1 - a.minus) + bu.slope.y * (v2 - v1) + bu.slope.z * (b.plus - v2);
     vec3 dy_in = bu.slope.x * (w1 - d.plus) + bu.slope.y * (w2 - w1) + bu.slope.z * (c.minus - w2);
     vec4 at = bv.value;
-    vec3 du = ((at.x + at.y) * dx + at.y * dx_in) + ((at.z + at.w) * dy + at.z * dy_in);
-    return Sample(position, unit_normal(du, dv, cross(c.p - a.p, d.p - b.p)));
+    precise vec3 du = ((at.x + at.y) * dx + at.y * dx_in) + ((at.z + at.w) * dy + at.z * dy_in);
+    return Surface(position, du, dv, cross(c.p - a.p, d.p - b.p));
 }
 
 // The face point (a f+ + b f-) / (a + b); at a corner, where both weights vanish, it does not matter.

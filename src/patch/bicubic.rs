@@ -74,6 +74,14 @@ pub(crate) fn cubic<P: Point>(basis: &Basis<P::Scalar>, points: &[P; 4]) -> P {
     symmetric_sum(&basis.value, points)
 }
 
+/// A third of the derivative along a cubic: from its ends `near` and `far` to the points beside them, and between these. From
+/// either end the same but for its sign.
+///
+/// GLSL twin: `edge_slope` in `glsl/lib/patch.glsl`.
+pub(crate) fn edge_slope<P: Point>(slope: &[P::Scalar; 3], near: P, middle: P, far: P) -> P {
+    (near * slope[0] - far * slope[2]) + middle * slope[1]
+}
+
 /// What a corner of a tensor-product patch owns: its point and, as seen from there, those along its plus and its minus edge,
 /// and inside.
 #[derive(Clone, Copy)]
@@ -106,9 +114,9 @@ pub(crate) fn evaluate_tensor<P: Point>(corners: &[TensorCorner<P>; 4], u: P::Sc
     let position = cubic(&bv, &[x, x_beside, y_beside, y]);
 
     // A third of the derivatives.
-    let dv = (x_in * bv.slope[0] + (y_beside - x_beside) * bv.slope[1]) - y_in * bv.slope[2];
-    let dx = (a.plus * bu.slope[0] + (x2 - x1) * bu.slope[1]) - b.minus * bu.slope[2];
-    let dy = (d.minus * bu.slope[0] + (y2 - y1) * bu.slope[1]) - c.plus * bu.slope[2];
+    let dv = edge_slope(&bv.slope, x_in, y_beside - x_beside, y_in);
+    let dx = edge_slope(&bu.slope, a.plus, x2 - x1, b.minus);
+    let dy = edge_slope(&bu.slope, d.minus, y2 - y1, c.plus);
     let dx_in = ((v1 - a.minus) * bu.slope[0] + (v2 - v1) * bu.slope[1]) + (b.plus - v2) * bu.slope[2];
     let dy_in = ((w1 - d.plus) * bu.slope[0] + (w2 - w1) * bu.slope[1]) + (c.minus - w2) * bu.slope[2];
     let at = bv.value;

@@ -158,9 +158,11 @@ impl Model {
         buffers.push(control_points.as_ref().map_or(positions.descriptor(), Buffer::descriptor));
         write_set(context, set, &buffers, map);
         let ModelOptions { construction, spacing, .. } = *model_options;
-        let (sharing, stride) = (tables.sharing(), tables.cached_stride());
-        let stages =
-            |g: &PatchGroup| PatchStages { scheme: g.scheme, kind: g.kind, construction, spacing, sharing, stride };
+        let (sharing, stride, has_speakers) = (tables.sharing(), tables.cached_stride(), tables.has_speakers());
+        let stages = |g: &PatchGroup| {
+            let (scheme, kind) = (g.scheme, g.kind);
+            PatchStages { scheme, kind, construction, spacing, sharing, has_speakers, stride }
+        };
         Ok(Self {
             id,
             stages: tables.plan.groups().iter().map(stages).collect(),

@@ -1,9 +1,9 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
 use super::cached::CachedPipelines;
+use super::factor::Cut;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
-use super::factor::Cut;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,

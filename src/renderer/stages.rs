@@ -13,6 +13,8 @@ pub(super) struct PatchStages {
     pub construction: Construction,
     pub spacing: Spacing,
     pub sharing: Sharing,
+    /// Whether any corner has another ring than its own speak for what it shares.
+    pub has_speakers: bool,
     /// Control points that a corner has room for where they are cached, else 0.
     pub stride: u32,
 }
@@ -75,7 +77,7 @@ impl PatchStages {
 
     /// What the vertex and the control shader of draws with these flags are specialized to. `most` is the largest factor of
     /// the device.
-    pub(super) fn specialization(self, flags: u32, most: f32) -> [Specialization; 6] {
+    pub(super) fn specialization(self, flags: u32, most: f32) -> [Specialization; 7] {
         [
             Specialization::uint(0, self.kind.corners() as u32),
             Specialization::float(2, most),
@@ -83,6 +85,7 @@ impl PatchStages {
             Specialization::uint(4, flags),
             Specialization::bool(5, self.scheme == Scheme::GregoryFitted),
             Specialization::bool(6, self.scheme.has_pentagons()),
+            Specialization::bool(7, self.has_speakers),
         ]
     }
 
@@ -174,8 +177,9 @@ mod tests {
                     if sharing != Sharing::Positions && !scheme.is_watertight() {
                         continue;
                     }
+                    let spacing = Spacing::Equal;
                     let stages =
-                        PatchStages { scheme, kind, construction, spacing: Spacing::Equal, sharing, stride: 8 };
+                        PatchStages { scheme, kind, construction, spacing, sharing, has_speakers: true, stride: 8 };
                     for capture in modes {
                         for texcoords in [false, true] {
                             for name in [

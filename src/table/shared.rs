@@ -5,8 +5,6 @@ use crate::mesh::NO_TWIN;
 use crate::topology::Topology;
 use rayon::prelude::*;
 
-/// Bit of [`SharedCorner::plus_edge`]: the plus edge leads to a lower vertex. Edges are evaluated from the lower one on.
-pub const REVERSED_BIT: u32 = 1 << 31;
 /// Bit of [`SharedCorner::plus_edge`]: the faces at the plus edge are lit with normals of their own.
 pub const SHARP_EDGE_BIT: u32 = 1 << 30;
 
@@ -22,7 +20,7 @@ pub struct SharedCorner {
     pub ring: u32,
     /// The ring at this vertex that speaks for the plus edge.
     pub plus_ring: u32,
-    /// The number of the plus edge in that ring, and bits.
+    /// The number of the plus edge in that ring, and a bit.
     pub plus_edge: u32,
     /// The ring at this vertex that speaks for the minus edge.
     pub minus_ring: u32,
@@ -145,7 +143,7 @@ impl<'t, 'm> Speakers<'t, 'm> {
         SharedCorner {
             ring: self.first_rings[topology.mesh_vertex(h) as usize],
             plus_ring,
-            plus_edge: plus_edge | bit(self.is_reversed(h), REVERSED_BIT) | bit(!one_ring, SHARP_EDGE_BIT),
+            plus_edge: plus_edge | bit(!one_ring, SHARP_EDGE_BIT),
             minus_ring,
             minus_edge,
         }
