@@ -1,5 +1,6 @@
 //! The compute passes of a frame: the control points of the cached construction, and what follows from them.
 
+use super::model::Model;
 use super::stages::PatchStages;
 use super::{ModelId, Renderer};
 use crate::gpu::{
@@ -117,15 +118,14 @@ impl Renderer {
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after the copies and the barrier that follows them. That and the one
     /// before the copies have the computation wait for what read the points before.
-    pub(super) unsafe fn cmd_compute(&mut self, cmd: vk::CommandBuffer, models: &[ModelId]) {
-        if models.is_empty() {
+    pub(super) unsafe fn cmd_compute(&mut self, cmd: vk::CommandBuffer) {
+        let Self { models, pipelines, context, .. } = self;
+        if !models.values().any(Model::is_stale) {
             return;
         }
-        for id in models {
-            if let Some(model) = self.models.get_mut(id) {
-                // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
-                unsafe { model.cmd_compute(&self.pipelines.cached, cmd) };
-            }
+        for model in models.values_mut().filter(|model| model.is_stale()) {
+            // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
+            unsafe { model.cmd_compute(&pipelines.cached, cmd) };
         }
         use vk::PipelineStageFlags as Stage;
         let readers = Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
@@ -133,14 +133,12 @@ impl Renderer {
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
             .dst_access_mask(vk::AccessFlags::SHADER_READ)];
         let none = vk::DependencyFlags::empty();
-        let device = self.context.device();
+        let device = context.device();
         // SAFETY: as the caller promises.
         unsafe { device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, readers, none, &written, &[], &[]) };
-        for id in models {
-            if let Some(model) = self.models.get_mut(id) {
-                // SAFETY: as above, after the control points.
-                unsafe { model.cmd_evaluate(&self.pipelines.lattice, cmd) };
-            }
+        for model in models.values_mut().filter(|model| model.is_stale()) {
+            // SAFETY: as above, after the control points.
+            unsafe { model.cmd_evaluate(&pipelines.lattice, cmd) };
         }
         let evaluated = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
