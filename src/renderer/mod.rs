@@ -227,9 +227,10 @@ impl Renderer {
         let map = self.displacements.get(options.displacement)?;
         let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
         let model = Model::new(from, id, &options, tables, positions, map)?;
-        self.pipelines.make(&model.stages, model.evaluation)?;
         self.next_id += 1;
         self.models.insert(id, model);
+        let made = self.make_pipelines(id, Factor::Uniform(1.0), Cull::NONE);
+        made.inspect_err(|_| drop(self.models.remove(&id)))?;
         Ok(id)
     }
 

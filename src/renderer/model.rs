@@ -23,6 +23,8 @@ pub(super) struct Model {
     pub tables: ModelTables,
     /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
+    /// What there are pipelines for, by [`Cut::bit`](super::factor::Cut::bit).
+    pub made: u32,
     pub set: vk::DescriptorSet,
     _pool: Owned<vk::DescriptorPool>,
     /// All tables of the construction and the texture coordinates, one after the other.
@@ -162,6 +164,7 @@ impl Model {
         Ok(Self {
             id,
             stages: tables.plan.groups().iter().map(stages).collect(),
+            made: 0,
             tables,
             set,
             _pool: pool,

@@ -3,6 +3,7 @@
 use super::cached::CachedPipelines;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
+use super::factor::Cut;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
@@ -38,7 +39,8 @@ pub(super) struct PipelineKey {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum GeometryKey {
-    Patches(PatchStages),
+    /// Of draws with these flags ([`Cut`]).
+    Patches(PatchStages, Cut),
     /// Patches of all kinds that were evaluated by compute.
     Lattice,
     Control,
@@ -121,8 +123,8 @@ impl Pipelines {
         self.made.get(&key).map(Owned::raw)
     }
 
-    /// Makes what these patches need in every style.
-    pub(super) fn make(&mut self, patches: &[PatchStages], evaluation: Evaluation) -> Result<(), GpuError> {
+    /// Makes what draws of these patches need in every style.
+    pub(super) fn make(&mut self, patches: &[PatchStages], evaluation: Evaluation, cut: Cut) -> Result<(), GpuError> {
         for stages in patches.iter().filter(|stages| stages.construction == Construction::Cached) {
             self.cached.make(*stages)?;
             if evaluation == Evaluation::Compute {
@@ -139,7 +141,7 @@ impl Pipelines {
                 continue;
             }
             for &stages in patches {
-                self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages) })?;
+                self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages, cut) })?;
             }
         }
         Ok(())
@@ -169,22 +171,18 @@ impl Pipelines {
                 let stages = [Shader::vertex(vertex), fragment(style, Sharing::Positions, &encode)];
                 self.create(&name, key, &stages, 0)?
             }
-            GeometryKey::Patches(patch) => {
+            GeometryKey::Patches(patch, cut) => {
                 let name = format!("subdiv style {} {patch:?}", key.style);
-                let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
-                let vertex = match patch.construction {
-                    Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
-                    Construction::Stencil | Construction::Cached => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
-                };
+                let vertex = self.find(&patch.vertex(self.capture))?;
                 let control = self.find(&patch.control(self.capture, self.texcoords))?;
                 let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
                 let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
                 let evaluation = spaced(evaluation, spacing);
                 let most = self.context.properties().max_tessellation_level as f32;
-                let limits = [Specialization::float(2, most), Specialization::uint(3, patch.stride)];
+                let constants = patch.specialization(cut.flags(), most);
                 let mut stages = vec![
-                    vertex,
-                    Shader::tess_control(control).specialized(&limits),
+                    Shader::vertex(vertex).specialized(&constants),
+                    Shader::tess_control(control).specialized(&constants),
                     Shader::tess_evaluation(&evaluation),
                 ];
                 if self.capture == Capture::Triangles {
