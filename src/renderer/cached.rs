@@ -61,12 +61,11 @@ impl CachedPipelines {
         }
         let [owned, stride] = key;
         let name = format!("COMPUTE_CONTROL_POINTS_COMP_OWNED_{owned}");
-        let missing = || GpuError::BadPipeline { object: name.clone(), message: "there is no such shader".to_owned() };
         let stride = [Specialization::uint(3, stride as u32)];
         let desc = ComputePipelineDesc {
             name: &format!("subdiv control points, {owned} a corner"),
             layout: self.layout.raw(),
-            shader: Shader::compute(shaders::find(&name).ok_or_else(missing)?).specialized(&stride),
+            shader: Shader::compute(shaders::named(&name)?).specialized(&stride),
             cache: self.cache,
         };
         // SAFETY: the shader is ours and matches the layout.

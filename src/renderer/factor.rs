@@ -76,7 +76,6 @@ impl Cull {
     pub const NONE: Self = Self { frustum: false, back: false, small: false };
     /// All of them.
     pub const ALL: Self = Self { frustum: true, back: true, small: true };
-
 }
 
 /// What the control shader does to cut a patch or to leave it out: each has pipelines of its own.
