@@ -136,16 +136,12 @@ impl<'t, 'm> Speakers<'t, 'm> {
         let topology = self.topology;
         let (plus_ring, plus_edge) = self.at_start(h);
         let (minus_ring, minus_edge) = self.at_end(topology.prev(h));
-        let twin = topology.mesh().twins()[h as usize];
-        // At a dart the edge is sharp, and both faces are in one ring all the same.
-        let one_ring = twin == NO_TWIN
-            || (topology.place(h).ring == topology.place(topology.next(twin)).ring
-                && topology.place(twin).ring == topology.place(topology.next(h)).ring);
+        let sharp = !topology.is_within_rings(h);
         let bit = |on: bool, bit: u32| if on { bit } else { 0 };
         SharedCorner {
             ring: self.first_rings[topology.mesh_vertex(h) as usize],
             plus_ring,
-            plus_edge: plus_edge | bit(self.is_reversed(h), REVERSED_BIT) | bit(!one_ring, SHARP_EDGE_BIT),
+            plus_edge: plus_edge | bit(self.is_reversed(h), REVERSED_BIT) | bit(sharp, SHARP_EDGE_BIT),
             minus_ring,
             minus_edge,
         }
