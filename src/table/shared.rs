@@ -1,6 +1,6 @@
 //! What patches share: which ring speaks for each edge and each vertex.
 
-use super::{PatchPlan, bytes};
+use super::PatchPlan;
 use crate::mesh::NO_TWIN;
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -72,11 +72,6 @@ impl SharedTable {
             corners: corners.par_iter().map(|&h| speakers.corner(h)).collect(),
             texcoords: corners.par_iter().map(|&h| speakers.texcoord(h, at)).collect(),
         })
-    }
-
-    /// Bytes of the arrays.
-    pub fn bytes(&self) -> u64 {
-        bytes(&self.corners) + bytes(&self.texcoords)
     }
 }
 
