@@ -1,8 +1,8 @@
 //! The compute passes of a frame: the control points of the cached construction, and what follows from them.
 
+use super::Renderer;
 use super::model::Model;
 use super::stages::PatchStages;
-use super::{ModelId, Renderer};
 use crate::gpu::{
     ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout, shaders,
 };
@@ -150,7 +150,7 @@ impl Renderer {
 
     /// Has a model's control points and vertices made anew in the next frame: the bench times them.
     #[cfg(all(feature = "measure", feature = "headless"))]
-    pub(crate) fn forget_control_points(&mut self, id: ModelId) -> Result<(), super::Error> {
+    pub(crate) fn forget_control_points(&mut self, id: super::ModelId) -> Result<(), super::Error> {
         self.models.get_mut(&id).ok_or(super::Error::NoSuchModel { id })?.forget_points();
         Ok(())
     }
