@@ -3,7 +3,7 @@
 
 mod common;
 
-use ash_subdiv::bench::{Bench, BenchOptions, Camera, Contestant, Event, Normals, Path, Row, Subject, Subset};
+use ash_subdiv::bench::{Bench, BenchOptions, Camera, Contestant, Crowd, Event, Normals, Path, Row, Subject, Subset};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::renderer::Cull;
 use ash_subdiv::{Construction, Scheme, Spacing, shape};
@@ -127,7 +127,7 @@ fn contestants_that_cannot_are_left_out() {
     let error = bench.picture(&subject("tetrahedron"), all[1], 1.0).unwrap_err().to_string();
     assert!(error.contains("no patches for triangles"));
     let few = Bench::new(&headless, BenchOptions { frames: 5, ..options() }).map(drop).unwrap_err();
-    assert_eq!(few.to_string(), "frames of BenchOptions is 5: it must be at least 6");
+    assert_eq!(few.to_string(), "BenchOptions::frames is 5: it must be at least 6");
     drop(bench);
     headless.finish_silent();
 }
@@ -228,6 +228,31 @@ fn cameras_are_raced_in_turns() {
         assert!(culled == clipped && culled_made < made * 4 / 5, "{culled} of {culled_made}, {clipped} of {made}");
     }
     let none = Bench::new(&headless, BenchOptions { cameras: vec![], ..options() }).map(drop).unwrap_err();
-    assert_eq!(none.to_string(), "cameras of BenchOptions is 0: it must be at least 1");
+    assert_eq!(none.to_string(), "BenchOptions::cameras is 0: it must be at least 1");
+    headless.finish_silent();
+}
+
+#[test]
+fn recording_is_timed_frame_by_frame() {
+    let headless = headless();
+    let bench = Bench::new(&headless, options()).unwrap();
+    let subject = subject("creature");
+    let of = |path, construction| Contestant::new(path, Some((Scheme::Gregory, construction)));
+    for contestant in [GREGORY, of(Path::Tessellation, Construction::Cached), of(Path::Compute, Construction::Cached)] {
+        let recordings = bench.recording(&subject, contestant, 3).unwrap();
+        let crowds: Vec<Crowd> = recordings.iter().map(|recording| recording.crowd).collect();
+        assert_eq!(crowds, [Crowd::Instances, Crowd::Models, Crowd::Moving]);
+        for recording in &recordings {
+            assert_eq!((recording.prepare.len(), recording.draw.len()), (6, 6));
+            assert!(recording.draw.iter().all(|&ms| ms > 0.0));
+        }
+    }
+    let error = |contestant, models| bench.recording(&subject, contestant, models).unwrap_err().to_string();
+    assert_eq!(error(GREGORY, 0), "models is 0: it must be at least 1");
+    assert_eq!(
+        error(floor(Path::Bilinear), 1),
+        "the path bilinear is not recorded by the renderer alone: measure tessellation or compute"
+    );
+    drop(bench);
     headless.finish_silent();
 }

@@ -14,7 +14,7 @@ pub enum BenchError {
     NoPatches { mesh: String, subset: &'static str },
     #[error("the path {path} is not recorded by the renderer alone: measure tessellation or compute")]
     NotRecorded { path: &'static str },
-    #[error("{what} of BenchOptions is {given}: it must be at least {least}")]
+    #[error("{what} is {given}: it must be at least {least}")]
     BadOption { what: &'static str, given: u32, least: u32 },
 }
 

@@ -43,10 +43,10 @@ impl<'h> Bench<'h> {
     /// [`BenchError::BadOption`]; sizes that the device does not have, no memory.
     pub fn new(headless: &'h Headless, options: BenchOptions) -> Result<Self, BenchError> {
         let least = [
-            ("frames", options.frames, FEWEST as u32),
-            ("instances", options.instances, 1),
-            ("passes", options.passes, 1),
-            ("cameras", options.cameras.len() as u32, 1),
+            ("BenchOptions::frames", options.frames, FEWEST as u32),
+            ("BenchOptions::instances", options.instances, 1),
+            ("BenchOptions::passes", options.passes, 1),
+            ("BenchOptions::cameras", options.cameras.len() as u32, 1),
         ];
         if let Some(&(what, given, least)) = least.iter().find(|(_, given, least)| given < least) {
             return Err(BenchError::BadOption { what, given, least });

@@ -243,11 +243,22 @@ impl Model {
         self.lattice.replace(lattice)
     }
 
-    /// Records the evaluation of the lattice, if there is one.
+    /// Has what follows from the copies of this frame computed after them; before they are recorded.
+    pub(super) fn mark_stale(&mut self, frame: u32) {
+        self.stale = self.needs_points(frame);
+    }
+
+    /// Whether control points, and vertices, are to be computed now.
+    pub(super) fn is_stale(&self) -> bool {
+        self.stale
+    }
+
+    /// Records the evaluation of the lattice, if there is one, which is the last of what was out of date.
     ///
     /// # Safety
     /// As [`Lattice::cmd_evaluate`].
     pub(super) unsafe fn cmd_evaluate(&mut self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
+        self.stale = false;
         if let Some(lattice) = &mut self.lattice {
             // SAFETY: as the caller promises.
             unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set, &self.stages, &self.tables.plan) };
@@ -258,8 +269,7 @@ impl Model {
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after the copies; `pipelines` have those of the model's kinds.
-    pub(super) unsafe fn cmd_compute(&mut self, pipelines: &CachedPipelines, cmd: vk::CommandBuffer) {
-        self.stale = false;
+    pub(super) unsafe fn cmd_compute(&self, pipelines: &CachedPipelines, cmd: vk::CommandBuffer) {
         // SAFETY: as the caller promises.
         unsafe { pipelines.cmd_compute(cmd, self.set, &self.stages, &self.tables.plan) };
     }

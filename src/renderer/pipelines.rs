@@ -198,8 +198,7 @@ impl Pipelines {
 
     /// A shader by its name: the caller's own, or ours.
     fn find(&self, name: &str) -> Result<&[u32], GpuError> {
-        let missing = || GpuError::BadPipeline { object: name.to_owned(), message: "there is no such shader".into() };
-        self.replaced.get(name).map(Vec::as_slice).or_else(|| shaders::find(name)).ok_or_else(missing)
+        self.replaced.get(name).map_or_else(|| shaders::named(name), |code| Ok(code))
     }
 
     fn create(

@@ -1,6 +1,6 @@
 //! The weights of the stencil construction, one set for each type of connectivity around a patch.
 
-use super::{PatchPlan, bytes};
+use super::PatchPlan;
 use crate::mesh::MeshError;
 use crate::patch::{Blend, FallbackRings, RingShape, RingValues, Row, Scheme};
 use crate::table::Patch;
@@ -103,11 +103,6 @@ impl StencilTable {
         }
         plan.reorder(rings.into_iter().map(|(_, _, ring)| ring.patch).collect());
         Ok(table)
-    }
-
-    /// Bytes of all arrays together.
-    pub fn bytes(&self) -> u64 {
-        bytes(&self.patches) + bytes(&self.vertices) + bytes(&self.types)
     }
 
     /// Appends the weights for patches connected like `ring`'s. Gives where they start.

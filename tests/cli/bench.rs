@@ -203,6 +203,43 @@ fn bench_finds_how_time_and_bytes_grow() {
 }
 
 #[test]
+fn bench_records_crowds() {
+    let few = "--shape tetrahedron --recording 4 --schemes gregory,acc --constructions two-stage,cached";
+    let results = json(&format!("bench {SMALL} {few}"));
+    // Gregory in three ways, three crowds each; ACC has no triangles, and floors are not recorded.
+    let recording = results["recording"].as_array().unwrap();
+    assert_eq!((recording.len(), length(&results["left_out"]), length(&results["rows"])), (9, 3, 0));
+    assert_eq!(
+        keys(&recording[0]),
+        [
+            "construction",
+            "crowd",
+            "cull",
+            "draw_ms",
+            "frame_ms",
+            "mesh",
+            "models",
+            "normals",
+            "path",
+            "prepare_ms",
+            "scheme"
+        ]
+    );
+    let crowds: Vec<_> = recording.iter().take(3).map(|r| r["crowd"].as_str().unwrap()).collect();
+    assert_eq!((crowds, &recording[0]["models"]), (vec!["instances", "models", "moving"], &json!(4)));
+    let [frame, draw] = ["frame_ms", "draw_ms"].map(|key| recording[2][key]["max"].as_f64().unwrap());
+    assert!(frame >= draw && draw > 0.0);
+    let report = folder("bench-recording");
+    let text = run(&format!("bench {SMALL} {few} --paths tessellation --report {}", report.display()));
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(text.starts_with("recorded ") && text.lines().count() == 7, "{text}");
+    let page = fs::read_to_string(report.join("index.html")).unwrap();
+    assert!(page.contains("What the host takes to record a frame"));
+    fails("bench --recording 0", 2, "invalid value '0' for '--recording <MODELS>': 0 is not in 1..=100000");
+    fails("bench --recording 1 --csv", 2, "the argument '--recording <MODELS>' cannot be used with '--csv'");
+}
+
+#[test]
 fn bench_draws_subsets_and_files() {
     let cube = folder("bench-file").join("a cube, of mine.obj");
     crate::subdiv().args(["shapes", "cube", "--obj"]).arg(&cube).output().unwrap();
