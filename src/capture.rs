@@ -126,9 +126,14 @@ impl<'h> Captured<'h> {
             return Err(Error::Unsupported { device, missing: vec!["vertexPipelineStoresAndAtomics".into()] });
         }
         let tables = ModelTables::new(mesh, options)?;
+        // What compute evaluates is captured through the tessellation stages; subdivision has no patches to be captured so.
+        let evaluation = match options.evaluation {
+            Evaluation::Subdivision => Evaluation::Subdivision,
+            _ => Evaluation::Tessellation,
+        };
         Ok(Self {
             headless,
-            options: ModelOptions { evaluation: Evaluation::Tessellation, ..options.clone() },
+            options: ModelOptions { evaluation, ..options.clone() },
             tables,
             positions: mesh.positions_f32(),
             displacement: None,
@@ -340,7 +345,11 @@ impl<'h> Captured<'h> {
     ) -> Result<(), Error> {
         let headless = self.headless;
         let context = headless.context();
-        let stages = vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
+        let geometry_shaders = self.options.evaluation == Evaluation::Subdivision;
+        let stages = match geometry_shaders {
+            true => vk::ShaderStageFlags::GEOMETRY,
+            false => vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION,
+        };
         let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, stages)];
         // Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
         let mut idle = None;
@@ -356,6 +365,7 @@ impl<'h> Captured<'h> {
             styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
             set_layouts: vec![layout.raw()],
             shaders: self.shaders.clone(),
+            geometry_shaders,
             ..Options::default()
         };
         let desc = target.desc();

@@ -3,8 +3,8 @@
 use super::factor::{Cull, Factor};
 use super::gpu_data::DrawConstants;
 use super::model::Model;
-use super::pipelines::{GeometryKey, PipelineKey, STAGES};
-use super::{Error, Evaluation, Geometry, ModelId, Renderer, View};
+use super::pipelines::{GeometryKey, PipelineKey};
+use super::{Error, Evaluation, Geometry, ModelId, Renderer, View, subdivision};
 use crate::gpu::{Domain, tessellated_vertices};
 use ash::vk;
 
@@ -148,12 +148,21 @@ impl Renderer {
                 };
                 return self.cmd_draw_lattice(cmd, model, item.factor, push);
             }
+            let level = match model.evaluation {
+                Evaluation::Subdivision => Some(subdivision::level(id, item.factor)?),
+                _ => None,
+            };
             for (&stages, group) in model.stages.iter().zip(model.tables.plan().groups()) {
                 let (kind, spacing) = (stages.kind, stages.spacing);
-                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
-                let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
-                let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
-                let points = stages.input_points();
+                let (geometry, vertices, points) = match level {
+                    Some(level) => (GeometryKey::Subdivision(level), subdivision::vertices(level), 1),
+                    None => {
+                        let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
+                        let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
+                        (GeometryKey::Patches(stages), vertices, stages.input_points())
+                    }
+                };
+                self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
                 constants.colour = item.colors[kind as usize];
                 constants.first_corner = group.first_corner as u32;
                 constants.first_patch = group.patches.start as u32;
@@ -207,6 +216,9 @@ impl Renderer {
     unsafe fn push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
         let layout = self.pipelines.layout.raw();
         // SAFETY: as the caller of `cmd_draw` promises.
-        unsafe { self.context.device().cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(constants)) };
+        unsafe {
+            let stages = self.pipelines.stages;
+            self.context.device().cmd_push_constants(cmd, layout, stages, 0, bytemuck::bytes_of(constants));
+        }
     }
 }

@@ -176,6 +176,8 @@ pub struct Options {
     pub styles: Vec<Style>,
     /// Give texture coordinates to the fragment stage.
     pub texcoords: bool,
+    /// Let models be drawn through geometry shaders: [`Evaluation::Subdivision`]. Needs [`Features::geometry`].
+    pub geometry_shaders: bool,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
     /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]): such
@@ -193,6 +195,7 @@ impl Default for Options {
             views_per_frame: 16,
             styles: vec![Style::default()],
             texcoords: false,
+            geometry_shaders: false,
             set_layouts: Vec::new(),
             shaders: Vec::new(),
             pipeline_cache: vk::PipelineCache::null(),
@@ -241,6 +244,14 @@ pub enum Evaluation {
     /// For [`Construction::Cached`], [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), and so far without
     /// displacement and shared normals.
     Compute,
+    /// No patches: a geometry shader subdivides each face by the Catmull-Clark rules, straight from the control vertices, in each
+    /// draw anew (Antal et al. 2007). The [`Factor`](super::Factor) is `Uniform`: 1, 2, 4 or 8 segments along every edge, for 0
+    /// to 3 levels. Vertices are those of the refined mesh, not limit points, with the normals of limit points; creases and
+    /// corners of finite sharpness are followed as far as the levels go. Neighbouring faces share positions to the bit.
+    ///
+    /// A mesh with faces that are no quads is refined once before. For renderers with [`Options::geometry_shaders`], and without
+    /// displacement, shared normals, factors of edges and culling. Scheme, fallback, construction and spacing have no say.
+    Subdivision,
 }
 
 /// How one model is drawn.
@@ -299,6 +310,7 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
         dynamic_rendering: matches!(target.pass, Pass::Dynamic { .. }),
         fill_mode_non_solid: options.styles.iter().any(|s| s.wireframe),
         wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
+        geometry: options.geometry_shaders,
         ..Features::NONE
     };
     Requirements { api_version: vk::API_VERSION_1_3, features, device_extensions: features.extensions() }

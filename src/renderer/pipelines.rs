@@ -3,6 +3,7 @@
 use super::cached::CachedPipelines;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
+use super::subdivision::{self, MAX_LEVEL};
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
@@ -41,6 +42,8 @@ pub(super) enum GeometryKey {
     Patches(PatchStages),
     /// Patches of all kinds that were evaluated by compute.
     Lattice,
+    /// Faces that are subdivided this many times.
+    Subdivision(u32),
     Control,
 }
 
@@ -56,6 +59,8 @@ pub(super) struct Pipelines {
     pub view_layout: Owned<vk::DescriptorSetLayout>,
     pub model_layout: Owned<vk::DescriptorSetLayout>,
     pub layout: Owned<vk::PipelineLayout>,
+    /// The stages that see the push constants.
+    pub stages: vk::ShaderStageFlags,
     /// For what the cached construction computes.
     pub cached: CachedPipelines,
     /// For what evaluation by compute does.
@@ -82,15 +87,18 @@ impl Pipelines {
         options: &Options,
         capture: Capture,
     ) -> Result<Self, GpuError> {
-        let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
-        let model_stages = STAGES | vk::ShaderStageFlags::COMPUTE;
+        let geometry =
+            if options.geometry_shaders { vk::ShaderStageFlags::GEOMETRY } else { vk::ShaderStageFlags::empty() };
+        let stages = STAGES | geometry;
+        let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, stages)];
+        let model_stages = stages | vk::ShaderStageFlags::COMPUTE;
         let mut model = vec![(vk::DescriptorType::STORAGE_BUFFER, model_stages); MODEL_BUFFERS];
-        model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, STAGES));
+        model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, stages));
         let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
         let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;
         let mut sets = vec![view_layout.raw(), model_layout.raw()];
         sets.extend(&options.set_layouts);
-        let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];
+        let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 128 }];
         // SAFETY: the layouts are of this device; for the caller's own that is part of the contract of `Renderer::new`.
         let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
         let sets = [view_layout.raw(), model_layout.raw()];
@@ -107,6 +115,7 @@ impl Pipelines {
             view_layout,
             model_layout,
             layout,
+            stages,
             cached,
             lattice,
             made: HashMap::new(),
@@ -138,6 +147,12 @@ impl Pipelines {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Lattice })?;
                 continue;
             }
+            if evaluation == Evaluation::Subdivision {
+                for level in 0..=MAX_LEVEL {
+                    self.make_one(PipelineKey { style, geometry: GeometryKey::Subdivision(level) })?;
+                }
+                continue;
+            }
             for &stages in patches {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages) })?;
             }
@@ -167,6 +182,16 @@ impl Pipelines {
                     false => shaders::EVALUATE_LATTICE_VERT,
                 };
                 let stages = [Shader::vertex(vertex), fragment(style, Sharing::Positions, &encode)];
+                self.create(&name, key, &stages, 0)?
+            }
+            GeometryKey::Subdivision(level) => {
+                let name = format!("subdiv style {} of faces subdivided {level} times", key.style);
+                let geometry = self.find(&subdivision::shader(level, self.capture, self.texcoords))?;
+                let stages = [
+                    Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
+                    Shader::geometry(geometry),
+                    fragment(style, Sharing::Positions, &encode),
+                ];
                 self.create(&name, key, &stages, 0)?
             }
             GeometryKey::Patches(patch) => {
@@ -235,7 +260,11 @@ impl Pipelines {
             patch_control_points,
             vertex_bindings: if lattice { &bindings } else { &[] },
             vertex_attributes: if lattice { &attributes } else { &[] },
-            topology: if lines { vk::PrimitiveTopology::LINE_LIST } else { vk::PrimitiveTopology::TRIANGLE_LIST },
+            topology: match key.geometry {
+                GeometryKey::Subdivision(_) => vk::PrimitiveTopology::POINT_LIST,
+                _ if lines => vk::PrimitiveTopology::LINE_LIST,
+                _ => vk::PrimitiveTopology::TRIANGLE_LIST,
+            },
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,
             front_face: style.front_face,

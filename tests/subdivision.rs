@@ -1,0 +1,110 @@
+//! Subdivision of faces in a geometry shader against refinement of the whole mesh on the CPU.
+#![cfg(feature = "headless")]
+
+mod common;
+
+use ash_subdiv::capture::Captured;
+use ash_subdiv::headless::Headless;
+use ash_subdiv::limit::refine;
+use ash_subdiv::mesh::{BoundaryRule, Corner, Crease, CreaseMethod, ReadOptions, read};
+use ash_subdiv::patch::RingValues;
+use ash_subdiv::renderer::Evaluation;
+use ash_subdiv::table::prepare_quads;
+use ash_subdiv::topology::{RingKind, Topology};
+use ash_subdiv::{ControlMesh, ModelOptions, shape, shapes};
+use common::edges::bits;
+use glam::{DVec3, IVec2, Vec3};
+use std::collections::HashMap;
+
+const LEVELS: u32 = 3;
+const CORNERS: [IVec2; 4] = [IVec2::ZERO, IVec2::X, IVec2::ONE, IVec2::Y];
+const PLUS: [IVec2; 4] = [IVec2::X, IVec2::Y, IVec2::NEG_X, IVec2::NEG_Y];
+
+fn options() -> ModelOptions {
+    ModelOptions { evaluation: Evaluation::Subdivision, ..ModelOptions::default() }
+}
+
+/// The vertices of a face that was refined, by their place in a lattice, each as a corner of the refined mesh: child `k` of a
+/// face is around its corner `k`.
+fn lattice(face: u32, levels: u32, origin: IVec2, [x, y]: [IVec2; 2], found: &mut HashMap<IVec2, u32>) {
+    let side = 1 << levels;
+    for k in 0..4 {
+        let (at, plus) = (CORNERS[k], PLUS[k]);
+        let turned = |v: IVec2| v.x * x + v.y * y;
+        let origin = origin + side * turned(at);
+        match levels {
+            0 => _ = found.entry(origin).or_insert(4 * face + k as u32),
+            _ => lattice(4 * face + k as u32, levels - 1, origin, [turned(plus), turned(plus.perp())], found),
+        }
+    }
+}
+
+/// The normal at a corner, as far as there is one.
+fn normal(topology: &Topology, corner: u32) -> DVec3 {
+    let place = topology.place(corner);
+    let ring = &topology.rings()[place.ring as usize];
+    let values = RingValues::new(topology, ring, |v| topology.mesh().position(v));
+    let frame = values.frame();
+    let edge = |j| values.edge_point(&frame, j) - frame.p;
+    let j = place.index as usize;
+    let [a, b] = match ring.kind {
+        RingKind::Corner => [edge(j), edge(j + 1)],
+        _ => [frame.a, frame.b],
+    };
+    let normal = a.cross(b);
+    if normal.length() > 1e-4 * a.length() * b.length() { normal.normalize_or_zero() } else { DVec3::ZERO }
+}
+
+/// How far the GPU's normals are from the refined mesh's, at most.
+fn check(headless: &Headless, name: &str, mesh: &ControlMesh) -> f64 {
+    let captured = Captured::new(headless, mesh, &options()).expect("a model");
+    let (prepared, plan) = prepare_quads(mesh, 0).expect("small");
+    assert_eq!(captured.tables().plan(), &plan);
+    let mut data = prepared.mesh.into_owned().into_data();
+    // The GPU starts from these.
+    data.positions.iter_mut().for_each(|p| *p = p.map(|x| f64::from(x as f32)));
+    let mut refined = ControlMesh::new(data).expect("as before");
+    let tolerance = 4.0 * f64::from(f32::EPSILON) * common::largest_coordinate(mesh);
+    let mut largest_turn = 0.0f64;
+    for level in 0..=LEVELS {
+        if level > 0 {
+            refined = refine(&Topology::new(&refined)).expect("small").mesh;
+        }
+        let topology = Topology::new(&refined);
+        let mut seen = HashMap::new();
+        let grids = captured.grid((1 << level) + 1).expect("a capture");
+        for (patch, grid) in plan.patches().iter().zip(&grids) {
+            let mut corners = HashMap::new();
+            lattice(patch.face, level, IVec2::ZERO, [IVec2::X, IVec2::Y], &mut corners);
+            assert_eq!(corners.len(), grid.len());
+            for (at, corner) in corners {
+                let vertex = &grid[(at.y * ((1 << level) + 1) + at.x) as usize];
+                let what = || format!("{name}, level {level}, face {} at {at}: {vertex:?}", patch.face);
+                let expected = refined.position(topology.mesh_vertex(corner));
+                let off = (Vec3::from(vertex.position).as_dvec3() - expected).length();
+                assert!(off <= tolerance, "{}: {off} of {tolerance}", what());
+                let same = bits(vertex.position);
+                assert_eq!(*seen.entry(topology.vertex(corner)).or_insert(same), same, "{}", what());
+                let length = Vec3::from(vertex.normal).length();
+                assert!((length - 1.0).abs() < 1e-5, "{}: {length}", what());
+                let normal = normal(&topology, corner);
+                if normal != DVec3::ZERO {
+                    let turn = (Vec3::from(vertex.normal).as_dvec3() - normal).length();
+                    assert!(turn < 2e-2, "{}: {turn} {normal}", what());
+                    largest_turn = largest_turn.max(turn);
+                }
+            }
+        }
+    }
+    largest_turn
+}
+
+#[test]
+fn vertices_are_those_of_the_refined_mesh() {
+    let headless = common::headless();
+    for info in shapes() {
+        let turn = check(&headless, info.name, &shape(info.name).expect("built in"));
+        assert!(turn < 1e-3, "{}: {turn}", info.name);
+    }
+    headless.finish_silent();
+}
