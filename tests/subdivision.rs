@@ -11,7 +11,7 @@ use ash_subdiv::patch::RingValues;
 use ash_subdiv::renderer::Evaluation;
 use ash_subdiv::table::prepare_quads;
 use ash_subdiv::topology::{RingKind, Topology};
-use ash_subdiv::{ControlMesh, ModelOptions, shape, shapes};
+use ash_subdiv::{ControlMesh, MeshData, ModelOptions, shape, shapes};
 use common::edges::bits;
 use glam::{DVec3, IVec2, Vec3};
 use std::collections::HashMap;
@@ -106,5 +106,55 @@ fn vertices_are_those_of_the_refined_mesh() {
         let turn = check(&headless, info.name, &shape(info.name).expect("built in"));
         assert!(turn < 1e-3, "{}: {turn}", info.name);
     }
+    headless.finish_silent();
+}
+
+/// Creases and corners of any sharpness, ends of creases, crossings, and vertices of high valence, with each rule.
+#[test]
+fn sharpness_is_followed() {
+    let headless = common::headless();
+    for name in ["cube", "cloth", "valences", "torus"] {
+        let mesh = shape(name).expect("built in");
+        let rules = [BoundaryRule::None, BoundaryRule::EdgeOnly, BoundaryRule::EdgeAndCorner];
+        for (boundary, seed) in rules.into_iter().flat_map(|rule| [(rule, 1u32), (rule, 2)]) {
+            for crease_method in [CreaseMethod::Uniform, CreaseMethod::Chaikin] {
+                let mut data = mesh.clone().into_data();
+                let topology = Topology::new(&mesh);
+                let mut state = seed;
+                let mut random = || {
+                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    (state >> 16) as f32 / 65_536.0
+                };
+                for h in 0..mesh.corner_count() as u32 {
+                    let sharpness = [0.3, 0.7, 1.0, 1.6, 2.5, 4.0, 10.0][(7.0 * random()) as usize];
+                    let vertices = [topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h))];
+                    if vertices[0] < vertices[1] && random() < 0.25 {
+                        data.creases.push(Crease { vertices, sharpness });
+                    } else if random() < 0.02 && data.corners.iter().all(|corner| corner.vertex != vertices[0]) {
+                        data.corners.push(Corner { vertex: vertices[0], sharpness });
+                    }
+                }
+                let data = MeshData { boundary, crease_method, ..data };
+                let mesh = ControlMesh::new(data).expect("tags only");
+                check(&headless, &format!("{name} {boundary:?} {crease_method:?} {seed}"), &mesh);
+            }
+        }
+    }
+    headless.finish_silent();
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared/meshes")]
+fn shared_meshes() {
+    let headless = common::headless();
+    let mut compared = 0;
+    for file in std::fs::read_dir(common::shared().join("meshes")).expect("../shared/meshes") {
+        let path = file.expect("a readable folder").path();
+        // Some have edges with three faces.
+        let Ok(mesh) = read(&path, &ReadOptions::default()) else { continue };
+        check(&headless, &path.display().to_string(), &mesh);
+        compared += 1;
+    }
+    assert!(compared >= 30, "{compared}");
     headless.finish_silent();
 }
