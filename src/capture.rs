@@ -345,10 +345,9 @@ impl<'h> Captured<'h> {
     ) -> Result<(), Error> {
         let headless = self.headless;
         let context = headless.context();
-        let geometry_shaders = self.options.evaluation == Evaluation::Subdivision;
-        let stages = match geometry_shaders {
-            true => vk::ShaderStageFlags::GEOMETRY,
-            false => vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION,
+        let stages = match self.options.evaluation {
+            Evaluation::Subdivision => vk::ShaderStageFlags::GEOMETRY,
+            _ => vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION,
         };
         let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, stages)];
         // Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
@@ -365,7 +364,7 @@ impl<'h> Captured<'h> {
             styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
             set_layouts: vec![layout.raw()],
             shaders: self.shaders.clone(),
-            geometry_shaders,
+            evaluations: vec![self.options.evaluation],
             ..Options::default()
         };
         let desc = target.desc();

@@ -45,7 +45,7 @@ fn normal(topology: &Topology, corner: u32) -> DVec3 {
     let ring = &topology.rings()[place.ring as usize];
     let values = RingValues::new(topology, ring, |v| topology.mesh().position(v));
     let frame = values.frame();
-    let edge = |j| values.edge_point(&frame, j) - frame.p;
+    let edge = |j| values.edge_vector(&frame, j);
     let j = place.index as usize;
     let [a, b] = match ring.kind {
         RingKind::Corner => [edge(j), edge(j + 1)],

@@ -71,8 +71,8 @@ SharedSample share(Sample own, vec3 at) {
         return surface;
     }
 #define P0(k, n) owned[k][0]
-#define E0(k, n) owned[k][1]
-#define E1(k, n) owned[n][2]
+#define E0(k, n) CONTROL_POINT(k, 1)
+#define E1(k, n) CONTROL_POINT(n, 2)
 #define P1(k, n) owned[n][0]
 #define ACROSS0(k, n) shared_with[k][0]
 #define TRANSVERSAL0(k, n) shared_with[k][1]

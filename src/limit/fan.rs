@@ -212,7 +212,7 @@ fn tangents(topology: &Topology, rows: &[Row]) -> Vec<[Row; 2]> {
                 last.insert((place.ring, values, frame))
             }
         };
-        let edge = |j| Row::sum([(1.0, &values.edge_point(frame, j)), (-1.0, &frame.p)]);
+        let edge = |j| values.edge_vector(frame, j);
         let j = place.index as usize;
         of_faces.push(match values.shape.kind {
             RingKind::Corner => [edge(j), edge(j + 1)],

@@ -1,9 +1,9 @@
 //! Recording the draws of a view.
 
-use super::factor::{Cull, Factor};
+use super::factor::{Cull, Cut, Factor};
 use super::gpu_data::DrawConstants;
 use super::model::Model;
-use super::pipelines::{GeometryKey, PipelineKey};
+use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::{Error, Evaluation, Geometry, ModelId, Renderer, View, subdivision};
 use crate::gpu::{Domain, tessellated_vertices};
 use ash::vk;
@@ -88,8 +88,25 @@ impl Renderer {
         unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 0, &[self.view_set], &[offset as u32]) };
         let mut bound = Bound::default();
         for item in items {
+            self.make_pipelines(item.model, item.factor, item.cull)?;
             // SAFETY: as the caller promises.
             unsafe { self.cmd_draw_item(cmd, view, item, &mut bound)? };
+        }
+        Ok(())
+    }
+
+    /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor. Those
+    /// for [`Factor::Uniform`] with [`Cull::NONE`] are there when the model is added; others are made by the first draw that
+    /// needs them, unless this was called before.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`]; failed Vulkan calls.
+    pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
+        let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
+        let cut = Cut::new(factor, cull);
+        if model.made & cut.bit() == 0 {
+            self.pipelines.make(&model.stages, model.evaluation, cut)?;
+            model.made |= cut.bit();
         }
         Ok(())
     }
@@ -117,7 +134,8 @@ impl Renderer {
             factor => factor.value(),
         };
         let mut constants = DrawConstants::new(&item.transform, [value, scale, bias]);
-        constants.flags = item.factor.flags() | item.cull.flags() | model.displacement_flags(item.displacement);
+        constants.flags = model.displacement_flags(item.displacement);
+        let cut = Cut::new(item.factor, item.cull);
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
             if bound.set != model.set {
@@ -159,7 +177,7 @@ impl Renderer {
                     None => {
                         let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
                         let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
-                        (GeometryKey::Patches(stages), vertices, stages.input_points())
+                        (GeometryKey::Patches(stages, cut), vertices, stages.input_points())
                     }
                 };
                 self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
@@ -203,7 +221,7 @@ impl Renderer {
     }
 
     unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {
-        // Every pipeline of a model's kinds was made when it was added.
+        // Every pipeline of the model was made before.
         if let Some(pipeline) = self.pipelines.get(key)
             && bound.pipeline != pipeline
         {
@@ -216,9 +234,6 @@ impl Renderer {
     unsafe fn push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
         let layout = self.pipelines.layout.raw();
         // SAFETY: as the caller of `cmd_draw` promises.
-        unsafe {
-            let stages = self.pipelines.stages;
-            self.context.device().cmd_push_constants(cmd, layout, stages, 0, bytemuck::bytes_of(constants));
-        }
+        unsafe { self.context.device().cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(constants)) };
     }
 }

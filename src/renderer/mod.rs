@@ -229,9 +229,10 @@ impl Renderer {
         let map = self.displacements.get(options.displacement)?;
         let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
         let model = Model::new(from, id, &options, tables, positions, map)?;
-        self.pipelines.make(&model.stages, model.evaluation)?;
         self.next_id += 1;
         self.models.insert(id, model);
+        let made = self.make_pipelines(id, Factor::Uniform(1.0), Cull::NONE);
+        made.inspect_err(|_| drop(self.models.remove(&id)))?;
         Ok(id)
     }
 
@@ -317,13 +318,7 @@ impl Renderer {
             return Ok(());
         }
         let device = self.context.device();
-        let mut readers = vk::PipelineStageFlags::VERTEX_INPUT
-            | vk::PipelineStageFlags::VERTEX_SHADER
-            | vk::PipelineStageFlags::TESSELLATION_CONTROL_SHADER
-            | vk::PipelineStageFlags::COMPUTE_SHADER;
-        if self.options.geometry_shaders {
-            readers |= vk::PipelineStageFlags::GEOMETRY_SHADER;
-        }
+        let readers = vk::PipelineStageFlags::VERTEX_INPUT | pipelines::shader_readers(self.context.features());
         let transfer = vk::PipelineStageFlags::TRANSFER;
         let none = vk::DependencyFlags::empty();
         let after_copies = [vk::MemoryBarrier::default()

@@ -24,6 +24,8 @@ pub(super) struct Model {
     pub tables: ModelTables,
     /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
+    /// What there are pipelines for, by [`Cut::bit`](super::factor::Cut::bit).
+    pub made: u32,
     pub set: vk::DescriptorSet,
     _pool: Owned<vk::DescriptorPool>,
     /// All tables of the construction and the texture coordinates, one after the other.
@@ -72,7 +74,7 @@ impl Model {
         map: DisplacementMap,
     ) -> Result<Self, Error> {
         check_evaluation(id, model_options, &tables)?;
-        check_subdivision(id, model_options, &tables, options.geometry_shaders)?;
+        check_subdivision(id, model_options, &tables, context.features())?;
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
         let check = |table: &'static str, bytes: u64| {
@@ -164,6 +166,7 @@ impl Model {
         Ok(Self {
             id,
             stages: tables.plan.groups().iter().map(stages).collect(),
+            made: 0,
             tables,
             set,
             _pool: pool,

@@ -176,8 +176,9 @@ pub struct Options {
     pub styles: Vec<Style>,
     /// Give texture coordinates to the fragment stage.
     pub texcoords: bool,
-    /// Let models be drawn through geometry shaders: [`Evaluation::Subdivision`]. Needs [`Features::geometry`].
-    pub geometry_shaders: bool,
+    /// What models will be evaluated by, besides the tessellation stages: [`requirements`] lists what the device must have for
+    /// it.
+    pub evaluations: Vec<Evaluation>,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
     /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]): such
@@ -195,7 +196,7 @@ impl Default for Options {
             views_per_frame: 16,
             styles: vec![Style::default()],
             texcoords: false,
-            geometry_shaders: false,
+            evaluations: Vec::new(),
             set_layouts: Vec::new(),
             shaders: Vec::new(),
             pipeline_cache: vk::PipelineCache::null(),
@@ -249,9 +250,16 @@ pub enum Evaluation {
     /// to 3 levels. Vertices are those of the refined mesh, not limit points, with the normals of limit points; creases and
     /// corners of finite sharpness are followed as far as the levels go. Neighbouring faces share positions to the bit.
     ///
-    /// A mesh with faces that are no quads is refined once before. For renderers with [`Options::geometry_shaders`], and without
-    /// displacement, shared normals, factors of edges and culling. Scheme, fallback, construction and spacing have no say.
+    /// A mesh with faces that are no quads is refined once before. Without displacement, shared normals and factors of edges, and
+    /// nothing is culled. Needs [`Features::geometry`] ([`Options::evaluations`]). Scheme, fallback, construction and spacing have no say.
     Subdivision,
+}
+
+impl Evaluation {
+    /// What the device must have for it, besides what the tessellation stages need.
+    pub fn features(self) -> Features {
+        Features { geometry: self == Self::Subdivision, ..Features::NONE }
+    }
 }
 
 /// How one model is drawn.
@@ -310,9 +318,9 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
         dynamic_rendering: matches!(target.pass, Pass::Dynamic { .. }),
         fill_mode_non_solid: options.styles.iter().any(|s| s.wireframe),
         wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
-        geometry: options.geometry_shaders,
         ..Features::NONE
     };
+    let features = options.evaluations.iter().fold(features, |all, evaluation| all.union(evaluation.features()));
     Requirements { api_version: vk::API_VERSION_1_3, features, device_extensions: features.extensions() }
 }
 

@@ -1,12 +1,13 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
 use super::cached::CachedPipelines;
+use super::factor::Cut;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
 use super::subdivision::{self, MAX_LEVEL};
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
-    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
+    DeviceContext, Features, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
     descriptor_set_layout, pipeline_layout, shaders,
 };
 use ash::vk;
@@ -39,7 +40,8 @@ pub(super) struct PipelineKey {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum GeometryKey {
-    Patches(PatchStages),
+    /// Of draws with these flags ([`Cut`]).
+    Patches(PatchStages, Cut),
     /// Patches of all kinds that were evaluated by compute.
     Lattice,
     /// Faces that are subdivided this many times.
@@ -59,8 +61,6 @@ pub(super) struct Pipelines {
     pub view_layout: Owned<vk::DescriptorSetLayout>,
     pub model_layout: Owned<vk::DescriptorSetLayout>,
     pub layout: Owned<vk::PipelineLayout>,
-    /// The stages that see the push constants.
-    pub stages: vk::ShaderStageFlags,
     /// For what the cached construction computes.
     pub cached: CachedPipelines,
     /// For what evaluation by compute does.
@@ -73,8 +73,16 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::VERTEX.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw()
+        | vk::ShaderStageFlags::GEOMETRY.as_raw()
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
+
+/// The stages that read what models keep in buffers, on a device with these features.
+pub(super) fn shader_readers(features: Features) -> vk::PipelineStageFlags {
+    use vk::PipelineStageFlags as Stage;
+    let all = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
+    if features.geometry { all | Stage::GEOMETRY_SHADER } else { all }
+}
 
 /// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
 /// points. The displacement map comes after them.
@@ -87,18 +95,15 @@ impl Pipelines {
         options: &Options,
         capture: Capture,
     ) -> Result<Self, GpuError> {
-        let geometry =
-            if options.geometry_shaders { vk::ShaderStageFlags::GEOMETRY } else { vk::ShaderStageFlags::empty() };
-        let stages = STAGES | geometry;
-        let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, stages)];
-        let model_stages = stages | vk::ShaderStageFlags::COMPUTE;
+        let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
+        let model_stages = STAGES | vk::ShaderStageFlags::COMPUTE;
         let mut model = vec![(vk::DescriptorType::STORAGE_BUFFER, model_stages); MODEL_BUFFERS];
-        model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, stages));
+        model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, STAGES));
         let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
         let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;
         let mut sets = vec![view_layout.raw(), model_layout.raw()];
         sets.extend(&options.set_layouts);
-        let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 128 }];
+        let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];
         // SAFETY: the layouts are of this device; for the caller's own that is part of the contract of `Renderer::new`.
         let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
         let sets = [view_layout.raw(), model_layout.raw()];
@@ -115,7 +120,6 @@ impl Pipelines {
             view_layout,
             model_layout,
             layout,
-            stages,
             cached,
             lattice,
             made: HashMap::new(),
@@ -130,8 +134,8 @@ impl Pipelines {
         self.made.get(&key).map(Owned::raw)
     }
 
-    /// Makes what these patches need in every style.
-    pub(super) fn make(&mut self, patches: &[PatchStages], evaluation: Evaluation) -> Result<(), GpuError> {
+    /// Makes what draws of these patches need in every style.
+    pub(super) fn make(&mut self, patches: &[PatchStages], evaluation: Evaluation, cut: Cut) -> Result<(), GpuError> {
         for stages in patches.iter().filter(|stages| stages.construction == Construction::Cached) {
             self.cached.make(*stages)?;
             if evaluation == Evaluation::Compute {
@@ -154,7 +158,7 @@ impl Pipelines {
                 continue;
             }
             for &stages in patches {
-                self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages) })?;
+                self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages, cut) })?;
             }
         }
         Ok(())
@@ -194,22 +198,18 @@ impl Pipelines {
                 ];
                 self.create(&name, key, &stages, 0)?
             }
-            GeometryKey::Patches(patch) => {
+            GeometryKey::Patches(patch, cut) => {
                 let name = format!("subdiv style {} {patch:?}", key.style);
-                let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
-                let vertex = match patch.construction {
-                    Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
-                    Construction::Stencil | Construction::Cached => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
-                };
+                let vertex = self.find(&patch.vertex(self.capture))?;
                 let control = self.find(&patch.control(self.capture, self.texcoords))?;
                 let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
                 let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
                 let evaluation = spaced(evaluation, spacing);
                 let most = self.context.properties().max_tessellation_level as f32;
-                let limits = [Specialization::float(2, most), Specialization::uint(3, patch.stride)];
+                let constants = patch.specialization(cut.flags(), most);
                 let mut stages = vec![
-                    vertex,
-                    Shader::tess_control(control).specialized(&limits),
+                    Shader::vertex(vertex).specialized(&constants),
+                    Shader::tess_control(control).specialized(&constants),
                     Shader::tess_evaluation(&evaluation),
                 ];
                 if self.capture == Capture::Triangles {

@@ -1,7 +1,7 @@
 //! Which shaders a patch is drawn with: found by name, so that a scheme adds files and its arm in [`files`].
 
 use super::{Capture, Construction};
-use crate::gpu::Spacing;
+use crate::gpu::{Spacing, Specialization};
 use crate::patch::Scheme;
 use crate::topology::PatchKind;
 
@@ -59,6 +59,31 @@ impl PatchStages {
             Construction::TwoStage => self.kind.corners() as u32,
             Construction::Stencil | Construction::Cached => 1,
         }
+    }
+
+    /// The name of the vertex shader.
+    pub(super) fn vertex(self, capture: Capture) -> String {
+        if self.input_points() == 1 {
+            return "CONSTRUCT_STENCIL_VERT".to_owned();
+        }
+        let inner = match files(self.scheme, self.kind)[0] {
+            "REGULAR" => String::new(),
+            scheme => format!("_{scheme}"),
+        };
+        format!("CONSTRUCT_TWO_STAGE_VERT{inner}{}", self.sharing.suffix(capture))
+    }
+
+    /// What the vertex and the control shader of draws with these flags are specialized to. `most` is the largest factor of
+    /// the device.
+    pub(super) fn specialization(self, flags: u32, most: f32) -> [Specialization; 6] {
+        [
+            Specialization::uint(0, self.kind.corners() as u32),
+            Specialization::float(2, most),
+            Specialization::uint(3, self.stride),
+            Specialization::uint(4, flags),
+            Specialization::bool(5, self.scheme == Scheme::GregoryFitted),
+            Specialization::bool(6, self.scheme.has_pentagons()),
+        ]
     }
 
     /// The name of the control shader.
@@ -153,7 +178,11 @@ mod tests {
                         PatchStages { scheme, kind, construction, spacing: Spacing::Equal, sharing, stride: 8 };
                     for capture in modes {
                         for texcoords in [false, true] {
-                            for name in [stages.control(capture, texcoords), stages.evaluation(capture, texcoords)] {
+                            for name in [
+                                stages.vertex(capture),
+                                stages.control(capture, texcoords),
+                                stages.evaluation(capture, texcoords),
+                            ] {
                                 assert!(shaders::find(&name).is_some(), "{name}");
                             }
                         }

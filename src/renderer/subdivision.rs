@@ -2,6 +2,7 @@
 
 use super::stages::Sharing;
 use super::{Capture, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables};
+use crate::gpu::Features;
 
 /// Every device with geometry shaders has room for the strips of so many levels (`glsl/subdivide/faces.geom`).
 pub(super) const MAX_LEVEL: u32 = 3;
@@ -11,13 +12,15 @@ pub(super) fn check_subdivision(
     id: ModelId,
     options: &ModelOptions,
     tables: &ModelTables,
-    geometry_shaders: bool,
+    features: Features,
 ) -> Result<(), Error> {
-    if options.evaluation != Evaluation::Subdivision {
+    let evaluation = options.evaluation;
+    if evaluation != Evaluation::Subdivision {
         return Ok(());
     }
-    if !geometry_shaders {
-        return Err(Error::NoGeometryShaders { id });
+    let missing = features.missing(evaluation.features());
+    if !missing.is_empty() {
+        return Err(Error::EvaluationNeeds { id, evaluation, missing });
     }
     let what = match tables.sharing() {
         Sharing::Displacement => "displacement",
