@@ -94,6 +94,11 @@ pub(super) trait Drawable {
     /// Everything that drawing reads.
     fn bytes(&self) -> Vec<TableBytes>;
 
+    /// Vertices that a geometry shader makes for one instance in strips, if there is one.
+    fn strip_vertices(&self, _factor: f32) -> u64 {
+        0
+    }
+
     /// Bytes of the control points of all patches, as the control stage passes them on, if it is used.
     fn control_point_bytes(&self) -> u64;
 }
@@ -117,6 +122,7 @@ impl Contestant {
         Ok(match self.path {
             Path::Tessellation => Box::new(surface(Evaluation::Tessellation)?),
             Path::Compute => Box::new(surface(Evaluation::Compute)?),
+            Path::Subdivision => Box::new(surface(Evaluation::Subdivision)?),
             Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
             Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
         })

@@ -61,6 +61,7 @@ pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
     pipelines::STAGES,
     stages::spaced,
+    subdivision::level as subdivision_level,
 };
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};

@@ -32,7 +32,7 @@ pub(super) fn check_subdivision(
 }
 
 /// How often a draw with this factor subdivides.
-pub(super) fn level(id: ModelId, factor: Factor) -> Result<u32, Error> {
+pub(crate) fn level(id: ModelId, factor: Factor) -> Result<u32, Error> {
     let segments = |level: &u32| factor == Factor::Uniform((1 << level) as f32);
     (0..=MAX_LEVEL).find(segments).ok_or(Error::NoSuchLevel { id, factor })
 }

@@ -108,6 +108,7 @@ construction: control points alone: factor 1 less the bilinear floor at factor 1
 set-up:       tables and upload, without pipelines.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
 `compute` evaluates once a frame into a vertex buffer that all passes draw; it goes with the construction `cached`.
+`subdivision` refines faces in a geometry shader, at factors 1, 2, 4 and 8: levels 0 to 3.
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
 
 JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
@@ -167,7 +168,7 @@ impl BenchArgs {
             all.iter().copied().filter(|one| chosen.contains(one)).collect()
         }
         Contestant::all(
-            &pick(&self.paths, None, &Path::ALL),
+            &pick(&self.paths, self.preset.map(|p| p.paths), &Path::ALL),
             &pick(&self.schemes, self.preset.map(|p| p.schemes), &Scheme::ALL),
             &pick(&self.constructions, self.preset.map(|p| p.constructions), &Construction::ALL),
         )
