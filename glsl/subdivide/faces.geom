@@ -9,9 +9,17 @@
 // variants: TEXCOORD, CAPTURE_GRID, LEVEL=1, LEVEL=1+TEXCOORD, LEVEL=1+CAPTURE_GRID, LEVEL=2, LEVEL=2+TEXCOORD, LEVEL=2+CAPTURE_GRID, LEVEL=3, LEVEL=3+TEXCOORD, LEVEL=3+CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #ifndef LEVEL
 #define LEVEL 0
+#endif
+
+// With constant indices the arrays need not be in memory: four times as fast on lavapipe. Captures would take long to compile.
+#ifdef CAPTURE_GRID
+#define UNROLL
+#else
+#define UNROLL [[unroll]]
 #endif
 
 #include "draw.glsl"
@@ -19,7 +27,8 @@
 #include "subdivision.glsl"
 
 const int SIDE = 1 << LEVEL;
-// What every device has room for is 1024 numbers: level 3 takes two invocations. GLSL lets no constants of its own in here.
+// Every device has room for 1024 numbers: level 3 takes two invocations, each of which draws half of the face, the second of
+// the face turned by half a turn. (GLSL lets no constants of its own in here.)
 #if LEVEL == 0
 #define ROWS 1
 layout(points) in;
@@ -55,6 +64,11 @@ const int STRIDE = SIDE + 3;
 vec3 coarse[STRIDE * STRIDE];
 vec3 grid[STRIDE * STRIDE];
 
+// The corner of the face that is corner k of the lattice.
+uint turned(int k) {
+    return uint(k + 2 * gl_InvocationID) & 3u;
+}
+
 int at(ivec2 place) {
     return (place.y + 1) * STRIDE + place.x + 1;
 }
@@ -67,6 +81,7 @@ const ivec2 MINUS[4] = { ivec2(0, 1), ivec2(-1, 0), ivec2(0, -1), ivec2(1, 0) };
 // What the fan around each corner makes of it.
 vec3 tangents[4][2];
 uint profiles[4];
+uint creased[4];
 #if LEVEL > 0
 vec3 corner_points[4][LEVEL];
 // Beyond the face's two edges: the neighbours along the edges there, at level 1.
@@ -81,6 +96,7 @@ void gather(int k, Fan fan) {
     vec3 centre = vertex_position(fan.vertex);
     ivec2 place = CORNER[k];
     profiles[k] = fan_profile(fan, fan.face);
+    creased[k] = fan_words[profiles[k] + 11u];
     vec3 a_before = fan_neighbour(fan, fan.face - 1);
     vec3 a_after = fan_neighbour(fan, fan.face + 2);
     coarse[at(place)] = centre;
@@ -93,24 +109,24 @@ void gather(int k, Fan fan) {
     vec3 outer[2] = { a_before, a_after };
     vec3 inner[2] = { fan_neighbour(fan, fan.face), fan_neighbour(fan, fan.face + 1) };
     vec3 beyond[2] = { fan_neighbour(fan, fan.face - 2), fan_neighbour(fan, fan.face + 3) };
-    for (int i = 0; i < 2; ++i) {
+    UNROLL for (int i = 0; i < 2; ++i) {
         vec3 left = face_point(centre, outer[i], near[i], inner[i]);
         vec3 right = face_point(centre, outer[i], far[i], beyond[i]);
         float sharp = fan_weight(fan_profile(fan, i == 0 ? fan.face - 1 : fan.face + 2));
         ears[k][i] = sharpened(smooth_edge_point(centre, outer[i], left, right), sharp_edge_point(centre, outer[i]), sharp);
     }
     precise vec3 sums[LEVEL];
-    for (int level = 0; level < LEVEL; ++level) {
+    UNROLL for (int level = 0; level < LEVEL; ++level) {
         sums[level] = centre;
     }
 #endif
 #if LEVEL > 1
     precise vec3 spoke_sums[LEVEL - 1][4];
     uint rows[4];
-    for (int i = 0; i < 4; ++i) {
+    UNROLL for (int i = 0; i < 4; ++i) {
         int row = int(fan_words[fan.type]) + int(fan_words[fan.type + 1u]) * fan_edge(fan, fan.face - 1 + i);
         rows[i] = fan.type + uint(row);
-        for (int level = 0; level < LEVEL - 1; ++level) {
+        UNROLL for (int level = 0; level < LEVEL - 1; ++level) {
             spoke_sums[level][i] = centre;
         }
     }
@@ -122,13 +138,13 @@ void gather(int k, Fan fan) {
         a += fan_weight(of_tangents + 2u * uint(i)) * x;
         b += fan_weight(of_tangents + 2u * uint(i) + 1u) * x;
 #if LEVEL > 0
-        for (int level = 0; level < LEVEL; ++level) {
+        UNROLL for (int level = 0; level < LEVEL; ++level) {
             sums[level] += fan_weight(fan.type + TYPE_HEAD + 3u * uint(i) + uint(level)) * x;
         }
 #endif
 #if LEVEL > 1
-        for (int level = 0; level < LEVEL - 1; ++level) {
-            for (int spoke = 0; spoke < 4; ++spoke) {
+        UNROLL for (int level = 0; level < LEVEL - 1; ++level) {
+            UNROLL for (int spoke = 0; spoke < 4; ++spoke) {
                 spoke_sums[level][spoke] += fan_weight(rows[spoke] + 2u * uint(i) + uint(level)) * x;
             }
         }
@@ -145,29 +161,35 @@ void gather(int k, Fan fan) {
 }
 
 #if LEVEL > 0
-// One step: `coarse`, with sides of n, becomes `grid`.
+// One step: `coarse`, with sides of n, becomes `grid`; in the last step as much of it as is drawn.
 void refine(int level) {
     int n = 1 << level;
-    for (int y = -1; y <= n; ++y) {
-        for (int x = -1; x <= n; ++x) {
+    int last = level + 1 < LEVEL ? n : ROWS / 2;
+    UNROLL for (int y = -1; y <= last; ++y) {
+        UNROLL for (int x = -1; x <= n; ++x) {
             ivec2 p = ivec2(x, y);
             grid[at(2 * p + 1)] = face_point(coarse[at(p)], coarse[at(p + ivec2(1, 0))], coarse[at(p + 1)],
                                              coarse[at(p + ivec2(0, 1))]);
         }
     }
-    for (int across = -1; across <= n; ++across) {
-        for (int along = 0; along <= n; ++along) {
-            ivec2 p = ivec2(across, along), q = ivec2(along, across);
+    UNROLL for (int y = 0; y <= last; ++y) {
+        UNROLL for (int x = -1; x <= n; ++x) {
+            ivec2 p = ivec2(x, y);
             grid[at(2 * p + ivec2(1, 0))] = smooth_edge_point(coarse[at(p)], coarse[at(p + ivec2(1, 0))],
                                                               grid[at(2 * p + ivec2(1, 1))],
                                                               grid[at(2 * p + ivec2(1, -1))]);
-            grid[at(2 * q + ivec2(0, 1))] = smooth_edge_point(coarse[at(q)], coarse[at(q + ivec2(0, 1))],
-                                                              grid[at(2 * q + ivec2(1, 1))],
-                                                              grid[at(2 * q + ivec2(-1, 1))]);
         }
     }
-    for (int y = 0; y <= n; ++y) {
-        for (int x = 0; x <= n; ++x) {
+    UNROLL for (int y = -1; y <= last; ++y) {
+        UNROLL for (int x = 0; x <= n; ++x) {
+            ivec2 p = ivec2(x, y);
+            grid[at(2 * p + ivec2(0, 1))] = smooth_edge_point(coarse[at(p)], coarse[at(p + ivec2(0, 1))],
+                                                              grid[at(2 * p + ivec2(1, 1))],
+                                                              grid[at(2 * p + ivec2(-1, 1))]);
+        }
+    }
+    UNROLL for (int y = 0; y <= last; ++y) {
+        UNROLL for (int x = 0; x <= n; ++x) {
             ivec2 p = ivec2(x, y);
             grid[at(2 * p)] = smooth_vertex_point(
                 coarse[at(p)], coarse[at(p + ivec2(1, 0))], coarse[at(p + ivec2(0, 1))], coarse[at(p - ivec2(1, 0))],
@@ -175,11 +197,11 @@ void refine(int level) {
                 grid[at(2 * p + ivec2(-1, -1))], grid[at(2 * p + ivec2(1, -1))]);
         }
     }
-    for (int k = 0; k < 4; ++k) {
+    UNROLL for (int k = 0; k < 4; ++k) {
         // What is sharp along the edge, piece by piece and point by point.
         uint edges = profiles[k] + uint(n - 1);
         uint vertices = profiles[k] + 7u + uint(n / 2 - 1);
-        for (int i = 0; i < n; ++i) {
+        UNROLL for (int i = 0; i < n; ++i) {
             ivec2 p = n * CORNER[k] + i * PLUS[k];
             vec3 here = coarse[at(p)], next = coarse[at(p + PLUS[k])];
             int edge = at(2 * p + PLUS[k]);
@@ -190,7 +212,7 @@ void refine(int level) {
             }
         }
     }
-    for (int k = 0; k < 4; ++k) {
+    UNROLL for (int k = 0; k < 4; ++k) {
         ivec2 corner = 2 * n * CORNER[k];
         grid[at(corner)] = corner_points[k][level];
 #if LEVEL > 1
@@ -216,20 +238,20 @@ int along_edge(int k, ivec2 p) {
 }
 
 vec3 normal_at(ivec2 p, vec3 fallback) {
-    for (int k = 0; k < 4; ++k) {
+    UNROLL for (int k = 0; k < 4; ++k) {
         if (p == SIDE * CORNER[k]) {
             return unit_normal(tangents[k][0], tangents[k][1], fallback);
         }
     }
     vec3 around[9];
-    for (int i = 0; i < 9; ++i) {
+    UNROLL for (int i = 0; i < 9; ++i) {
         around[i] = grid[at(p + ivec2(i % 3 - 1, i / 3 - 1))];
     }
-    for (int k = 0; k < 4; ++k) {
+    UNROLL for (int k = 0; k < 4; ++k) {
         int i = along_edge(k, p);
         // Where the surface has a normal on each side of the edge, the row beyond is the mirrored one within.
-        if (i > 0 && (fan_words[profiles[k] + 11u] >> uint(SIDE - 2 - LEVEL + i) & 1u) != 0u) {
-            for (int side = -1; side <= 1; ++side) {
+        if (i > 0 && (creased[k] >> uint(SIDE - 2 - LEVEL + i) & 1u) != 0u) {
+            UNROLL for (int side = -1; side <= 1; ++side) {
                 ivec2 row = 1 + side * PLUS[k];
                 ivec2 outside = row - MINUS[k], inside = row + MINUS[k];
                 around[3 * outside.y + outside.x] = 2.0 * around[3 * row.y + row.x] - around[3 * inside.y + inside.x];
@@ -245,14 +267,15 @@ vec3 normal_at(ivec2 p, vec3 fallback) {
 
 vec3 normals[(ROWS + 1) * (SIDE + 1)];
 
-void emit(ivec2 p, int row) {
+void emit(ivec2 p) {
     vec3 position = grid[at(p)];
     world_position = to_world(position);
-    world_normal = normal_to_world(normals[row * (SIDE + 1) + p.x]);
+    world_normal = normal_to_world(normals[p.y * (SIDE + 1) + p.x]);
     gl_Position = to_clip(world_position);
 #ifdef TEXCOORD
     uint corner = draw.first_corner + 4u * patch_number[0];
-    vec2 uv[4] = { texcoords[corner], texcoords[corner + 1u], texcoords[corner + 2u], texcoords[corner + 3u] };
+    vec2 uv[4] = { texcoords[corner + turned(0)], texcoords[corner + turned(1)], texcoords[corner + turned(2)],
+                   texcoords[corner + turned(3)] };
     out_texcoord = INTERPOLATED(uv, (vec2(p) / float(SIDE)));
 #endif
     EmitVertex();
@@ -260,39 +283,41 @@ void emit(ivec2 p, int row) {
 
 void main() {
     uint first = draw.first_corner + 4u * patch_number[0];
-    for (int k = 0; k < 4; ++k) {
-        gather(k, fan_at(first + uint(k)));
+    UNROLL for (int k = 0; k < 4; ++k) {
+        gather(k, fan_at(first + turned(k)));
     }
     vec3 fallback = cross(coarse[at(ivec2(1))] - coarse[at(ivec2(0))], coarse[at(ivec2(0, 1))] - coarse[at(ivec2(1, 0))]);
 #if LEVEL == 0
     grid = coarse;
 #else
-    for (int level = 0; level < LEVEL; ++level) {
-        if (level > 0) {
-            coarse = grid;
-        }
-        refine(level);
-    }
+    refine(0);
 #endif
-    int first_row = ROWS * gl_InvocationID;
-    for (int row = 0; row <= ROWS; ++row) {
-        for (int x = 0; x <= SIDE; ++x) {
-            ivec2 p = ivec2(x, first_row + row);
-            vec3 normal = normal_at(p, fallback);
-            normals[row * (SIDE + 1) + x] = normal;
+    // Not a loop: drivers do not unroll those around others, whose indices should be constants.
+#if LEVEL > 1
+    coarse = grid;
+    refine(1);
+#endif
+#if LEVEL > 2
+    coarse = grid;
+    refine(2);
+#endif
+    UNROLL for (int y = 0; y <= ROWS; ++y) {
+        UNROLL for (int x = 0; x <= SIDE; ++x) {
+            ivec2 p = ivec2(x, y);
+            normals[y * (SIDE + 1) + x] = normal_at(p, fallback);
 #ifdef CAPTURE_GRID
-            uint places = uint((SIDE + 1) * (SIDE + 1));
-            vec3 coordinate = vec3(vec2(p) / float(SIDE), 0.0);
-            capture_sample(draw.first_patch + patch_number[0], uint(p.y * (SIDE + 1) + p.x), places, coordinate,
-                           grid[at(p)], normal);
+            ivec2 q = gl_InvocationID == 0 ? p : SIDE - p;
+            capture_sample(draw.first_patch + patch_number[0], uint(q.y * (SIDE + 1) + q.x),
+                           uint((SIDE + 1) * (SIDE + 1)), vec3(vec2(q) / float(SIDE), 0.0), grid[at(p)],
+                           normals[y * (SIDE + 1) + x]);
 #endif
         }
     }
-    for (int row = 0; row < ROWS; ++row) {
-        for (int x = 0; x <= SIDE; ++x) {
+    UNROLL for (int y = 0; y < ROWS; ++y) {
+        UNROLL for (int x = 0; x <= SIDE; ++x) {
             // Counter-clockwise seen from outside.
-            emit(ivec2(x, first_row + row + 1), row + 1);
-            emit(ivec2(x, first_row + row), row);
+            emit(ivec2(x, y + 1));
+            emit(ivec2(x, y));
         }
         EndPrimitive();
     }

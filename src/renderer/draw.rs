@@ -95,8 +95,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor. Those
-    /// for [`Factor::Uniform`] with [`Cull::NONE`] are there when the model is added; others are made by the first draw that
+    /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor (but each
+    /// level of [`Evaluation::Subdivision`] has its own). Those for [`Factor::Uniform`] (level 0) with [`Cull::NONE`] are there
+    /// when the model is added; others are made by the first draw that
     /// needs them, unless this was called before.
     ///
     /// # Errors
@@ -107,6 +108,12 @@ impl Renderer {
         if model.made & cut.bit() == 0 {
             self.pipelines.make(&model.stages, model.evaluation, cut)?;
             model.made |= cut.bit();
+        }
+        // A factor that is none of a level is told by the draw.
+        if model.evaluation == Evaluation::Subdivision
+            && let Ok(level) = subdivision::level(id, factor)
+        {
+            self.pipelines.make_subdivision(level)?;
         }
         Ok(())
     }

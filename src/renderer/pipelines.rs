@@ -4,7 +4,7 @@ use super::cached::CachedPipelines;
 use super::factor::Cut;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
-use super::subdivision::{self, MAX_LEVEL};
+use super::subdivision;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
     DeviceContext, Features, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
@@ -152,14 +152,20 @@ impl Pipelines {
                 continue;
             }
             if evaluation == Evaluation::Subdivision {
-                for level in 0..=MAX_LEVEL {
-                    self.make_one(PipelineKey { style, geometry: GeometryKey::Subdivision(level) })?;
-                }
                 continue;
             }
             for &stages in patches {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages, cut) })?;
             }
+        }
+        Ok(())
+    }
+
+    /// Makes what draws of subdivided faces need in every style of the surface.
+    pub(super) fn make_subdivision(&mut self, level: u32) -> Result<(), GpuError> {
+        let styles = 0..self.styles.len();
+        for style in styles.filter(|&style| self.styles[style].geometry == Geometry::Surface).collect::<Vec<_>>() {
+            self.make_one(PipelineKey { style, geometry: GeometryKey::Subdivision(level) })?;
         }
         Ok(())
     }
