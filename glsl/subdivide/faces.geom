@@ -49,6 +49,11 @@ layout(triangle_strip, max_vertices = 72) out;
 
 layout(location = 4) in uint patch_number[];
 
+// Without what else is in there, which would count.
+out gl_PerVertex {
+    vec4 gl_Position;
+};
+
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 #ifdef TEXCOORD
@@ -117,7 +122,7 @@ void gather(int k, Fan fan) {
     }
     precise vec3 sums[LEVEL];
     UNROLL for (int level = 0; level < LEVEL; ++level) {
-        sums[level] = centre;
+        sums[level] = vec3(0.0);
     }
 #endif
 #if LEVEL > 1
@@ -127,7 +132,7 @@ void gather(int k, Fan fan) {
         int row = int(fan_words[fan.type]) + int(fan_words[fan.type + 1u]) * fan_edge(fan, fan.face - 1 + i);
         rows[i] = fan.type + uint(row);
         UNROLL for (int level = 0; level < LEVEL - 1; ++level) {
-            spoke_sums[level][i] = centre;
+            spoke_sums[level][i] = vec3(0.0);
         }
     }
 #endif
@@ -152,11 +157,20 @@ void gather(int k, Fan fan) {
     }
     tangents[k][0] = a;
     tangents[k][1] = b;
+    // Added to the small sums at the end: what is added to the large one is rounded to it.
 #if LEVEL > 0
-    corner_points[k] = sums;
+    UNROLL for (int level = 0; level < LEVEL; ++level) {
+        precise vec3 point = centre + sums[level];
+        corner_points[k][level] = point;
+    }
 #endif
 #if LEVEL > 1
-    spokes[k] = spoke_sums;
+    UNROLL for (int level = 0; level < LEVEL - 1; ++level) {
+        UNROLL for (int spoke = 0; spoke < 4; ++spoke) {
+            precise vec3 point = centre + spoke_sums[level][spoke];
+            spokes[k][level][spoke] = point;
+        }
+    }
 #endif
 }
 
