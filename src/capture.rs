@@ -115,7 +115,9 @@ pub struct Captured<'h> {
 }
 
 impl<'h> Captured<'h> {
-    /// Builds the tables of a model.
+    /// Builds the tables of a model. Whatever evaluates it, the tessellation stages are watched; but of
+    /// [`Evaluation::Subdivision`] its own geometry shader, which has nothing but [`Captured::grid`], of as many samples as one
+    /// of its levels has.
     ///
     /// # Errors
     /// [`Error::Unsupported`] if the device cannot write buffers before rasterization, and as
@@ -126,7 +128,6 @@ impl<'h> Captured<'h> {
             return Err(Error::Unsupported { device, missing: vec!["vertexPipelineStoresAndAtomics".into()] });
         }
         let tables = ModelTables::new(mesh, options)?;
-        // What compute evaluates is captured through the tessellation stages; subdivision has no patches to be captured so.
         let evaluation = match options.evaluation {
             Evaluation::Subdivision => Evaluation::Subdivision,
             _ => Evaluation::Tessellation,

@@ -27,24 +27,24 @@
 #include "subdivision.glsl"
 
 const int SIDE = 1 << LEVEL;
-// Every device has room for 1024 numbers: level 3 takes two invocations, each of which draws half of the face, the second of
-// the face turned by half a turn. (GLSL lets no constants of its own in here.)
+// What is drawn of the lattice. Every device has room for 1024 numbers; at level 3 four invocations draw the quarter at corner 0
+// of a lattice that each turns to another corner. (GLSL lets no constants of its own in here.)
 #if LEVEL == 0
-#define ROWS 1
+#define DRAWN 1
 layout(points) in;
 layout(triangle_strip, max_vertices = 4) out;
 #elif LEVEL == 1
-#define ROWS 2
+#define DRAWN 2
 layout(points) in;
 layout(triangle_strip, max_vertices = 12) out;
 #elif LEVEL == 2
-#define ROWS 4
+#define DRAWN 4
 layout(points) in;
 layout(triangle_strip, max_vertices = 40) out;
 #else
-#define ROWS 4
-layout(points, invocations = 2) in;
-layout(triangle_strip, max_vertices = 72) out;
+#define DRAWN 4
+layout(points, invocations = 4) in;
+layout(triangle_strip, max_vertices = 40) out;
 #endif
 
 layout(location = 4) in uint patch_number[];
@@ -71,7 +71,7 @@ vec3 grid[STRIDE * STRIDE];
 
 // The corner of the face that is corner k of the lattice.
 uint turned(int k) {
-    return uint(k + 2 * gl_InvocationID) & 3u;
+    return uint(k + gl_InvocationID) & 3u;
 }
 
 int at(ivec2 place) {
@@ -178,16 +178,16 @@ void gather(int k, Fan fan) {
 // One step: `coarse`, with sides of n, becomes `grid`; in the last step as much of it as is drawn.
 void refine(int level) {
     int n = 1 << level;
-    int last = level + 1 < LEVEL ? n : ROWS / 2;
+    int last = level + 1 < LEVEL ? n : DRAWN / 2;
     UNROLL for (int y = -1; y <= last; ++y) {
-        UNROLL for (int x = -1; x <= n; ++x) {
+        UNROLL for (int x = -1; x <= last; ++x) {
             ivec2 p = ivec2(x, y);
             grid[at(2 * p + 1)] = face_point(coarse[at(p)], coarse[at(p + ivec2(1, 0))], coarse[at(p + 1)],
                                              coarse[at(p + ivec2(0, 1))]);
         }
     }
     UNROLL for (int y = 0; y <= last; ++y) {
-        UNROLL for (int x = -1; x <= n; ++x) {
+        UNROLL for (int x = -1; x <= last; ++x) {
             ivec2 p = ivec2(x, y);
             grid[at(2 * p + ivec2(1, 0))] = smooth_edge_point(coarse[at(p)], coarse[at(p + ivec2(1, 0))],
                                                               grid[at(2 * p + ivec2(1, 1))],
@@ -195,7 +195,7 @@ void refine(int level) {
         }
     }
     UNROLL for (int y = -1; y <= last; ++y) {
-        UNROLL for (int x = 0; x <= n; ++x) {
+        UNROLL for (int x = 0; x <= last; ++x) {
             ivec2 p = ivec2(x, y);
             grid[at(2 * p + ivec2(0, 1))] = smooth_edge_point(coarse[at(p)], coarse[at(p + ivec2(0, 1))],
                                                               grid[at(2 * p + ivec2(1, 1))],
@@ -203,7 +203,7 @@ void refine(int level) {
         }
     }
     UNROLL for (int y = 0; y <= last; ++y) {
-        UNROLL for (int x = 0; x <= n; ++x) {
+        UNROLL for (int x = 0; x <= last; ++x) {
             ivec2 p = ivec2(x, y);
             grid[at(2 * p)] = smooth_vertex_point(
                 coarse[at(p)], coarse[at(p + ivec2(1, 0))], coarse[at(p + ivec2(0, 1))], coarse[at(p - ivec2(1, 0))],
@@ -279,12 +279,12 @@ vec3 normal_at(ivec2 p, vec3 fallback) {
     return unit_normal(du, dv, fallback);
 }
 
-vec3 normals[(ROWS + 1) * (SIDE + 1)];
+vec3 normals[(DRAWN + 1) * (DRAWN + 1)];
 
 void emit(ivec2 p) {
     vec3 position = grid[at(p)];
     world_position = to_world(position);
-    world_normal = normal_to_world(normals[p.y * (SIDE + 1) + p.x]);
+    world_normal = normal_to_world(normals[p.y * (DRAWN + 1) + p.x]);
     gl_Position = to_clip(world_position);
 #ifdef TEXCOORD
     uint corner = draw.first_corner + 4u * patch_number[0];
@@ -315,20 +315,21 @@ void main() {
     coarse = grid;
     refine(2);
 #endif
-    UNROLL for (int y = 0; y <= ROWS; ++y) {
-        UNROLL for (int x = 0; x <= SIDE; ++x) {
+    UNROLL for (int y = 0; y <= DRAWN; ++y) {
+        UNROLL for (int x = 0; x <= DRAWN; ++x) {
             ivec2 p = ivec2(x, y);
-            normals[y * (SIDE + 1) + x] = normal_at(p, fallback);
+            normals[y * (DRAWN + 1) + x] = normal_at(p, fallback);
 #ifdef CAPTURE_GRID
-            ivec2 q = gl_InvocationID == 0 ? p : SIDE - p;
+            uint k = turned(0);
+            ivec2 q = SIDE * CORNER[k] + x * PLUS[k] + y * MINUS[k];
             capture_sample(draw.first_patch + patch_number[0], uint(q.y * (SIDE + 1) + q.x),
                            uint((SIDE + 1) * (SIDE + 1)), vec3(vec2(q) / float(SIDE), 0.0), grid[at(p)],
-                           normals[y * (SIDE + 1) + x]);
+                           normals[y * (DRAWN + 1) + x]);
 #endif
         }
     }
-    UNROLL for (int y = 0; y < ROWS; ++y) {
-        UNROLL for (int x = 0; x <= SIDE; ++x) {
+    UNROLL for (int y = 0; y < DRAWN; ++y) {
+        UNROLL for (int x = 0; x <= DRAWN; ++x) {
             // Counter-clockwise seen from outside.
             emit(ivec2(x, y + 1));
             emit(ivec2(x, y));

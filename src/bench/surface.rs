@@ -6,7 +6,7 @@ use crate::measure::statistics::Summary;
 use crate::patch::Scheme;
 use crate::renderer::{
     Construction, DrawItem, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Options, Renderer, Style,
-    TableBytes, Target, subdivision_level,
+    TableBytes, Target, subdivision_level, subdivision_vertices,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -121,11 +121,10 @@ impl Drawable for Surface {
     }
 
     fn strip_vertices(&self, factor: f32) -> u64 {
-        if self.evaluation != Evaluation::Subdivision {
-            return 0;
+        match (self.evaluation, subdivision_level(self.model, Factor::Uniform(factor))) {
+            (Evaluation::Subdivision, Ok(level)) => self.faces * u64::from(subdivision_vertices(level)),
+            _ => 0,
         }
-        let side = factor as u64;
-        self.faces * 2 * side * (side + 1)
     }
 
     fn control_point_bytes(&self) -> u64 {

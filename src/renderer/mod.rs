@@ -61,7 +61,7 @@ pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
     pipelines::STAGES,
     stages::spaced,
-    subdivision::level as subdivision_level,
+    subdivision::{level as subdivision_level, vertices as subdivision_vertices},
 };
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};

@@ -37,10 +37,10 @@ pub(crate) fn level(id: ModelId, factor: Factor) -> Result<u32, Error> {
     (0..=MAX_LEVEL).find(segments).ok_or(Error::NoSuchLevel { id, factor })
 }
 
-/// The vertices that a face takes in strips.
-pub(super) fn vertices(level: u32) -> u32 {
-    let side = 1 << level;
-    2 * side * (side + 1)
+/// The vertices that a face takes in strips, which are no longer than four segments.
+pub(crate) fn vertices(level: u32) -> u32 {
+    let (side, drawn) = (1 << level, 1 << level.min(2));
+    side / drawn * side * 2 * (drawn + 1)
 }
 
 /// The name of the geometry shader.
@@ -52,7 +52,9 @@ pub(super) fn shader(level: u32, capture: Capture, texcoords: bool) -> String {
     name += match capture {
         Capture::Off if texcoords => "_TEXCOORD",
         Capture::Off => "",
-        _ => "_CAPTURE_GRID",
+        Capture::Grid => "_CAPTURE_GRID",
+        // There is none: what else is captured is of patches.
+        _ => "_CAPTURE",
     };
     name
 }
