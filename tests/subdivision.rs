@@ -223,6 +223,40 @@ fn faces_follow_positions() {
     headless.finish_silent();
 }
 
+/// What is captured is compiled otherwise than what is drawn. Each child of a face is turned to its corner, as the quarters are
+/// that level 3 draws.
+#[test]
+fn a_level_less_of_a_refined_mesh_is_the_same_picture() {
+    let headless = common::headless();
+    let target = Offscreen::new(&headless, &OffscreenDesc::new(128, 128)).expect("an image");
+    let desc = target.desc();
+    let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
+    let named = Options { evaluations: vec![Evaluation::Subdivision], ..Options::default() };
+    // SAFETY: every submission is waited for, and the renderer is dropped before the target.
+    let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &named) }.expect("a renderer");
+    for name in ["creature", "machine-part", "valences", "cloth"] {
+        let mesh = shape(name).expect("built in");
+        let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
+        let mut picture = |refine, factor: f32| {
+            let model = renderer.add_model(&mesh, &ModelOptions { refine, ..options() }).expect("a model");
+            // SAFETY: outside rendering, then inside; all frames before are done.
+            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) }).expect("a frame");
+            let item = [DrawItem::new(model, factor)];
+            let draw = |cmd| unsafe { renderer.cmd_draw(cmd, 0, &view, &item) };
+            target.draw(&headless, [0.0; 4], draw).expect("a picture")
+        };
+        let (whole, refined) = (picture(0, 8.0), picture(1, 4.0));
+        let differ =
+            whole.chunks(4).zip(refined.chunks(4)).filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 8));
+        // Rounding moves the silhouette by a pixel here and there.
+        let differ = differ.count();
+        assert!(differ <= 12, "{name}: {differ}");
+    }
+    drop(renderer);
+    drop(target);
+    headless.finish_silent();
+}
+
 #[test]
 fn wrong_use_is_told() {
     let target = Target::dynamic(vk::Format::R8G8B8A8_SRGB, vk::Format::D32_SFLOAT, vk::SampleCountFlags::TYPE_1);

@@ -297,16 +297,17 @@ void emit(ivec2 p) {
 
 void main() {
     uint first = draw.first_corner + 4u * patch_number[0];
-    UNROLL for (int k = 0; k < 4; ++k) {
-        gather(k, fan_at(first + turned(k)));
-    }
+    // No loop here and below: drivers do not unroll those around others, whose indices should be constants.
+    gather(0, fan_at(first + turned(0)));
+    gather(1, fan_at(first + turned(1)));
+    gather(2, fan_at(first + turned(2)));
+    gather(3, fan_at(first + turned(3)));
     vec3 fallback = cross(coarse[at(ivec2(1))] - coarse[at(ivec2(0))], coarse[at(ivec2(0, 1))] - coarse[at(ivec2(1, 0))]);
 #if LEVEL == 0
     grid = coarse;
 #else
     refine(0);
 #endif
-    // Not a loop: drivers do not unroll those around others, whose indices should be constants.
 #if LEVEL > 1
     coarse = grid;
     refine(1);
