@@ -115,7 +115,9 @@ pub struct Captured<'h> {
 }
 
 impl<'h> Captured<'h> {
-    /// Builds the tables of a model.
+    /// Builds the tables of a model. Whatever evaluates it, the tessellation stages are watched; but of
+    /// [`Evaluation::Subdivision`] its own geometry shader, which has nothing but [`Captured::grid`], of as many samples as one
+    /// of its levels has.
     ///
     /// # Errors
     /// [`Error::Unsupported`] if the device cannot write buffers before rasterization, and as
@@ -126,9 +128,13 @@ impl<'h> Captured<'h> {
             return Err(Error::Unsupported { device, missing: vec!["vertexPipelineStoresAndAtomics".into()] });
         }
         let tables = ModelTables::new(mesh, options)?;
+        let evaluation = match options.evaluation {
+            Evaluation::Subdivision => Evaluation::Subdivision,
+            _ => Evaluation::Tessellation,
+        };
         Ok(Self {
             headless,
-            options: ModelOptions { evaluation: Evaluation::Tessellation, ..options.clone() },
+            options: ModelOptions { evaluation, ..options.clone() },
             tables,
             positions: mesh.positions_f32(),
             displacement: None,
@@ -343,7 +349,10 @@ impl<'h> Captured<'h> {
     ) -> Result<(), Error> {
         let headless = self.headless;
         let context = headless.context();
-        let stages = vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
+        let stages = match self.options.evaluation {
+            Evaluation::Subdivision => vk::ShaderStageFlags::GEOMETRY,
+            _ => vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION,
+        };
         let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, stages)];
         // Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
         let mut idle = None;
@@ -359,6 +368,7 @@ impl<'h> Captured<'h> {
             styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
             set_layouts: vec![layout.raw()],
             shaders: self.shaders.clone(),
+            evaluations: vec![self.options.evaluation],
             ..Options::default()
         };
         let desc = target.desc();

@@ -95,6 +95,8 @@
 //! * Loop, Schaefer, *Approximating Catmull-Clark Subdivision Surfaces with Bicubic Patches*, 2008: [`Scheme::Acc`].
 //! * Myles, Ni, Peters, *Fast Parallel Construction of Smooth Surfaces from Meshes with Tri/Quad/Pent Facets*, 2008, and
 //!   Ni, Yeo, Myles, Goel, Peters, *GPU smoothing of quad meshes*, 2008: [`Scheme::Pm`] and [`Scheme::CPatch`].
+//! * Antal, Szécsi, Premecz, Csonka, *Catmull-Clark subdivision for geometry shaders*, 2007: subdivision of single faces on the
+//!   GPU ([`Evaluation::Subdivision`](renderer::Evaluation::Subdivision)).
 //! * Catmull, Clark, *Recursively generated B-spline surfaces on arbitrary topological meshes*, 1978: the surface.
 //! * Halstead, Kass, DeRose, *Efficient, fair interpolation using Catmull-Clark surfaces*, 1993: limit positions
 //!   and tangents at vertices.

@@ -80,8 +80,10 @@ fn the_bilinear_floor_is_the_control_mesh() {
 fn a_race_counts_what_was_drawn() {
     let headless = headless();
     let all = Contestant::all(&Path::ALL, &Scheme::ALL, &Construction::ALL);
-    let rows = race(&headless, BenchOptions { instances: 3, passes: 2, ..options() }, "cube", &all);
-    assert_eq!(rows.len(), 2 * all.len());
+    // Levels of subdivision, too.
+    let factors = vec![1.0, 2.0, 4.0];
+    let rows = race(&headless, BenchOptions { instances: 3, passes: 2, factors, ..options() }, "cube", &all);
+    assert_eq!(rows.len(), 3 * all.len());
     for (row, contestant) in rows.iter().zip(all.iter().cycle()) {
         let n = row.factor as u64;
         assert_eq!((row.contestant, row.patches), (*contestant, 36));
@@ -89,7 +91,8 @@ fn a_race_counts_what_was_drawn() {
         let tessellated = matches!(contestant.path, Path::Tessellation | Path::Bilinear);
         let evaluations = if tessellated { 36 * (n + 1) * (n + 1) } else { 0 };
         assert_eq!(row.evaluations, Some(evaluations));
-        assert_eq!(row.traffic.vertices, 40 * 36 * (n + 1) * (n + 1));
+        let strips = contestant.path == Path::Subdivision;
+        assert_eq!(row.traffic.vertices, 40 * 36 * (n + 1) * if strips { 2 * n } else { n + 1 });
         let points = contestant.patches.map(|(scheme, _)| scheme.owned(ash_subdiv::topology::PatchKind::IrregularQuad));
         let points = if tessellated { points.unwrap_or(1) as u64 } else { 0 };
         let vertices = row.bytes.iter().find(|(name, _)| *name == "vertices").map(|(_, bytes)| *bytes);
@@ -126,6 +129,16 @@ fn contestants_that_cannot_are_left_out() {
     assert!(left[0].0 == "acc" && left[0].1.contains("no patches for triangles"), "{left:?}");
     let error = bench.picture(&subject("tetrahedron"), all[1], 1.0).unwrap_err().to_string();
     assert!(error.contains("no patches for triangles"));
+    let subdivision = [Contestant::new(Path::Subdivision, None)];
+    let mut left = Vec::new();
+    let tell = |event| {
+        if let Event::LeftOut(_, factor, why) = event {
+            left.push((factor, why.to_string()));
+        }
+    };
+    bench.race(&subject("cube"), &subdivision, tell).unwrap();
+    let why = "model 1: Uniform(3.0): subdivision has uniform factors of 1, 2, 4 and 8, for levels 0 to 3";
+    assert_eq!(left, [(Some(3.0), why.to_owned())]);
     let few = Bench::new(&headless, BenchOptions { frames: 5, ..options() }).map(drop).unwrap_err();
     assert_eq!(few.to_string(), "BenchOptions::frames is 5: it must be at least 6");
     drop(bench);

@@ -9,6 +9,7 @@ use ash::vk;
 use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
+use ash_subdiv::mesh::Crease;
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, Geometry};
 use ash_subdiv::{
     Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style, Target,
@@ -96,6 +97,12 @@ impl Picture {
         }
     }
 
+    /// Faces that are subdivided, without patches.
+    fn subdivided(name: &str, shape: &'static str, factor: f32) -> Self {
+        let factor = Factor::Uniform(factor);
+        Self { name: name.into(), evaluation: Evaluation::Subdivision, factor, ..Self::lit(shape) }
+    }
+
     /// A shape with all three kinds of patches.
     fn of_style(name: &str, layers: Vec<Layer>) -> Self {
         Self { name: format!("style-{name}"), layers, ..Self::lit("creature-mixed") }
@@ -149,6 +156,10 @@ fn pictures() -> Vec<Picture> {
             ..Picture::lit("creature-mixed")
         },
         Picture { name: "culled".into(), culled: true, ..Picture::lit("creature") },
+        // No finite sharpness is rounded.
+        Picture::subdivided("subdivided-semi-sharp", "semi-sharp", 8.0),
+        Picture { layers: wire(), ..Picture::subdivided("subdivided-wireframe", "cube", 4.0) },
+        Picture { around: Some(0.25), ..Picture::subdivided("subdivided-creature-mixed", "creature-mixed", 4.0) },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
         Picture::of_scheme(Scheme::GregoryFitted, "creature-mixed", Some(0.2)),
         Picture::of_scheme(Scheme::Acc, "cube", None),
@@ -171,6 +182,16 @@ fn extraordinary_vertex(mesh: &ControlMesh) -> DVec3 {
     mesh.position(vertex as u32)
 }
 
+/// A cube whose edges are sharp to one level, two and for ever.
+fn semi_sharp() -> ControlMesh {
+    let mut data = shape("cube").expect("built in").into_data();
+    let top = data.face_vertices[..4].to_vec();
+    let sharpness = [1.0, 2.0, 1.5, 10.0];
+    let edge = |(k, sharpness)| Crease { vertices: [top[k], top[(k + 1) % 4]], sharpness };
+    data.creases = sharpness.into_iter().enumerate().map(edge).collect();
+    ControlMesh::new(data).expect("tags only")
+}
+
 /// About this much around a point, with nothing cut off in front of it.
 fn close_up(point: Vec3, towards: Vec3, half: f32) -> View {
     let eye = point + towards * (5.0 * half);
@@ -180,10 +201,11 @@ fn close_up(point: Vec3, towards: Vec3, half: f32) -> View {
 fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_render_pass: bool) -> Vec<u8> {
     let mesh = match picture.shape {
         "pentagons" => common::pentagons(),
+        "semi-sharp" => semi_sharp(),
         name => shape(name).expect("built in"),
     };
     let styles = picture.layers.iter().map(|layer| layer.style.clone()).collect();
-    let options = Options { styles, ..Options::default() };
+    let options = Options { styles, evaluations: vec![picture.evaluation], ..Options::default() };
     let towards = [-0.6, 0.5, 1.0];
     let view = match picture.around {
         None => View::framing(mesh.bounds(), towards, 1.0),
@@ -271,8 +293,10 @@ fn pictures_evaluated_by_compute_are_the_same() {
         let mut wrong = Vec::new();
         let mut compared = 0;
         for picture in pictures() {
-            let fits =
-                picture.displacement.is_none() && matches!(picture.factor, Factor::Uniform(_)) && !picture.culled;
+            let fits = picture.displacement.is_none()
+                && matches!(picture.factor, Factor::Uniform(_))
+                && picture.evaluation == Evaluation::Tessellation
+                && !picture.culled;
             let lines = picture.layers.iter().any(|layer| layer.style.wireframe);
             if fits && !lines && quads_only(picture.shape) {
                 let picture = Picture { evaluation: Evaluation::Compute, ..picture };

@@ -44,6 +44,7 @@ impl BenchError {
         let Self::Renderer(error) = self else { return false };
         match error {
             Error::Table(TableError::Undefined(_)) | Error::TableTooLarge { .. } | Error::NotByCompute { .. } => true,
+            Error::NoSuchLevel { .. } | Error::Unsupported { .. } => true,
             Error::Gpu(error) => {
                 matches!(error, Gpu::Unsupported { .. } | Gpu::Allocation { .. } | Gpu::OutOfMemory { .. })
             }

@@ -48,6 +48,9 @@ pub enum Path {
     /// Evaluated by compute once a frame, as the renderer does with
     /// [`Evaluation::Compute`](crate::renderer::Evaluation::Compute), and drawn as indexed triangles in each pass.
     Compute,
+    /// Faces subdivided in a geometry shader, as the renderer does with
+    /// [`Evaluation::Subdivision`](crate::renderer::Evaluation::Subdivision): at factors 1, 2, 4 and 8.
+    Subdivision,
     /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
     Bilinear,
     /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
@@ -57,13 +60,15 @@ pub enum Path {
 
 impl Path {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Tessellation, Self::Compute, Self::Bilinear, Self::VertexBuffer];
+    pub const ALL: [Self; 5] =
+        [Self::Tessellation, Self::Compute, Self::Subdivision, Self::Bilinear, Self::VertexBuffer];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tessellation => "tessellation",
             Self::Compute => "compute",
+            Self::Subdivision => "subdivision",
             Self::Bilinear => "bilinear",
             Self::VertexBuffer => "vertex-buffer",
         }
@@ -104,7 +109,7 @@ impl Normals {
 pub struct Contestant {
     /// How the surface is drawn.
     pub path: Path,
-    /// From which patches, made how; `None` for a floor.
+    /// From which patches, made how; `None` where there are none, for floors and subdivision.
     pub patches: Option<(Scheme, Construction)>,
     /// Where its normals come from.
     pub normals: Normals,
@@ -137,7 +142,7 @@ impl Contestant {
     /// The first that is no floor is what the others are compared with.
     pub fn all(paths: &[Path], schemes: &[Scheme], constructions: &[Construction]) -> Vec<Self> {
         let of_path = |&path: &Path| -> Vec<Self> {
-            if path.is_floor() {
+            if path.is_floor() || path == Path::Subdivision {
                 return vec![Self::new(path, None)];
             }
             let fits = |&&c: &&Construction| path != Path::Compute || c == Construction::Cached;
@@ -147,12 +152,12 @@ impl Contestant {
         paths.iter().flat_map(of_path).collect()
     }
 
-    /// The scheme as the program calls it; `none` for a floor.
+    /// The scheme as the program calls it; `none` without patches.
     pub fn scheme_name(self) -> &'static str {
         self.patches.map_or("none", |(scheme, _)| scheme.name())
     }
 
-    /// The construction as the program calls it; `none` for a floor.
+    /// The construction as the program calls it; `none` without patches.
     pub fn construction_name(self) -> &'static str {
         self.patches.map_or("none", |(_, construction)| construction.name())
     }

@@ -271,7 +271,7 @@ impl<'h> Bench<'h> {
         let traffic = Traffic {
             tables: times * bytes.iter().map(|(_, bytes)| bytes).sum::<u64>(),
             control_points: times * drawable.control_point_bytes(),
-            vertices: VERTEX_BYTES * vertices,
+            vertices: VERTEX_BYTES * vertices.max(times * drawable.strip_vertices(factor)),
         };
         let [gpu, geometry] = <[Series; 2]>::try_from(series).unwrap_or_default();
         Ok(Row {

@@ -18,7 +18,7 @@ use ash_subdiv::gpu::DeviceProperties;
 use ash_subdiv::headless::{Headless, HeadlessError, Offscreen, OffscreenDesc, Texels, save_png};
 use ash_subdiv::measure::Quantity;
 use ash_subdiv::renderer::ModelTables;
-use ash_subdiv::renderer::{Cull, DisplacementId, Factor};
+use ash_subdiv::renderer::{Cull, DisplacementId, Evaluation, Factor};
 use ash_subdiv::{Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Spacing, Target, View};
 use clap::Args;
 use glam::DVec3;
@@ -37,22 +37,34 @@ struct FactorArgs {
     /// Factors such that edges stray from their curves by about this many pixels: more where they are bent.
     #[arg(long, value_name = "PIXELS", value_parser = parse::positive, conflicts_with = "factor")]
     bend: Option<f32>,
+    /// Instead of drawing patches, subdivide each face this many times in a geometry shader.
+    #[arg(
+        long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(0..=3),
+        conflicts_with_all = ["factor", "pixels", "bend", "cull", "displacement", "construction", "scheme"]
+    )]
+    level: Option<u32>,
     #[command(flatten)]
     cull: CullArgs,
 }
 
 impl FactorArgs {
     fn factor(&self) -> Factor {
-        match (self.pixels, self.bend) {
-            (Some(pixels), _) => Factor::Pixels(pixels),
-            (None, Some(pixels)) => Factor::Curvature(pixels),
-            (None, None) => Factor::Uniform(self.factor),
+        match (self.pixels, self.bend, self.level) {
+            (Some(pixels), ..) => Factor::Pixels(pixels),
+            (_, Some(pixels), _) => Factor::Curvature(pixels),
+            (.., Some(level)) => Factor::Uniform((1 << level) as f32),
+            _ => Factor::Uniform(self.factor),
         }
+    }
+
+    fn evaluation(&self) -> Evaluation {
+        if self.level.is_some() { Evaluation::Subdivision } else { Evaluation::Tessellation }
     }
 
     /// In words.
     fn text(&self) -> String {
         match self.factor() {
+            factor if self.level.is_some() => format!("subdivided into {0} x {0} a face", factor.value()),
             Factor::Pixels(pixels) => format!("segments of {pixels} pixels"),
             Factor::Curvature(pixels) => format!("bends within {pixels} pixels"),
             factor => format!("factor {}", factor.value()),
@@ -102,7 +114,7 @@ pub(super) struct RenderArgs {
 
 const EXAMPLES: &str = "\
 JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, construction, factor
-(null unless one for all), pixels, bend (null unless given), spacing, shading, samples, device,
+(null unless one for all), pixels, bend, level (null unless given), spacing, shading, samples, device,
 error{top, largest} (null unless an error is shown),
 statistics{patches_drawn, patches_culled, largest_factor, factors_clamped}: factors_clamped tells whether an
 edge asked for more segments than the device has.
@@ -112,6 +124,7 @@ Examples:
   subdiv render model.obj --shading wireframe --factor 3.5 --spacing odd -o wires.png
   subdiv render scene.glb --mesh-name Head --background transparent --yaw 40 -o head.png
   subdiv render model.obj --scheme acc --shading error-normal --error-max 0.1 -o errors.png
+  subdiv render model.obj --level 2 --shading wireframe -o subdivided.png
   subdiv render --shape creature --displacement scales --displacement-scale 0.01 --pixels 4 -o scales.png
   subdiv render --shape cloth --eye 3,4,5 --target 0,0,0 --fov 25 --size 1920x1080 -o cloth.png";
 
@@ -124,6 +137,7 @@ struct RenderOut<'a> {
     factor: Option<f32>,
     pixels: Option<f32>,
     bend: Option<f32>,
+    level: Option<u32>,
     spacing: &'static str,
     shading: String,
     samples: u32,
@@ -158,7 +172,8 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let mesh = args.mesh.load()?;
     let map = args.error_map(&mesh, &progress)?;
     progress.now("building tables");
-    let mut options = ModelOptions { spacing: args.spacing, ..args.mesh.model_options(args.construction) };
+    let evaluation = args.factor.evaluation();
+    let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(args.construction) };
     let texels = args.displacement.texels()?;
     options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
     let mut drawn = &mesh;
@@ -200,7 +215,8 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
             size: args.size,
             patches,
             construction: args.construction.name(),
-            factor: matches!(args.factor.factor(), Factor::Uniform(_)).then_some(args.factor.factor),
+            factor: Some(args.factor.factor()).filter(|f| matches!(f, Factor::Uniform(_))).map(Factor::value),
+            level: args.factor.level,
             pixels: args.factor.pixels,
             bend: args.factor.bend,
             spacing: parse::spacing_name(args.spacing),
@@ -247,6 +263,10 @@ impl RenderArgs {
                 }
             };
         };
+        if self.factor.level.is_some() {
+            let message = "--level: the error is that of patches: leave one of both out";
+            return Err(CliError::Usage(message.into()));
+        }
         if self.displacement.is_given() {
             let message = "--displacement: the error of a displaced surface is not known: leave one of both out";
             return Err(CliError::Usage(message.into()));
@@ -269,7 +289,9 @@ impl RenderArgs {
     /// Points around which everything is that the picture shows.
     fn seen_points(&self, mesh: &ControlMesh, texels: Option<&Texels>) -> Result<Vec<DVec3>, CliError> {
         let positions = &mesh.data().positions;
-        if self.shading.shows_control_mesh() && !positions.is_empty() {
+        // Faces that are hardly subdivided are as large as the control mesh.
+        let shows_control_mesh = self.shading.shows_control_mesh() || self.factor.level.is_some();
+        if shows_control_mesh && !positions.is_empty() {
             return Ok(positions.iter().copied().map(DVec3::from).collect());
         }
         let hull = self.mesh.hull(mesh)?;
@@ -349,6 +371,7 @@ impl RenderArgs {
         let options = Options {
             styles: self.shading.styles(),
             texcoords: errors.is_some(),
+            evaluations: vec![model_options.evaluation],
             set_layouts: errors.iter().map(|errors| errors.layout.raw()).collect(),
             ..Options::default()
         };

@@ -49,7 +49,7 @@ features! {
     vertex_stores = "vertexPipelineStoresAndAtomics",
     /// Counting shader invocations.
     statistics = "pipelineStatisticsQuery",
-    /// Geometry shaders, the `gl_PrimitiveID` of fragment shaders with them.
+    /// Geometry shaders, the `gl_PrimitiveID` of fragment shaders with them: subdivision of faces.
     geometry = "geometryShader",
     /// `double` in shaders.
     float64 = "shaderFloat64",

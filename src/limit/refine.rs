@@ -2,10 +2,9 @@
 //! holes, both crease methods and both triangle rules (patch_maths A).
 
 use super::face_varying::{refine_linearly, refine_texcoords};
+use super::sharpness::{children, decrement, edge_weight, parent_weight};
 use super::stencils::{MIN_LEN, Stencils};
-use crate::mesh::{
-    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, MeshData, MeshError, SHARPNESS_INFINITE, TriangleRule,
-};
+use crate::mesh::{BoundaryRule, ControlMesh, Corner, Crease, MeshData, MeshError, SHARPNESS_INFINITE, TriangleRule};
 use crate::patch::{Blend, Row};
 use crate::topology::Topology;
 use glam::DVec3;
@@ -94,15 +93,6 @@ struct Step<'t, 'm> {
     vertex_sharpness: HashMap<u32, f32>,
 }
 
-/// Sharpness after one uniform step.
-fn decrement(sharpness: f32) -> f32 {
-    if sharpness >= SHARPNESS_INFINITE { sharpness } else { (sharpness - 1.0).max(0.0) }
-}
-
-fn is_semi_sharp(sharpness: f32) -> bool {
-    sharpness > 0.0 && sharpness < SHARPNESS_INFINITE
-}
-
 impl<'t, 'm> Step<'t, 'm> {
     fn new(topology: &'t Topology<'m>) -> Self {
         let corners = topology.mesh().corner_count() as u32;
@@ -165,16 +155,16 @@ impl<'t, 'm> Step<'t, 'm> {
         for (&edge, &sharpness) in &self.sharpness {
             let [a, b] = self.ends(edge);
             for (near, far) in [(a, b), (b, a)] {
-                let end = SharpEnd { far: topology.source(far), sharpness, child: decrement(sharpness) };
+                let end = SharpEnd { far: topology.source(far), sharpness, child: 0.0 };
                 self.sharp_ends.entry(near).or_default().push((edge, end));
             }
         }
         for ends in self.sharp_ends.values_mut() {
             // A hash map gave them in any order.
             ends.sort_unstable_by_key(|(edge, _)| *edge);
-            if topology.mesh().data().crease_method == CreaseMethod::Chaikin {
-                chaikin(ends);
-            }
+            let sharpness: Vec<f32> = ends.iter().map(|(_, end)| end.sharpness).collect();
+            let children = children(topology.mesh().data().crease_method, &sharpness);
+            ends.iter_mut().zip(children).for_each(|((_, end), child)| end.child = child);
         }
     }
 
@@ -232,7 +222,8 @@ impl<'t, 'm> Step<'t, 'm> {
         let sharp = Row::sum([(0.5, &from), (0.5, &to)]);
         let Some(twin) = topology.twin(h) else { return sharp };
         let sharpness = self.sharpness.get(&edge).copied().unwrap_or(0.0);
-        let weight = if self.stays_sharp(edge, sharpness) { 1.0 } else { f64::from(sharpness.min(1.0)) };
+        let children = self.ends(edge).map(|vertex| self.child_sharpness(edge, vertex));
+        let weight = f64::from(edge_weight(topology.mesh().data().crease_method, sharpness, children));
         if weight == 1.0 {
             return sharp;
         }
@@ -252,13 +243,6 @@ impl<'t, 'm> Step<'t, 'm> {
         }
         let weight = |h: u32| if self.topology.face_size(h) == 3 { 0.470 } else { 0.25 };
         0.5 * (weight(h) + weight(twin))
-    }
-
-    /// Chaikin's exception: an edge whose two children stay sharp is fully sharp.
-    fn stays_sharp(&self, edge: u32, sharpness: f32) -> bool {
-        self.topology.mesh().data().crease_method == CreaseMethod::Chaikin
-            && sharpness > 0.0
-            && self.ends(edge).into_iter().all(|v| self.child_sharpness(edge, v) > 0.0)
     }
 
     fn child_sharpness(&self, edge: u32, vertex: u32) -> f32 {
@@ -286,18 +270,8 @@ impl<'t, 'm> Step<'t, 'm> {
         if parent == Rule::Smooth || std::mem::discriminant(&parent) == std::mem::discriminant(&child) {
             return row;
         }
-        // Between the two rules, by the mean of the sharpness that is used up in this step.
-        let uniform = self.topology.mesh().data().crease_method == CreaseMethod::Uniform;
-        let mut used: Vec<f32> = ends
-            .iter()
-            .filter(|(_, e)| if uniform { e.sharpness <= 1.0 } else { e.child <= 0.0 })
-            .map(|(_, e)| e.sharpness)
-            .collect();
-        if sharpness > 0.0 && decrement(sharpness) <= 0.0 {
-            used.push(sharpness);
-        }
-        let mean = if used.is_empty() { 0.0 } else { used.iter().sum::<f32>() / used.len() as f32 };
-        let weight = f64::from(mean.min(1.0));
+        let edges: Vec<(f32, f32)> = ends.iter().map(|(_, e)| (e.sharpness, e.child)).collect();
+        let weight = f64::from(parent_weight(self.topology.mesh().data().crease_method, &edges, sharpness));
         Row::sum([(weight, &row), (1.0 - weight, &self.masked(half_edge, child))])
     }
 
@@ -367,17 +341,4 @@ impl<'t, 'm> Step<'t, 'm> {
 pub(super) fn touching_vertices(topology: &Topology) -> HashSet<u32> {
     let split = topology.mesh().vertex_count() as u32..topology.vertex_count() as u32;
     split.map(|v| topology.source(v)).collect()
-}
-
-/// Chaikin's rule at one vertex: each semi-sharp edge's child takes a quarter from the mean of the others.
-fn chaikin(ends: &mut [(u32, SharpEnd)]) {
-    let semi: Vec<f32> = ends.iter().map(|(_, e)| e.sharpness).filter(|&s| is_semi_sharp(s)).collect();
-    if semi.len() < 2 {
-        return;
-    }
-    let sum: f32 = semi.iter().sum();
-    for (_, end) in ends.iter_mut().filter(|(_, e)| is_semi_sharp(e.sharpness)) {
-        let others = (sum - end.sharpness) / (semi.len() - 1) as f32;
-        end.child = (0.75 * end.sharpness + 0.25 * others - 1.0).max(0.0);
-    }
 }

@@ -4,7 +4,7 @@ use super::factor::{Cull, Cut, Factor};
 use super::gpu_data::DrawConstants;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
-use super::{Error, Evaluation, Geometry, ModelId, Renderer, View};
+use super::{Error, Evaluation, Geometry, ModelId, Renderer, View, subdivision};
 use crate::gpu::{Domain, tessellated_vertices};
 use ash::vk;
 
@@ -95,8 +95,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor. Those
-    /// for [`Factor::Uniform`] with [`Cull::NONE`] are there when the model is added; others are made by the first draw that
+    /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor (but each
+    /// level of [`Evaluation::Subdivision`] has its own). Those for [`Factor::Uniform`] (level 0) with [`Cull::NONE`] are there
+    /// when the model is added; others are made by the first draw that
     /// needs them, unless this was called before.
     ///
     /// # Errors
@@ -107,6 +108,12 @@ impl Renderer {
         if model.made & cut.bit() == 0 {
             self.pipelines.make(&model.stages, model.evaluation, cut)?;
             model.made |= cut.bit();
+        }
+        // A factor that is none of a level is told by the draw.
+        if model.evaluation == Evaluation::Subdivision
+            && let Ok(level) = subdivision::level(id, factor)
+        {
+            self.pipelines.make_subdivision(level)?;
         }
         Ok(())
     }
@@ -166,12 +173,21 @@ impl Renderer {
                 };
                 return self.cmd_draw_lattice(cmd, model, item.factor, push);
             }
+            let level = match model.evaluation {
+                Evaluation::Subdivision => Some(subdivision::level(id, item.factor)?),
+                _ => None,
+            };
             for (&stages, group) in model.stages.iter().zip(model.tables.plan().groups()) {
                 let (kind, spacing) = (stages.kind, stages.spacing);
-                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages, cut) }, bound);
-                let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
-                let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
-                let points = stages.input_points();
+                let (geometry, vertices, points) = match level {
+                    Some(level) => (GeometryKey::Subdivision(level), subdivision::vertices(level), 1),
+                    None => {
+                        let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
+                        let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
+                        (GeometryKey::Patches(stages, cut), vertices, stages.input_points())
+                    }
+                };
+                self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
                 constants.colour = item.colors[kind as usize];
                 constants.first_corner = group.first_corner as u32;
                 constants.first_patch = group.patches.start as u32;

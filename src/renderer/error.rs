@@ -1,4 +1,4 @@
-use super::{DisplacementId, Factor, ModelId};
+use super::{DisplacementId, Evaluation, Factor, ModelId};
 use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 use crate::table::TableError;
@@ -48,6 +48,12 @@ pub enum Error {
     BadDisplacement { id: ModelId, scale: f32, bias: f32 },
     #[error("model {}: evaluation by compute does not go with {what}: do without, or choose Evaluation::Tessellation", id.0)]
     NotByCompute { id: ModelId, what: &'static str },
+    #[error("model {}: Evaluation::{evaluation:?} needs {}: name it in Options::evaluations and make the device with what requirements lists then, or choose another evaluation", id.0, missing.join(" and "))]
+    EvaluationNeeds { id: ModelId, evaluation: Evaluation, missing: Vec<&'static str> },
+    #[error("model {}: subdivision does not go with {what}: do without, or choose Evaluation::Tessellation", id.0)]
+    NotBySubdivision { id: ModelId, what: &'static str },
+    #[error("model {}: {factor:?}: subdivision has uniform factors of 1, 2, 4 and 8, for levels 0 to 3", id.0)]
+    NoSuchLevel { id: ModelId, factor: Factor },
     #[error("model {}: the tessellation stages evaluate it: set ModelOptions::evaluation to Compute", id.0)]
     NotComputed { id: ModelId },
     #[error("model {}: {given} segments: from 1 to {max} are possible along an edge", id.0)]

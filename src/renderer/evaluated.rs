@@ -11,7 +11,7 @@ use ash::vk;
 
 /// Tells what a model has that evaluation by compute has not.
 pub(super) fn check_evaluation(id: ModelId, options: &ModelOptions, tables: &ModelTables) -> Result<(), Error> {
-    if options.evaluation == Evaluation::Tessellation {
+    if options.evaluation != Evaluation::Compute {
         return Ok(());
     }
     let what = match tables.sharing() {

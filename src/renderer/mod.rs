@@ -20,6 +20,7 @@
 //! | TCS, two-stage | the frames of its corners, their rings, positions | control points, factors |
 //! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
 //! | TCS, cached | control points | control points, factors |
+//! | GS of models that are [`Evaluation::Subdivision`] | fans and their weights, positions | position, normal, texture coordinate; no TCS and TES |
 //! | TES | control points, the view | position, normal, texture coordinate |
 //! | FS | those, the view | the caller's attachments |
 //!
@@ -38,6 +39,7 @@ mod options;
 mod pipelines;
 mod stages;
 mod streamed;
+mod subdivision;
 mod tables;
 mod view;
 
@@ -59,6 +61,7 @@ pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
     pipelines::STAGES,
     stages::spaced,
+    subdivision::{level as subdivision_level, vertices as subdivision_vertices},
 };
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
@@ -316,10 +319,7 @@ impl Renderer {
             return Ok(());
         }
         let device = self.context.device();
-        let readers = vk::PipelineStageFlags::VERTEX_INPUT
-            | vk::PipelineStageFlags::VERTEX_SHADER
-            | vk::PipelineStageFlags::TESSELLATION_CONTROL_SHADER
-            | vk::PipelineStageFlags::COMPUTE_SHADER;
+        let readers = vk::PipelineStageFlags::VERTEX_INPUT | pipelines::shader_readers(self.context.features());
         let transfer = vk::PipelineStageFlags::TRANSFER;
         let none = vk::DependencyFlags::empty();
         let after_copies = [vk::MemoryBarrier::default()

@@ -6,6 +6,7 @@ use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::{MODEL_BUFFERS, Pipelines};
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
+use super::subdivision::check_subdivision;
 use super::{
     Construction, DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables,
     Options,
@@ -73,6 +74,7 @@ impl Model {
         map: DisplacementMap,
     ) -> Result<Self, Error> {
         check_evaluation(id, model_options, &tables)?;
+        check_subdivision(id, model_options, &tables, context.features())?;
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
         let check = |table: &'static str, bytes: u64| {

@@ -176,6 +176,9 @@ pub struct Options {
     pub styles: Vec<Style>,
     /// Give texture coordinates to the fragment stage.
     pub texcoords: bool,
+    /// What models will be evaluated by, besides the tessellation stages: [`requirements`] lists what the device must have for
+    /// it.
+    pub evaluations: Vec<Evaluation>,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
     /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]): such
@@ -193,6 +196,7 @@ impl Default for Options {
             views_per_frame: 16,
             styles: vec![Style::default()],
             texcoords: false,
+            evaluations: Vec::new(),
             set_layouts: Vec::new(),
             shaders: Vec::new(),
             pipeline_cache: vk::PipelineCache::null(),
@@ -241,6 +245,21 @@ pub enum Evaluation {
     /// For [`Construction::Cached`], [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), and so far without
     /// displacement and shared normals.
     Compute,
+    /// No patches: a geometry shader subdivides each face by the Catmull-Clark rules, straight from the control vertices, in each
+    /// draw anew (Antal et al. 2007). The [`Factor`](super::Factor) is `Uniform`: 1, 2, 4 or 8 segments along every edge, for 0
+    /// to 3 levels. Vertices are those of the refined mesh, not limit points, with the normals of limit points; creases and
+    /// corners of finite sharpness are followed as far as the levels go. Neighbouring faces share positions to the bit.
+    ///
+    /// A mesh with faces that are no quads is refined once before. Without displacement, shared normals and factors of edges, and
+    /// nothing is culled. Needs [`Features::geometry`] ([`Options::evaluations`]). Scheme, fallback, construction and spacing have no say.
+    Subdivision,
+}
+
+impl Evaluation {
+    /// What the device must have for it, besides what the tessellation stages need.
+    pub fn features(self) -> Features {
+        Features { geometry: self == Self::Subdivision, ..Features::NONE }
+    }
 }
 
 /// How one model is drawn.
@@ -301,6 +320,7 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
         wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
         ..Features::NONE
     };
+    let features = options.evaluations.iter().fold(features, |all, evaluation| all.union(evaluation.features()));
     Requirements { api_version: vk::API_VERSION_1_3, features, device_extensions: features.extensions() }
 }
 

@@ -4,9 +4,10 @@ use super::cached::CachedPipelines;
 use super::factor::Cut;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
+use super::subdivision;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
-    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
+    DeviceContext, Features, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
     descriptor_set_layout, pipeline_layout, shaders,
 };
 use ash::vk;
@@ -43,6 +44,8 @@ pub(super) enum GeometryKey {
     Patches(PatchStages, Cut),
     /// Patches of all kinds that were evaluated by compute.
     Lattice,
+    /// Faces that are subdivided this many times.
+    Subdivision(u32),
     Control,
 }
 
@@ -70,8 +73,16 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::VERTEX.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw()
+        | vk::ShaderStageFlags::GEOMETRY.as_raw()
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
+
+/// The stages that read what models keep in buffers, on a device with these features.
+pub(super) fn shader_readers(features: Features) -> vk::PipelineStageFlags {
+    use vk::PipelineStageFlags as Stage;
+    let all = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
+    if features.geometry { all | Stage::GEOMETRY_SHADER } else { all }
+}
 
 /// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
 /// points. The displacement map comes after them.
@@ -140,9 +151,21 @@ impl Pipelines {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Lattice })?;
                 continue;
             }
+            if evaluation == Evaluation::Subdivision {
+                continue;
+            }
             for &stages in patches {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages, cut) })?;
             }
+        }
+        Ok(())
+    }
+
+    /// Makes what draws of subdivided faces need in every style of the surface.
+    pub(super) fn make_subdivision(&mut self, level: u32) -> Result<(), GpuError> {
+        let styles = 0..self.styles.len();
+        for style in styles.filter(|&style| self.styles[style].geometry == Geometry::Surface).collect::<Vec<_>>() {
+            self.make_one(PipelineKey { style, geometry: GeometryKey::Subdivision(level) })?;
         }
         Ok(())
     }
@@ -169,6 +192,16 @@ impl Pipelines {
                     false => shaders::EVALUATE_LATTICE_VERT,
                 };
                 let stages = [Shader::vertex(vertex), fragment(style, Sharing::Positions, &encode)];
+                self.create(&name, key, &stages, 0)?
+            }
+            GeometryKey::Subdivision(level) => {
+                let name = format!("subdiv style {} of faces subdivided {level} times", key.style);
+                let geometry = self.find(&subdivision::shader(level, self.capture, self.texcoords))?;
+                let stages = [
+                    Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
+                    Shader::geometry(geometry),
+                    fragment(style, Sharing::Positions, &encode),
+                ];
                 self.create(&name, key, &stages, 0)?
             }
             GeometryKey::Patches(patch, cut) => {
@@ -232,7 +265,11 @@ impl Pipelines {
             patch_control_points,
             vertex_bindings: if lattice { &bindings } else { &[] },
             vertex_attributes: if lattice { &attributes } else { &[] },
-            topology: if lines { vk::PrimitiveTopology::LINE_LIST } else { vk::PrimitiveTopology::TRIANGLE_LIST },
+            topology: match key.geometry {
+                GeometryKey::Subdivision(_) => vk::PrimitiveTopology::POINT_LIST,
+                _ if lines => vk::PrimitiveTopology::LINE_LIST,
+                _ => vk::PrimitiveTopology::TRIANGLE_LIST,
+            },
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,
             front_face: style.front_face,

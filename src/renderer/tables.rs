@@ -1,12 +1,12 @@
 //! The arrays of a model, before they are on the GPU.
 
 use super::stages::Sharing;
-use super::{Construction, ModelOptions};
+use super::{Construction, Evaluation, ModelOptions};
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
 use crate::table::{
-    FaceOrigin, Notice, PatchPlan, RingTable, SharedCorner, SharedTable, StencilTable, TableError, bytes,
-    prepare_patches,
+    FaceOrigin, Notice, PatchPlan, RingTable, SharedCorner, SharedTable, StencilTable, SubdivisionTable, TableError,
+    bytes, prepare_patches, prepare_quads,
 };
 use crate::topology::{PatchKind, Topology};
 use glam::Vec3;
@@ -20,6 +20,8 @@ pub struct ModelTables {
     rings: Option<RingTable>,
     /// Of the stencil construction.
     stencils: Option<StencilTable>,
+    /// Of subdivision.
+    fans: Option<SubdivisionTable>,
     /// Where normals are shared.
     shared: Option<SharedTable>,
     /// Whether control points are kept between draws, and how many a corner has room for then.
@@ -78,10 +80,16 @@ impl ModelTables {
     /// scheme whose patches share no edges.
     pub fn new(mesh: &ControlMesh, options: &ModelOptions) -> Result<Self, TableError> {
         let ModelOptions { scheme, fallback, refine, .. } = *options;
-        let (prepared, mut plan) = prepare_patches(mesh, scheme, fallback, refine)?;
+        let subdivides = options.evaluation == Evaluation::Subdivision;
+        let (prepared, mut plan) = match subdivides {
+            true => prepare_quads(mesh, refine)?,
+            false => prepare_patches(mesh, scheme, fallback, refine)?,
+        };
         let topology = Topology::new(&prepared.mesh);
+        let fans = subdivides.then(|| SubdivisionTable::new(&topology, &plan)).transpose()?;
         // The stencil table puts the patches in its own order, so it comes first.
         let stencils = match options.construction {
+            _ if subdivides => None,
             Construction::TwoStage => None,
             Construction::Stencil | Construction::Cached => Some(StencilTable::new(&topology, &mut plan)?),
         };
@@ -93,9 +101,9 @@ impl ModelTables {
         if shared.is_some() && !scheme.is_watertight() {
             return Err(TableError::NothingShared { scheme });
         }
-        let rings = (stencils.is_none() || shared.is_some()).then(|| RingTable::new(&topology, &plan));
+        let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(&topology, &plan));
         let most_owned = plan.groups().iter().map(|group| group.scheme.owned(group.kind)).max().unwrap_or(0);
-        let cached = (options.construction == Construction::Cached).then_some(most_owned);
+        let cached = (options.construction == Construction::Cached && !subdivides).then_some(most_owned);
         Ok(Self {
             texcoords: plan.texcoords(&topology),
             edges: options.edge_factors.then(|| Edges::new(&topology, &plan)),
@@ -104,6 +112,7 @@ impl ModelTables {
             plan,
             rings,
             stencils,
+            fans,
             shared,
             cached,
             control_edges: control_edges(mesh),
@@ -198,11 +207,12 @@ impl ModelTables {
         self.plan.count(kind)
     }
 
-    /// How many types of connectivity have weights of their own: of rings (two-stage) or of patches (stencil).
+    /// How many types of connectivity have weights of their own: of rings (two-stage), patches (stencil) or fans (subdivision).
     pub fn type_count(&self) -> usize {
-        match (&self.stencils, &self.rings) {
+        match (&self.stencils, &self.fans) {
             (Some(stencils), _) => stencils.type_count,
-            (None, rings) => rings.as_ref().map_or(0, |rings| rings.type_count),
+            (None, Some(fans)) => fans.type_count,
+            (None, None) => self.rings.as_ref().map_or(0, |rings| rings.type_count),
         }
     }
 
@@ -220,12 +230,28 @@ impl ModelTables {
         fn array<'t, T, E: bytemuck::NoUninit>(table: &'t Option<T>, array: impl Fn(&'t T) -> &'t [E]) -> &'t [u8] {
             table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
         }
-        let (rings, stencils) = (&self.rings, &self.stencils);
+        let (rings, stencils, fans) = (&self.rings, &self.stencils, &self.fans);
+        // Shaders read rings or fans, never both.
+        let around = match fans {
+            None => [
+                ("ring_headers", array(rings, |t| &t.headers)),
+                ("ring_entries", array(rings, |t| &t.entries)),
+                ("ring_types", array(rings, |t| &t.types)),
+                ("patch_corners", array(rings, |t| &t.corners)),
+            ],
+            Some(_) => [
+                ("fan_headers", array(fans, |t| &t.headers)),
+                ("fan_entries", array(fans, |t| t.entries.as_flattened())),
+                ("fan_words", array(fans, |t| &t.words)),
+                ("face_corners", array(fans, |t| &t.corners)),
+            ],
+        };
+        let [headers, entries, types, corners] = around;
         [
-            ("ring_headers", array(rings, |t| &t.headers)),
-            ("ring_entries", array(rings, |t| &t.entries)),
-            ("ring_types", array(rings, |t| &t.types)),
-            ("patch_corners", array(rings, |t| &t.corners)),
+            headers,
+            entries,
+            types,
+            corners,
             ("stencil_patches", array(stencils, |t| &t.patches)),
             ("stencil_vertices", array(stencils, |t| &t.vertices)),
             ("stencil_types", array(stencils, |t| &t.types)),

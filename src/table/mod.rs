@@ -15,15 +15,17 @@ mod prepare;
 mod rings;
 mod shared;
 mod stencils;
+mod subdivision;
 
 pub use cpu::{CpuSurface, grid_parameters};
 pub use error::TableError;
 pub(crate) use lattice::{lattice_indices, lattice_triangles, lattice_vertices};
 pub use plan::{Patch, PatchGroup, PatchPlan};
-pub use prepare::{FaceOrigin, Notice, Prepared, prepare, prepare_patches};
+pub use prepare::{FaceOrigin, Notice, Prepared, prepare, prepare_patches, prepare_quads};
 pub use rings::RingTable;
 pub use shared::{SharedCorner, SharedTable, SharedTexcoord};
 pub use stencils::StencilTable;
+pub use subdivision::SubdivisionTable;
 
 /// Bytes of a table's array.
 pub(crate) fn bytes<T>(array: &[T]) -> u64 {

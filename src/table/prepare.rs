@@ -30,6 +30,13 @@ pub enum Notice {
         /// The first of them.
         first: u32,
     },
+    /// Faces other than quads, where they are subdivided one by one: the whole mesh was refined once so that all are quads.
+    RefinedToQuads {
+        /// How many such faces there are.
+        faces: usize,
+        /// The first of them.
+        first: u32,
+    },
     /// Vertices where fans of faces touch in a point were split.
     SplitVertices {
         /// How many vertices that added.
@@ -62,6 +69,9 @@ impl fmt::Display for Notice {
                 f,
                 "{polygons} faces have five or more corners (the first is face {first}): the whole mesh is refined once"
             ),
+            Self::RefinedToQuads { faces, first } => {
+                write!(f, "{faces} faces are no quads (the first is face {first}): the whole mesh is refined once")
+            }
             Self::SplitVertices { count } => {
                 write!(f, "{count} vertices were split off where fans of faces touch in a point")
             }
@@ -89,7 +99,9 @@ pub struct Prepared<'m> {
     pub steps: Vec<Stencils>,
     /// For each face of the prepared mesh; empty where nothing was refined.
     origins: Vec<FaceOrigin>,
-    refined_polygons: Option<Notice>,
+    refined_faces: Option<Notice>,
+    /// Whether sharpness counts as infinite or none: it is not where faces are subdivided.
+    rounds_sharpness: bool,
     /// Vertices split off by refinement.
     split_vertices: usize,
 }
@@ -101,7 +113,8 @@ impl<'m> Prepared<'m> {
             mesh: Cow::Borrowed(mesh),
             steps: Vec::new(),
             origins: Vec::new(),
-            refined_polygons: None,
+            refined_faces: None,
+            rounds_sharpness: true,
             split_vertices: 0,
         }
     }
@@ -130,8 +143,9 @@ impl<'m> Prepared<'m> {
             scheme: plan.scheme(),
             fallback: patch.scheme,
         });
-        let refined = self.refined_polygons.clone();
-        refined.into_iter().chain(split).chain(fell_back).chain(semi_sharp(&self.mesh)).collect()
+        let refined = self.refined_faces.clone();
+        let rounded = semi_sharp(&self.mesh).filter(|_| self.rounds_sharpness);
+        refined.into_iter().chain(split).chain(fell_back).chain(rounded).collect()
     }
 }
 
@@ -165,14 +179,35 @@ pub fn prepare_patches(
 /// # Errors
 /// [`MeshError::TooLarge`] if the refined mesh cannot be addressed.
 pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared<'_>, MeshError> {
+    let notice = |polygons, first| Notice::RefinedPolygons { polygons, first };
+    refine_faces(mesh, levels, |size| size > 4, notice)
+}
+
+/// Prepares `mesh` for subdivision of one face after the other, and plans its faces as if they were patches: as [`prepare()`],
+/// but every face becomes a quad.
+///
+/// # Errors
+/// A refined mesh that cannot be addressed.
+pub fn prepare_quads(mesh: &ControlMesh, levels: u32) -> Result<(Prepared<'_>, PatchPlan), TableError> {
+    let notice = |faces, first| Notice::RefinedToQuads { faces, first };
+    let prepared = Prepared { rounds_sharpness: false, ..refine_faces(mesh, levels, |size| size != 4, notice)? };
+    let plan = PatchPlan::new(&Topology::new(&prepared.mesh), Scheme::Gregory, Fallback::Refuse)?;
+    Ok((prepared, plan))
+}
+
+/// Refines `mesh` at least `levels` times, and once if faces have sizes that do not fit.
+fn refine_faces(
+    mesh: &ControlMesh,
+    levels: u32,
+    misfit: impl Fn(u32) -> bool,
+    notice: impl Fn(usize, u32) -> Notice,
+) -> Result<Prepared<'_>, MeshError> {
     let mut prepared = Prepared::of(mesh);
-    let polygon = |&(_, &size): &(usize, &u32)| size > 4;
-    let mut polygons = mesh.data().face_sizes.iter().enumerate().filter(polygon);
+    let mut misfits = (0..).zip(&mesh.data().face_sizes).filter(|&(_, &size)| misfit(size));
     let mut needed = levels;
-    if let Some((first, _)) = polygons.next() {
+    if let Some((first, _)) = misfits.next() {
         if levels == 0 {
-            let polygons = 1 + polygons.count();
-            prepared.refined_polygons = Some(Notice::RefinedPolygons { polygons, first: first as u32 });
+            prepared.refined_faces = Some(notice(1 + misfits.count(), first));
         }
         needed = levels.max(1);
     }

@@ -32,6 +32,17 @@ fn wrong_usage_is_said_in_one_line() {
         "invalid value '1,2' for '--eye <X,Y,Z>': it must be three numbers with commas between, such as 1,2.5,-3",
     );
     fails("render --shape cube -o x.png --eye 1,2,3 --target 1,2,3", 2, "--eye and --target are the same point");
+    fails("render --shape cube -o x.png --level 4", 2, "invalid value '4' for '--level <STEPS>': 4 is not in 0..=3");
+    fails(
+        "render --shape cube -o x.png --level 1 --scheme acc",
+        2,
+        "the argument '--level <STEPS>' cannot be used with '--scheme <SCHEME>'",
+    );
+    fails(
+        "render --shape cube -o x.png --level 2 --shading error-normal",
+        2,
+        "--level: the error is that of patches: leave one of both out",
+    );
     fails(
         "render --shape cube -o x.png --eye 0,5,0 --target 0,0,0",
         2,

@@ -55,6 +55,20 @@ fn constructions_draw_the_same_and_options_are_obeyed() {
 }
 
 #[test]
+fn faces_are_subdivided() {
+    let path = folder("levels").join("x.png");
+    let mut seen = Vec::new();
+    for level in 0..=3 {
+        let (told, pixels) = picture(&path, &format!("--shape cube --level {level}"));
+        assert_eq!((&told["level"], &told["factor"]), (&level.into(), &f64::from(1 << level).into()));
+        let covered = pixels.pixels().filter(|&pixel| pixel != pixels.get_pixel(0, 0)).count();
+        seen.push(covered);
+    }
+    // The cube shrinks towards its surface.
+    assert!(seen[0] > seen[1] && seen[1] > seen[2] && seen[2] >= seen[3], "{seen:?}");
+}
+
+#[test]
 fn kinds_of_patches_have_their_colours() {
     let folder = folder("kinds");
     // Gold is more red than blue, purple more blue than green, green more green than red.

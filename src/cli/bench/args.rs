@@ -107,6 +107,7 @@ Rows of one mesh and factor draw in turns, so that a machine that becomes slower
 Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of several counts of passes,
 `compute wins from` says where its time and that of tessellating in every pass cross. Of meshes of several sizes, `grows`
 says by which power of patches. `more` is more than what was measured can tell.
+`subdivision` refines faces in a geometry shader, at factors 1, 2, 4 and 8: levels 0 to 3.
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
 
 JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
@@ -144,7 +145,7 @@ impl BenchArgs {
             all.iter().copied().filter(|one| chosen.contains(one)).collect()
         }
         let all = Contestant::all(
-            &pick(&self.paths, None, &Path::ALL),
+            &pick(&self.paths, self.preset.map(|p| p.paths), &Path::ALL),
             &pick(&self.schemes, self.preset.map(|p| p.schemes), &Scheme::ALL),
             &pick(&self.constructions, self.preset.map(|p| p.constructions), &Construction::ALL),
         );

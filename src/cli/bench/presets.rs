@@ -15,6 +15,8 @@ pub(super) struct Preset {
     pub note: &'static str,
     pub schemes: &'static [Scheme],
     pub constructions: &'static [Construction],
+    /// The first is what was published, the others stand beside it.
+    pub paths: &'static [Path],
     pub factors: &'static [f32],
     pub patches: Subset,
     pub instances: u32,
@@ -47,9 +49,12 @@ impl Unit {
     }
 }
 
-/// One figure: the mesh as the paper calls it, how it was drawn, and the figure.
+/// One figure: the mesh as the paper calls it, how it was drawn (of no account for subdivision), and the figure.
 #[derive(Debug)]
 struct Published(&'static str, Scheme, Construction, f32, f64);
+
+/// Where patches were measured.
+const PATCHES: &[Path] = &[Path::Tessellation, Path::Compute, Path::Bilinear, Path::VertexBuffer];
 
 use Construction::{Stencil, TwoStage};
 use Scheme::{Acc, CPatch, Gregory, Pm};
@@ -61,6 +66,7 @@ static PRESETS: [Preset; 5] = [
         note: "Published: milliseconds in a simulator of Direct3D 11 hardware, N taken as the factor. Measured: geometry alone.",
         schemes: &[Gregory, Acc, Pm],
         constructions: &[TwoStage, Stencil],
+        paths: PATCHES,
         factors: &[6.0, 10.0],
         patches: Subset::Irregular,
         instances: 1,
@@ -82,6 +88,7 @@ static PRESETS: [Preset; 5] = [
                Measured: tessellation stages, with pixels.",
         schemes: &[Gregory, Acc, Pm],
         constructions: &[TwoStage],
+        paths: PATCHES,
         factors: &[16.0, 24.0],
         patches: Subset::All,
         instances: 1,
@@ -109,6 +116,7 @@ static PRESETS: [Preset; 5] = [
                geometry shaders. Measured: tessellation stages, with pixels.",
         schemes: &[CPatch],
         constructions: &[TwoStage],
+        paths: PATCHES,
         factors: &[4.0, 8.0, 16.0, 32.0],
         patches: Subset::All,
         instances: 1,
@@ -135,6 +143,7 @@ static PRESETS: [Preset; 5] = [
         note: "The published figures are not at hand, and left out.",
         schemes: &[CPatch],
         constructions: &[TwoStage],
+        paths: PATCHES,
         factors: &[4.0, 8.0, 16.0, 32.0],
         patches: Subset::All,
         instances: 9,
@@ -145,10 +154,10 @@ static PRESETS: [Preset; 5] = [
     Preset {
         name: "antal2007",
         title: "Antal et al. 2007: Catmull-Clark subdivision of 1300 quads in geometry shaders, by levels 0, 1, 2",
-        note: "Published: frames a second on an 8800 GTX; levels taken as factors 1, 2, 4. Measured: Gregory patches through \
-               tessellation stages, with pixels.",
+        note: "Published: frames a second on an 8800 GTX; levels 0, 1, 2 are factors 1, 2, 4. Measured: the same, with pixels.",
         schemes: &[Gregory],
         constructions: &[TwoStage],
+        paths: &[Path::Subdivision, Path::Tessellation, Path::Bilinear],
         factors: &[1.0, 2.0, 4.0],
         patches: Subset::All,
         instances: 1,
@@ -206,10 +215,10 @@ impl Preset {
     fn lines(&self, figures: &[Published], rows: &[Row]) -> Vec<Beside> {
         let row = |published: &Published| {
             let Published(_, scheme, construction, factor, _) = published;
-            let wanted = |row: &&Row| {
-                let drawn = Contestant::new(Path::Tessellation, Some((*scheme, *construction)));
-                row.who == Who::new(drawn) && row.factor == *factor
-            };
+            let path = self.paths[0];
+            let patches = (path != Path::Subdivision).then_some((*scheme, *construction));
+            let drawn = Contestant::new(path, patches);
+            let wanted = |row: &&Row| row.who == Who::new(drawn) && row.factor == *factor;
             let row = rows.iter().find(wanted)?;
             Some((row, if self.geometry { row.geometry_ms.median } else { row.gpu_ms.median }))
         };

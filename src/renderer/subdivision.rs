@@ -1,0 +1,60 @@
+//! Models whose faces are subdivided in a geometry shader ([`Evaluation::Subdivision`]).
+
+use super::stages::Sharing;
+use super::{Capture, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables};
+use crate::gpu::Features;
+
+/// Every device with geometry shaders has room for the strips of so many levels (`glsl/subdivide/faces.geom`).
+pub(super) const MAX_LEVEL: u32 = 3;
+
+/// Tells what a model asks for that subdivision has not, or what it needs of its renderer.
+pub(super) fn check_subdivision(
+    id: ModelId,
+    options: &ModelOptions,
+    tables: &ModelTables,
+    features: Features,
+) -> Result<(), Error> {
+    let evaluation = options.evaluation;
+    if evaluation != Evaluation::Subdivision {
+        return Ok(());
+    }
+    let missing = features.missing(evaluation.features());
+    if !missing.is_empty() {
+        return Err(Error::EvaluationNeeds { id, evaluation, missing });
+    }
+    let what = match tables.sharing() {
+        Sharing::Displacement => "displacement",
+        Sharing::Normals => "shared normals",
+        Sharing::Positions if tables.edges().is_some() => "factors of edges",
+        Sharing::Positions => return Ok(()),
+    };
+    Err(Error::NotBySubdivision { id, what })
+}
+
+/// How often a draw with this factor subdivides.
+pub(crate) fn level(id: ModelId, factor: Factor) -> Result<u32, Error> {
+    let segments = |level: &u32| factor == Factor::Uniform((1 << level) as f32);
+    (0..=MAX_LEVEL).find(segments).ok_or(Error::NoSuchLevel { id, factor })
+}
+
+/// The vertices that a face takes in strips, which are no longer than four segments.
+pub(crate) fn vertices(level: u32) -> u32 {
+    let (side, drawn) = (1 << level, 1 << level.min(2));
+    side / drawn * side * 2 * (drawn + 1)
+}
+
+/// The name of the geometry shader.
+pub(super) fn shader(level: u32, capture: Capture, texcoords: bool) -> String {
+    let mut name = String::from("SUBDIVIDE_FACES_GEOM");
+    if level > 0 {
+        name += &format!("_LEVEL_{level}");
+    }
+    name += match capture {
+        Capture::Off if texcoords => "_TEXCOORD",
+        Capture::Off => "",
+        Capture::Grid => "_CAPTURE_GRID",
+        // There is none: what else is captured is of patches.
+        _ => "_CAPTURE",
+    };
+    name
+}
