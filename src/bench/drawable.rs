@@ -117,6 +117,7 @@ impl Contestant {
         Ok(match self.path {
             Path::Tessellation => Box::new(surface(Evaluation::Tessellation)?),
             Path::Compute => Box::new(surface(Evaluation::Compute)?),
+            Path::Instanced => Box::new(surface(Evaluation::Instanced)?),
             Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
             Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
         })

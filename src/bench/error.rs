@@ -41,7 +41,7 @@ impl BenchError {
         use GpuError as Gpu;
         let Self::Renderer(error) = self else { return false };
         match error {
-            Error::Table(TableError::Undefined(_)) | Error::TableTooLarge { .. } | Error::NotByCompute { .. } => true,
+            Error::Table(TableError::Undefined(_)) | Error::TableTooLarge { .. } | Error::NotEvaluatedBy { .. } => true,
             Error::Gpu(error) => {
                 matches!(error, Gpu::Unsupported { .. } | Gpu::Allocation { .. } | Gpu::OutOfMemory { .. })
             }

@@ -35,16 +35,17 @@ pub use row::{Row, Series};
 pub use subject::{Subject, Subset};
 
 use crate::patch::Scheme;
-use crate::renderer::Construction;
+use crate::renderer::{Construction, Evaluation};
 
 /// A way to get the surface drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Path {
     /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
     Tessellation,
-    /// Evaluated by compute once a frame, as the renderer does with
-    /// [`Evaluation::Compute`](crate::renderer::Evaluation::Compute), and drawn as indexed triangles in each pass.
+    /// Evaluated by compute once a frame, and drawn as indexed triangles in each pass ([`Evaluation::Compute`]).
     Compute,
+    /// A lattice instanced over the patches ([`Evaluation::Instanced`]).
+    Instanced,
     /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
     Bilinear,
     /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
@@ -54,15 +55,26 @@ pub enum Path {
 
 impl Path {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Tessellation, Self::Compute, Self::Bilinear, Self::VertexBuffer];
+    pub const ALL: [Self; 5] = [Self::Tessellation, Self::Compute, Self::Instanced, Self::Bilinear, Self::VertexBuffer];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tessellation => "tessellation",
             Self::Compute => "compute",
+            Self::Instanced => "instanced",
             Self::Bilinear => "bilinear",
             Self::VertexBuffer => "vertex-buffer",
+        }
+    }
+
+    /// What evaluates; `None` for a floor.
+    pub fn evaluation(self) -> Option<Evaluation> {
+        match self {
+            Self::Tessellation => Some(Evaluation::Tessellation),
+            Self::Compute => Some(Evaluation::Compute),
+            Self::Instanced => Some(Evaluation::Instanced),
+            Self::Bilinear | Self::VertexBuffer => None,
         }
     }
 
@@ -90,7 +102,7 @@ impl Contestant {
             if path.is_floor() {
                 return vec![Self { path, patches: None }];
             }
-            let fits = |&&c: &&Construction| path != Path::Compute || c == Construction::Cached;
+            let fits = |c: &&Construction| path.evaluation().is_some_and(|e| e.constructions().contains(c));
             let pairs = schemes.iter().flat_map(|&s| constructions.iter().filter(fits).map(move |&c| (s, c)));
             pairs.map(|pair| Self { path, patches: Some(pair) }).collect()
         };

@@ -55,7 +55,7 @@ impl Surface {
         let points = |kind| u64::from(tables.patch_count(kind)) * 12 * scheme.points(kind) as u64;
         let control_point_bytes = match evaluation {
             Evaluation::Tessellation => PatchKind::ALL.map(points).iter().sum(),
-            Evaluation::Compute => 0,
+            Evaluation::Compute | Evaluation::Instanced => 0,
         };
         let (model, upload) = timed(|| {
             let model = renderer.add_tables(tables, &positions, &model_options)?;
@@ -81,7 +81,7 @@ fn build_tables(lane: Lane, options: &ModelOptions) -> Result<(ModelTables, f64)
 
 impl Drawable for Surface {
     fn set_factor(&mut self, factor: f32) -> Result<(), BenchError> {
-        if self.evaluation == Evaluation::Compute {
+        if self.evaluation.needs_segments() {
             self.renderer.set_segments(self.model, factor.ceil() as u32)?;
         }
         Ok(())

@@ -128,7 +128,7 @@ impl Renderer {
             }
         }
         use vk::PipelineStageFlags as Stage;
-        let readers = Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
+        let readers = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
         let written = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
             .dst_access_mask(vk::AccessFlags::SHADER_READ)];
@@ -137,7 +137,7 @@ impl Renderer {
         // SAFETY: as the caller promises.
         unsafe { device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, readers, none, &written, &[], &[]) };
         for id in models {
-            if let Some(model) = self.models.get_mut(id) {
+            if let Some(model) = self.models.get(id) {
                 // SAFETY: as above, after the control points.
                 unsafe { model.cmd_evaluate(&self.pipelines.lattice, cmd) };
             }

@@ -4,7 +4,7 @@ use super::factor::{Cull, Factor};
 use super::gpu_data::DrawConstants;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
-use super::{Error, Evaluation, Geometry, ModelId, Renderer, View};
+use super::{Error, Geometry, ModelId, Renderer, View};
 use crate::gpu::{Domain, tessellated_vertices};
 use ash::vk;
 
@@ -140,23 +140,27 @@ impl Renderer {
                 }
                 return Ok(());
             }
-            if model.evaluation == Evaluation::Compute {
-                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Lattice }, bound);
-                let push = |group: usize| {
-                    constants.colour = item.colors[model.stages[group].kind as usize];
-                    self.push(cmd, &constants);
-                };
-                return self.cmd_draw_lattice(cmd, model, item.factor, push);
+            let lattice = match model.evaluation.needs_segments() {
+                true => Some(model.drawn_lattice(item.factor)?),
+                false => None,
+            };
+            if let Some(lattice) = lattice {
+                constants.set_factor(lattice.segments as f32);
+                lattice.cmd_bind(device, cmd);
             }
-            for (&stages, group) in model.stages.iter().zip(model.tables.plan().groups()) {
-                let (kind, spacing) = (stages.kind, stages.spacing);
-                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Patches(stages) }, bound);
-                let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
-                let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
-                let points = stages.input_points();
-                constants.colour = item.colors[kind as usize];
+            for (number, (&stages, group)) in model.stages.iter().zip(model.tables.plan().groups()).enumerate() {
+                self.bind(cmd, PipelineKey { style: item.style, geometry: stages.geometry() }, bound);
+                constants.colour = item.colors[stages.kind as usize];
                 constants.first_corner = group.first_corner as u32;
                 constants.first_patch = group.patches.start as u32;
+                if let Some(lattice) = lattice {
+                    self.push(cmd, &constants);
+                    lattice.cmd_draw(device, cmd, number);
+                    continue;
+                }
+                let domain = if stages.kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
+                let vertices = tessellated_vertices(domain, stages.spacing, most, properties.max_tessellation_level);
+                let points = stages.input_points();
                 for draw in properties.patch_batch.draws(group.patches.len() as u32, points, vertices) {
                     if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
                         constants.patches_per_instance = draw.patches_per_instance;

@@ -15,6 +15,7 @@
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
 //! | compute, cached | vertices and weights of the patches, positions | control points, if the vertices moved |
 //! | compute, evaluation | control points | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
+//! | VS, instanced | control points | position, normal, texture coordinate of models that are [`Evaluation::Instanced`], which have only FS besides |
 //! | VS, two-stage | patch corners, rings and their weights, positions | limit point and tangent frame, for each patch corner |
 //! | VS, stencil and cached | nothing | the number of the patch, for each patch |
 //! | TCS, two-stage | the frames of its corners, their rings, positions | control points, factors |
@@ -54,10 +55,11 @@ pub use tables::{Edges, ModelTables, TableBytes};
 pub use view::{MeasuredFrom, View};
 
 pub(crate) use pipelines::Capture;
+#[cfg(feature = "headless")]
+pub(crate) use pipelines::STAGES;
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
-    pipelines::STAGES,
     stages::spaced,
 };
 
@@ -87,7 +89,7 @@ pub struct MemoryUsage {
     pub positions: u64,
     /// Control points that the cached construction keeps, on the device.
     pub control_points: u64,
-    /// Vertices that were evaluated by compute, and their indices, on the device.
+    /// Vertices that were evaluated by compute, and indices of lattices, on the device.
     pub vertices: u64,
     /// Edges and faces of control meshes on the device, if a style draws them.
     pub control_meshes: u64,
@@ -227,7 +229,7 @@ impl Renderer {
         let map = self.displacements.get(options.displacement)?;
         let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
         let model = Model::new(from, id, &options, tables, positions, map)?;
-        self.pipelines.make(&model.stages, model.evaluation)?;
+        self.pipelines.make(&model.stages)?;
         self.next_id += 1;
         self.models.insert(id, model);
         Ok(id)

@@ -34,7 +34,7 @@ pub(super) struct Model {
     /// What the cached construction keeps.
     control_points: Option<Buffer>,
     pub evaluation: Evaluation,
-    /// What evaluation by compute makes, once it is known how finely.
+    /// What is drawn instead of patches, once it is known how finely.
     pub lattice: Option<Lattice>,
     /// Whether control points and vertices are out of date.
     stale: bool,
@@ -155,10 +155,12 @@ impl Model {
         buffers.push(corner_factors.as_ref().map_or(positions.descriptor(), Streamed::descriptor));
         buffers.push(control_points.as_ref().map_or(positions.descriptor(), Buffer::descriptor));
         write_set(context, set, &buffers, map);
-        let ModelOptions { construction, spacing, .. } = *model_options;
+        let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride) = (tables.sharing(), tables.cached_stride());
-        let stages =
-            |g: &PatchGroup| PatchStages { scheme: g.scheme, kind: g.kind, construction, spacing, sharing, stride };
+        let stages = |group: &PatchGroup| {
+            let PatchGroup { scheme, kind, .. } = *group;
+            PatchStages { scheme, kind, construction, evaluation, spacing, sharing, stride }
+        };
         Ok(Self {
             id,
             stages: tables.plan.groups().iter().map(stages).collect(),
@@ -170,7 +172,7 @@ impl Model {
             corner_factors,
             largest_edge_factor: 1.0,
             control_points,
-            evaluation: model_options.evaluation,
+            evaluation,
             lattice: None,
             stale: false,
             control,
@@ -242,8 +244,8 @@ impl Model {
     ///
     /// # Safety
     /// As [`Lattice::cmd_evaluate`].
-    pub(super) unsafe fn cmd_evaluate(&mut self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
-        if let Some(lattice) = &mut self.lattice {
+    pub(super) unsafe fn cmd_evaluate(&self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
+        if let Some(lattice) = &self.lattice {
             // SAFETY: as the caller promises.
             unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set, &self.stages, &self.tables.plan) };
         }

@@ -229,18 +229,49 @@ impl Construction {
 }
 
 /// What evaluates the patches.
+///
+/// All but the tessellation stages evaluate on a lattice with the same number of segments along every edge, from 1 to 1024:
+/// they are for [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), and so far without displacement and shared
+/// normals. Nothing is culled. Along edges they have the vertices of the tessellation stages to the bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Evaluation {
     /// The tessellation stages, in each draw anew.
     #[default]
     Tessellation,
-    /// A compute shader, once a frame in which the vertices or the segments changed: on a lattice with as many segments along
-    /// every edge as [`Renderer::set_segments`](super::Renderer::set_segments) says. Draws are of indexed triangles; nothing is
-    /// culled. Takes memory for the vertices, and pays where a model is drawn in several passes or stands still.
-    ///
-    /// For [`Construction::Cached`], [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), and so far without
-    /// displacement and shared normals.
+    /// A compute shader, once a frame in which the vertices or the segments changed
+    /// ([`Renderer::set_segments`](super::Renderer::set_segments)). Draws are of indexed triangles. Takes memory for the vertices,
+    /// and pays where a model is drawn in several passes or stands still.
     Compute,
+    /// The vertex shader, in each draw anew: one lattice of indexed triangles is instanced over the patches (the Direct3D 10
+    /// path of Loop et al. 2009). Its segments are those of [`Renderer::set_segments`](super::Renderer::set_segments).
+    Instanced,
+}
+
+impl Evaluation {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Tessellation, Self::Compute, Self::Instanced];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tessellation => "tessellation",
+            Self::Compute => "compute",
+            Self::Instanced => "instanced",
+        }
+    }
+
+    /// The constructions that it goes with, the usual one first.
+    pub fn constructions(self) -> &'static [Construction] {
+        match self {
+            Self::Tessellation => &Construction::ALL,
+            Self::Compute | Self::Instanced => &[Construction::Cached],
+        }
+    }
+
+    /// Whether [`Renderer::set_segments`](super::Renderer::set_segments) has to say how many segments edges have.
+    pub fn needs_segments(self) -> bool {
+        matches!(self, Self::Compute | Self::Instanced)
+    }
 }
 
 /// How one model is drawn.

@@ -39,8 +39,8 @@ pub(super) struct PipelineKey {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum GeometryKey {
     Patches(PatchStages),
-    /// Patches of all kinds that were evaluated by compute.
-    Lattice,
+    /// Patches of all kinds that were evaluated before.
+    Evaluated,
     Control,
 }
 
@@ -122,11 +122,13 @@ impl Pipelines {
     }
 
     /// Makes what these patches need in every style.
-    pub(super) fn make(&mut self, patches: &[PatchStages], evaluation: Evaluation) -> Result<(), GpuError> {
-        for stages in patches.iter().filter(|stages| stages.construction == Construction::Cached) {
-            self.cached.make(*stages)?;
-            if evaluation == Evaluation::Compute {
-                self.lattice.make(*stages)?;
+    pub(super) fn make(&mut self, patches: &[PatchStages]) -> Result<(), GpuError> {
+        for &stages in patches {
+            if stages.construction == Construction::Cached {
+                self.cached.make(stages)?;
+            }
+            if stages.evaluation == Evaluation::Compute {
+                self.lattice.make(stages)?;
             }
         }
         for style in 0..self.styles.len() {
@@ -134,12 +136,8 @@ impl Pipelines {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Control })?;
                 continue;
             }
-            if evaluation == Evaluation::Compute {
-                self.make_one(PipelineKey { style, geometry: GeometryKey::Lattice })?;
-                continue;
-            }
-            for &stages in patches {
-                self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages) })?;
+            for stages in patches {
+                self.make_one(PipelineKey { style, geometry: stages.geometry() })?;
             }
         }
         Ok(())
@@ -160,7 +158,7 @@ impl Pipelines {
                 ];
                 self.create(&name, key, &stages, 0)?
             }
-            GeometryKey::Lattice => {
+            GeometryKey::Evaluated => {
                 let name = format!("subdiv style {} of evaluated vertices", key.style);
                 let vertex = match self.texcoords {
                     true => shaders::EVALUATE_LATTICE_VERT_TEXCOORD,
@@ -171,31 +169,46 @@ impl Pipelines {
             }
             GeometryKey::Patches(patch) => {
                 let name = format!("subdiv style {} {patch:?}", key.style);
-                let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
-                let vertex = match patch.construction {
-                    Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
-                    Construction::Stencil | Construction::Cached => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
-                };
-                let control = self.find(&patch.control(self.capture, self.texcoords))?;
-                let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
-                let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
-                let evaluation = spaced(evaluation, spacing);
-                let most = self.context.properties().max_tessellation_level as f32;
-                let limits = [Specialization::float(2, most), Specialization::uint(3, patch.stride)];
-                let mut stages = vec![
-                    vertex,
-                    Shader::tess_control(control).specialized(&limits),
-                    Shader::tess_evaluation(&evaluation),
-                ];
-                if self.capture == Capture::Triangles {
-                    stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
+                let fragment = fragment(style, patch.sharing, &encode);
+                match patch.evaluation {
+                    Evaluation::Tessellation => self.create_tessellating(&name, key, patch, fragment)?,
+                    Evaluation::Compute | Evaluation::Instanced => {
+                        let stride = [Specialization::uint(3, patch.stride)];
+                        let vertex = self.find(&patch.evaluation(self.capture, self.texcoords))?;
+                        self.create(&name, key, &[Shader::vertex(vertex).specialized(&stride), fragment], 0)?
+                    }
                 }
-                stages.push(fragment(style, patch.sharing, &encode));
-                self.create(&name, key, &stages, patch.input_points())?
             }
         };
         self.made.insert(key, pipeline);
         Ok(())
+    }
+
+    fn create_tessellating(
+        &self,
+        name: &str,
+        key: PipelineKey,
+        patch: PatchStages,
+        fragment: Shader,
+    ) -> Result<Owned<vk::Pipeline>, GpuError> {
+        let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
+        let vertex = match patch.construction {
+            Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
+            Construction::Stencil | Construction::Cached => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
+        };
+        let control = self.find(&patch.control(self.capture, self.texcoords))?;
+        let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
+        let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
+        let evaluation = spaced(evaluation, spacing);
+        let most = self.context.properties().max_tessellation_level as f32;
+        let limits = [Specialization::float(2, most), Specialization::uint(3, patch.stride)];
+        let mut stages =
+            vec![vertex, Shader::tess_control(control).specialized(&limits), Shader::tess_evaluation(&evaluation)];
+        if self.capture == Capture::Triangles {
+            stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
+        }
+        stages.push(fragment);
+        self.create(name, key, &stages, patch.input_points())
     }
 
     /// A shader by its name: the caller's own, or ours.
@@ -212,7 +225,7 @@ impl Pipelines {
         patch_control_points: u32,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
         let style = &self.styles[key.style];
-        let lattice = key.geometry == GeometryKey::Lattice;
+        let evaluated = key.geometry == GeometryKey::Evaluated;
         let target = match &self.target.pass {
             Pass::Dynamic { color, depth, stencil, view_mask } => {
                 RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: *view_mask }
@@ -233,8 +246,8 @@ impl Pipelines {
         let attributes: Vec<_> = attributes.filter(|attribute| attribute.offset < stride).collect();
         let desc = GraphicsPipelineDesc {
             patch_control_points,
-            vertex_bindings: if lattice { &bindings } else { &[] },
-            vertex_attributes: if lattice { &attributes } else { &[] },
+            vertex_bindings: if evaluated { &bindings } else { &[] },
+            vertex_attributes: if evaluated { &attributes } else { &[] },
             topology: if lines { vk::PrimitiveTopology::LINE_LIST } else { vk::PrimitiveTopology::TRIANGLE_LIST },
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,

@@ -1,16 +1,18 @@
 //! Which shaders a patch is drawn with: found by name, so that a scheme adds files and its arm in [`files`].
 
-use super::{Capture, Construction};
+use super::pipelines::GeometryKey;
+use super::{Capture, Construction, Evaluation};
 use crate::gpu::Spacing;
 use crate::patch::Scheme;
 use crate::topology::PatchKind;
 
-/// What tells the tessellation stages of a patch apart.
+/// What tells the shaders of a patch apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct PatchStages {
     pub scheme: Scheme,
     pub kind: PatchKind,
     pub construction: Construction,
+    pub evaluation: Evaluation,
     pub spacing: Spacing,
     pub sharing: Sharing,
     /// Control points that a corner has room for where they are cached, else 0.
@@ -39,7 +41,8 @@ impl Sharing {
     }
 }
 
-/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` (and `_.comp`) of a kind of patch.
+/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch; the latter is also its name in
+/// `glsl/lib/kinds.glsl`.
 fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
     match (kind, scheme) {
         (PatchKind::Regular, _) => ["REGULAR", "BICUBIC"],
@@ -58,6 +61,14 @@ impl PatchStages {
         match self.construction {
             Construction::TwoStage => self.kind.corners() as u32,
             Construction::Stencil | Construction::Cached => 1,
+        }
+    }
+
+    /// What tells their pipelines apart in one style.
+    pub(super) fn geometry(self) -> GeometryKey {
+        match self.evaluation {
+            Evaluation::Compute => GeometryKey::Evaluated,
+            Evaluation::Tessellation | Evaluation::Instanced => GeometryKey::Patches(self),
         }
     }
 
@@ -85,16 +96,14 @@ impl PatchStages {
         name
     }
 
-    /// The name of the compute shader that evaluates a lattice.
-    pub(super) fn lattice(self, texcoords: bool) -> String {
-        let [_, file] = files(self.scheme, self.kind);
-        format!("EVALUATE_{file}_COMP{}", if texcoords { "_TEXCOORD" } else { "" })
-    }
-
-    /// The name of the evaluation shader.
+    /// The name of the shader that evaluates.
     pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> String {
         let [_, file] = files(self.scheme, self.kind);
-        let mut name = format!("EVALUATE_{file}_TESE");
+        let mut name = match self.evaluation {
+            Evaluation::Tessellation => format!("EVALUATE_{file}_TESE"),
+            Evaluation::Compute => format!("EVALUATE_LATTICE_COMP_{file}"),
+            Evaluation::Instanced => format!("EVALUATE_INSTANCED_VERT_{file}"),
+        };
         name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Grid => "_CAPTURE_GRID",
@@ -144,19 +153,26 @@ mod tests {
             {
                 continue;
             }
-            for construction in Construction::ALL {
-                for sharing in [Sharing::Positions, Sharing::Normals, Sharing::Displacement] {
-                    if sharing != Sharing::Positions && !scheme.is_watertight() {
-                        continue;
-                    }
-                    let stages =
-                        PatchStages { scheme, kind, construction, spacing: Spacing::Equal, sharing, stride: 8 };
-                    for capture in modes {
-                        for texcoords in [false, true] {
-                            for name in [stages.control(capture, texcoords), stages.evaluation(capture, texcoords)] {
-                                assert!(shaders::find(&name).is_some(), "{name}");
-                            }
-                        }
+            let ways = Evaluation::ALL.into_iter().flat_map(|e| e.constructions().iter().map(move |&c| (e, c)));
+            for ((evaluation, construction), sharing) in
+                ways.flat_map(|way| [Sharing::Positions, Sharing::Normals, Sharing::Displacement].map(|s| (way, s)))
+            {
+                let tessellates = evaluation == Evaluation::Tessellation;
+                if sharing != Sharing::Positions && !(scheme.is_watertight() && tessellates) {
+                    continue;
+                }
+                let spacing = Spacing::Equal;
+                let stages = PatchStages { scheme, kind, construction, evaluation, spacing, sharing, stride: 8 };
+                for (capture, texcoords) in modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]) {
+                    let control = tessellates.then(|| stages.control(capture, texcoords));
+                    let watched = match evaluation {
+                        Evaluation::Tessellation => true,
+                        Evaluation::Compute => capture == Capture::Off,
+                        Evaluation::Instanced => matches!(capture, Capture::Off | Capture::Vertices),
+                    };
+                    let evaluation = watched.then(|| stages.evaluation(capture, texcoords));
+                    for name in control.into_iter().chain(evaluation) {
+                        assert!(shaders::find(&name).is_some(), "{name}");
                     }
                 }
             }

@@ -107,7 +107,8 @@ x base:       the median of ratios to the first row, frame by frame, with the in
 construction: control points alone: factor 1 less the bilinear floor at factor 1, without rasterization.
 set-up:       tables and upload, without pipelines.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
-`compute` evaluates once a frame into a vertex buffer that all passes draw; it goes with the construction `cached`.
+`compute` evaluates once a frame into a vertex buffer that all passes draw, `instanced` draws one lattice as an instance for
+each patch, whose vertex shader evaluates; both go with the construction `cached`.
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
 
 JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
@@ -219,7 +220,7 @@ impl BenchArgs {
         drop(progress);
         let contestants = self.contestants();
         if contestants.is_empty() {
-            let message = "no path of --paths goes with --constructions: compute goes with cached only";
+            let message = "no path of --paths goes with --constructions: compute and instanced go with cached";
             return Err(CliError::Usage(message.into()));
         }
         let options = BenchOptions {
