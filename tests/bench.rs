@@ -89,7 +89,13 @@ fn a_race_counts_what_was_drawn() {
         let tessellated = matches!(contestant.path, Path::Tessellation | Path::Bilinear);
         let evaluations = if tessellated { 36 * (n + 1) * (n + 1) } else { 0 };
         assert_eq!(row.evaluations, Some(evaluations));
-        assert_eq!(row.traffic.vertices, 40 * 36 * (n + 1) * (n + 1));
+        let vertices = match contestant.path {
+            Path::Geometry => 36 * 2 * n * n,
+            // And a point for each corner, once.
+            Path::GeometryTwoPass => 36 * (n + 1) * (n + 1) + 24,
+            _ => 36 * (n + 1) * (n + 1),
+        };
+        assert_eq!(row.traffic.vertices, 40 * vertices);
         let points = contestant.patches.map(|(scheme, _)| scheme.owned(ash_subdiv::topology::PatchKind::IrregularQuad));
         let points = if tessellated { points.unwrap_or(1) as u64 } else { 0 };
         let vertices = row.bytes.iter().find(|(name, _)| *name == "vertices").map(|(_, bytes)| *bytes);
@@ -97,7 +103,7 @@ fn a_race_counts_what_was_drawn() {
         let kept = match contestant.path {
             // Six patches once, with their indices.
             Path::Compute => Some(6 * (24 * (n + 1) * (n + 1) + indices)),
-            Path::Instanced => Some(indices),
+            Path::Instanced | Path::GeometryTwoPass => Some(indices),
             _ => None,
         };
         assert!(kept.is_none() || vertices == kept, "{vertices:?}");

@@ -3,12 +3,15 @@
 
 mod common;
 
+use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError};
 use ash_subdiv::renderer::{Evaluation, Factor};
 use ash_subdiv::topology::Topology;
 use ash_subdiv::{
-    Construction, DrawItem, Error, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style, View, shape,
+    Construction, DeviceContext, DrawItem, Error, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style,
+    Target, View, requirements, shape,
 };
 use common::stage::{Stage, read_vertices};
+use std::sync::Arc;
 
 fn compute(scheme: Scheme) -> ModelOptions {
     ModelOptions {
@@ -75,14 +78,14 @@ fn vertices_follow_positions_and_segments() {
     stage.finish();
 }
 
-#[test]
-fn several_passes_evaluate_once() {
+/// Invocations of compute shader and geometry shader in frames of three passes, in which the vertices move or not.
+fn counts(options: &ModelOptions, moves: [bool; 3]) -> [[u64; 2]; 3] {
     let stage = Stage::new();
     let mut renderer = stage.renderer(&Options::default());
     let mesh = shape("cube").expect("built in");
-    let model = renderer.add_model(&mesh, &compute(Scheme::Gregory)).expect("a model");
+    let model = renderer.add_model(&mesh, options).expect("a model");
     renderer.set_segments(model, 5).unwrap();
-    let mut frame = |moves: bool| {
+    let counts = moves.map(|moves| {
         if moves {
             renderer.set_positions(model, 0, &mesh.positions_f32()).unwrap();
         }
@@ -100,12 +103,25 @@ fn several_passes_evaluate_once() {
         let counted = counted.expect("counts");
         assert_eq!((counted.evaluation_invocations, counted.control_patches), (0, 0));
         assert_eq!(counted.clipping_invocations, 3 * 6 * 2 * 25);
-        counted.compute_invocations
-    };
-    // 24 corners in a group of 64, and a group of 32 for each patch.
-    assert_eq!([true, false, true].map(&mut frame), [64 + 6 * 32, 0, 64 + 6 * 32]);
+        [counted.compute_invocations, counted.geometry_invocations]
+    });
     drop(renderer);
     stage.finish();
+    counts
+}
+
+#[test]
+fn several_passes_evaluate_once() {
+    let moves = [true, false, true];
+    // 24 corners in a group of 64, and a group of 32 for each patch.
+    let points = 64;
+    let vertices = 6 * 32;
+    let options = compute(Scheme::Gregory);
+    assert_eq!(counts(&options, moves), [[points + vertices, 0], [0, 0], [points + vertices, 0]]);
+    let instanced = ModelOptions { evaluation: Evaluation::Instanced, ..options.clone() };
+    assert_eq!(counts(&instanced, moves), [[points, 0], [0, 0], [points, 0]]);
+    let two_pass = ModelOptions { evaluation: Evaluation::GeometryTwoPass, ..options };
+    assert_eq!(counts(&two_pass, moves), [[0, 24], [0, 0], [0, 24]]);
 }
 
 #[test]
@@ -120,7 +136,7 @@ fn wrong_use_is_told() {
         (ModelOptions { spacing: Spacing::FractionalOdd, ..compute(Scheme::Gregory) }, "fractional spacing"),
     ];
     for (options, what) in wrong {
-        for evaluation in [Evaluation::Compute, Evaluation::Instanced] {
+        for evaluation in Evaluation::ALL.into_iter().filter(|&evaluation| evaluation != Evaluation::Tessellation) {
             let error = text(renderer.add_model(&mesh, &ModelOptions { evaluation, ..options.clone() }).unwrap_err());
             let told = format!(
                 "model 0: Evaluation::{evaluation:?} does not go with {what}: do without, or choose Evaluation::Tessellation"
@@ -143,15 +159,38 @@ fn wrong_use_is_told() {
         text(renderer.evaluated_vertices(other).unwrap_err()),
         "model 1: no vertices of it are kept: set ModelOptions::evaluation to Compute"
     );
+    let geometry = ModelOptions { evaluation: Evaluation::Geometry, ..compute(Scheme::Gregory) };
+    let geometry = renderer.add_model(&mesh, &geometry).unwrap();
+    assert_eq!(
+        text(renderer.set_segments(geometry, 4).unwrap_err()),
+        "model 2: Evaluation::Geometry takes its segments from DrawItem::factor: set_segments is for others"
+    );
     for segments in [0, 1025] {
         let error = text(renderer.set_segments(model, segments).unwrap_err());
         assert_eq!(error, format!("model 0: {segments} segments: from 1 to 1024 are possible along an edge"));
     }
     assert_eq!(renderer.evaluated_vertices(model).unwrap(), None);
     stage.prepare(&mut renderer, 0);
-    let draw = |renderer: &mut Renderer, factor: Factor| {
+    let draw_model = |renderer: &mut Renderer, model, factor: Factor| {
         stage.draw(renderer, 0, &[DrawItem::new(model, factor)]).map_err(text)
     };
+    assert_eq!(
+        draw_model(&mut renderer, geometry, Factor::Uniform(1024.5)),
+        Err("model 2: 1025 segments: from 1 to 1024 are possible along an edge".into())
+    );
+    assert_eq!(
+        draw_model(&mut renderer, geometry, Factor::Edges(2.0)),
+        Err("model 2: its edges have no factors: call set_edge_factors first".into())
+    );
+    let sized = View::framing(mesh.bounds(), [0.0, 0.0, 1.0], 1.0).sized(8, 8);
+    let by_pixels = DrawItem::new(geometry, Factor::Pixels(2.0));
+    // SAFETY: nothing is submitted, for it fails.
+    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_draw(cmd, 0, &sized, &[by_pixels]) });
+    assert_eq!(
+        text(error.unwrap_err()),
+        "model 2: Pixels(2.0): Evaluation::Geometry has one factor for all edges: draw with a uniform one"
+    );
+    let draw = |renderer: &mut Renderer, factor: Factor| draw_model(renderer, model, factor);
     let told = |factor: &str, n: u32| {
         Err(format!(
             "model 0: {factor}: its edges have {n} segments: call set_segments before cmd_prepare, and draw with that \
@@ -171,5 +210,54 @@ fn wrong_use_is_told() {
     assert!(draw(&mut renderer, Factor::Uniform(3.5)).is_ok());
     assert_eq!(draw(&mut renderer, Factor::Uniform(5.0)), told("Uniform(5.0)", 4));
     drop(renderer);
+    stage.finish();
+}
+
+/// Takes memory where another context does.
+struct Borrowed(Arc<DeviceContext>);
+
+// SAFETY: as the other context's.
+unsafe impl Allocator for Borrowed {
+    fn allocate(&self, request: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError> {
+        self.0.allocator().allocate(request)
+    }
+
+    unsafe fn free(&self, allocation: Allocation) {
+        // SAFETY: as the caller promises.
+        unsafe { self.0.allocator().free(allocation) }
+    }
+}
+
+#[test]
+fn evaluations_that_need_features_say_so() {
+    let stage = Stage::new();
+    let desc = stage.target.desc();
+    let target = Target::dynamic(desc.color, desc.depth, desc.samples);
+    let options = Options { evaluations: vec![Evaluation::GeometryTwoPass, Evaluation::Compute], ..Options::default() };
+    let needs = requirements(&target, &options).features;
+    assert!(needs.geometry && needs.vertex_stores);
+    let without = requirements(&target, &Options::default()).context_options();
+    let (instance, device) = (stage.headless.instance(), stage.headless.device());
+    let allocator = Arc::new(Borrowed(stage.headless.context().clone()));
+    // SAFETY: the device is of the instance, has more than these features, and outlives the context; nothing is recorded.
+    let context = unsafe { DeviceContext::new(instance, stage.headless.physical_device(), device, allocator, without) };
+    // SAFETY: nothing is recorded.
+    let error = unsafe { Renderer::new(&context, &target, &options) }.err().expect("an error").to_string();
+    assert!(error.contains("geometryShader (the device has it") && error.contains("vertexPipelineStores"), "{error}");
+    // SAFETY: nothing is recorded.
+    let mut renderer = unsafe { Renderer::new(&context, &target, &Options::default()) }.expect("a renderer");
+    for (evaluation, missing) in [
+        (Evaluation::Geometry, "geometryShader"),
+        (Evaluation::GeometryTwoPass, "vertexPipelineStoresAndAtomics and geometryShader"),
+    ] {
+        let options = ModelOptions { evaluation, construction: Construction::Cached, ..ModelOptions::default() };
+        let error = renderer.add_model(&shape("cube").expect("built in"), &options).unwrap_err().to_string();
+        let told = format!(
+            "model 0: Evaluation::{evaluation:?} needs {missing}: name it in Options::evaluations and make the device with \
+             what requirements lists then, or choose another evaluation"
+        );
+        assert_eq!(error, told);
+    }
+    drop((renderer, context));
     stage.finish();
 }

@@ -4,14 +4,19 @@
 mod common;
 
 use ash_subdiv::capture::{Captured, CapturedVertex};
-use ash_subdiv::renderer::{Evaluation, ModelTables};
+use ash_subdiv::renderer::{Evaluation, Fragment, ModelTables};
 use ash_subdiv::table::{Patch, grid_parameters};
 use ash_subdiv::topology::{PatchKind, Topology};
-use ash_subdiv::{ControlMesh, Fallback, ModelOptions, Options, Scheme, shape};
+use ash_subdiv::{ControlMesh, DrawItem, Fallback, ModelOptions, Options, Scheme, Style, shape};
 use common::edges::{bits, edge_parameters, shared_edges};
 use common::stage::{Stage, read_vertices};
 use glam::Vec3;
 use std::collections::HashMap;
+
+mod test_shaders {
+    #![allow(dead_code, reason = "each test takes those that it needs")]
+    include!(concat!(env!("OUT_DIR"), "/test_shaders.rs"));
+}
 
 type Vertex = [f32; 6];
 
@@ -182,6 +187,77 @@ fn patches_meet_to_the_bit() {
                 assert_eq!(a, b, "{name} {:?} {segments} {:?}", options.evaluation, edge.sides);
             }
         }
+    }
+    stage.finish();
+}
+
+/// Whether pictures are the same within rounding, and show something.
+fn assert_same(a: &[u8], b: &[u8], what: &str) {
+    let differ = a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    assert!(a.iter().any(|&x| x > 0) && differ == 0, "{what}: {differ}");
+}
+
+#[test]
+fn pictures_follow_positions_and_segments() {
+    let stage = Stage::new();
+    let mesh = shape("creature").expect("built in");
+    // Texture coordinates as colours.
+    let fragment = Fragment::Spirv(test_shaders::TEXCOORD_FRAG.to_vec());
+    let styles = vec![Style { fragment, ..Style::default() }, Style::default()];
+    let mut renderer = stage.renderer(&Options { texcoords: true, styles, ..Options::default() });
+    let tessellated = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
+    let models: Vec<_> = ways(Scheme::Gregory)
+        .map(|options| (renderer.add_model(&mesh, &options).expect("a model"), options.evaluation))
+        .collect();
+    let small: Vec<_> = mesh.positions_f32().iter().map(|p| p.map(|x| 0.5 * x)).collect();
+    for (frame, n, moves) in [(0, 4, false), (1, 4, true), (0, 9, false), (1, 9, true), (0, 1, true), (1, 3, false)] {
+        for &(model, evaluation) in &models {
+            if evaluation.needs_segments() {
+                renderer.set_segments(model, n).unwrap();
+            }
+        }
+        if moves {
+            let positions = if frame == 1 { &small } else { &mesh.positions_f32() };
+            for model in models.iter().map(|(model, _)| *model).chain([tessellated]) {
+                renderer.set_positions(model, frame, positions).unwrap();
+            }
+        }
+        stage.prepare(&mut renderer, frame);
+        for style in 0..2 {
+            let mut picture = |model| {
+                let item = DrawItem { style, ..DrawItem::new(model, n as f32) };
+                stage.draw(&mut renderer, frame, &[item]).expect("a picture")
+            };
+            let expected = picture(tessellated);
+            for &(model, evaluation) in &models {
+                assert_same(&picture(model), &expected, &format!("{evaluation:?}: {n} in frame {frame}"));
+            }
+        }
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+/// More than the tessellator has, and in one draw more than lavapipe takes in one batch.
+#[test]
+fn lattices_may_be_fine() {
+    let stage = Stage::new();
+    for (name, segments) in [("cube", 150), ("tetrahedron", 301), ("single-quad", 1024)] {
+        let mesh = shape(name).expect("built in");
+        let mut renderer = stage.renderer(&Options::default());
+        let mut expected = None;
+        for options in ways(Scheme::Gregory) {
+            let model = renderer.add_model(&mesh, &options).expect("a model");
+            if options.evaluation.needs_segments() {
+                renderer.set_segments(model, segments).unwrap();
+            }
+            stage.prepare(&mut renderer, 0);
+            let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, segments as f32)]).expect("a picture");
+            let what = format!("{name} {:?} {:?}", options.evaluation, options.construction);
+            assert_same(&picture, expected.get_or_insert(picture.clone()), &what);
+            renderer.remove_model(model).unwrap();
+        }
+        drop(renderer);
     }
     stage.finish();
 }

@@ -118,6 +118,8 @@ impl Contestant {
             Path::Tessellation => Box::new(surface(Evaluation::Tessellation)?),
             Path::Compute => Box::new(surface(Evaluation::Compute)?),
             Path::Instanced => Box::new(surface(Evaluation::Instanced)?),
+            Path::Geometry => Box::new(surface(Evaluation::Geometry)?),
+            Path::GeometryTwoPass => Box::new(surface(Evaluation::GeometryTwoPass)?),
             Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
             Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
         })

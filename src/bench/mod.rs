@@ -46,6 +46,10 @@ pub enum Path {
     Compute,
     /// A lattice instanced over the patches ([`Evaluation::Instanced`]).
     Instanced,
+    /// Strips from the geometry shader ([`Evaluation::Geometry`]).
+    Geometry,
+    /// Control points from the geometry shader, then instanced ([`Evaluation::GeometryTwoPass`]).
+    GeometryTwoPass,
     /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
     Bilinear,
     /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
@@ -55,16 +59,22 @@ pub enum Path {
 
 impl Path {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Tessellation, Self::Compute, Self::Instanced, Self::Bilinear, Self::VertexBuffer];
+    pub const ALL: [Self; 7] = [
+        Self::Tessellation,
+        Self::Compute,
+        Self::Instanced,
+        Self::Geometry,
+        Self::GeometryTwoPass,
+        Self::Bilinear,
+        Self::VertexBuffer,
+    ];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Tessellation => "tessellation",
-            Self::Compute => "compute",
-            Self::Instanced => "instanced",
             Self::Bilinear => "bilinear",
             Self::VertexBuffer => "vertex-buffer",
+            _ => self.evaluation().map_or("", Evaluation::name),
         }
     }
 
@@ -74,6 +84,8 @@ impl Path {
             Self::Tessellation => Some(Evaluation::Tessellation),
             Self::Compute => Some(Evaluation::Compute),
             Self::Instanced => Some(Evaluation::Instanced),
+            Self::Geometry => Some(Evaluation::Geometry),
+            Self::GeometryTwoPass => Some(Evaluation::GeometryTwoPass),
             Self::Bilinear | Self::VertexBuffer => None,
         }
     }

@@ -244,7 +244,9 @@ impl<'h> Bench<'h> {
         };
         let count = |of: fn(&Statistics) -> u64| counted.as_ref().map(of);
         let evaluations = count(|s| s.evaluation_invocations);
-        let vertices = count(|s| s.evaluation_invocations.max(s.vertex_invocations)).unwrap_or(0);
+        // Strips have at least a vertex for each triangle.
+        let vertices = |s: &Statistics| s.evaluation_invocations.max(s.vertex_invocations).max(s.geometry_primitives);
+        let vertices = count(vertices).unwrap_or(0);
         let times = u64::from(self.options.instances) * u64::from(self.options.passes);
         let bytes = drawable.bytes();
         let traffic = Traffic {

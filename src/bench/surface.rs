@@ -55,7 +55,7 @@ impl Surface {
         let points = |kind| u64::from(tables.patch_count(kind)) * 12 * scheme.points(kind) as u64;
         let control_point_bytes = match evaluation {
             Evaluation::Tessellation => PatchKind::ALL.map(points).iter().sum(),
-            Evaluation::Compute | Evaluation::Instanced => 0,
+            _ => 0,
         };
         let (model, upload) = timed(|| {
             let model = renderer.add_tables(tables, &positions, &model_options)?;

@@ -50,6 +50,10 @@ pub enum Error {
     NotEvaluatedBy { id: ModelId, evaluation: Evaluation, what: &'static str },
     #[error("model {}: Evaluation::{evaluation:?} goes with Construction::{}, not with {construction:?}", id.0, constructions(*evaluation))]
     NotConstructedBy { id: ModelId, evaluation: Evaluation, construction: Construction },
+    #[error("model {}: Evaluation::{evaluation:?} needs {}: name it in Options::evaluations and make the device with what requirements lists then, or choose another evaluation", id.0, missing.join(" and "))]
+    EvaluationNeeds { id: ModelId, evaluation: Evaluation, missing: Vec<&'static str> },
+    #[error("model {}: {factor:?}: Evaluation::{evaluation:?} has one factor for all edges: draw with a uniform one", id.0)]
+    NotUniform { id: ModelId, evaluation: Evaluation, factor: Factor },
     #[error("model {}: Evaluation::{evaluation:?} takes its segments from DrawItem::factor: set_segments is for others", id.0)]
     NoSegments { id: ModelId, evaluation: Evaluation },
     #[error("model {}: no vertices of it are kept: set ModelOptions::evaluation to Compute", id.0)]

@@ -4,12 +4,21 @@ use super::lattice::{Lattice, MAX_SEGMENTS, vertex_bytes};
 use super::model::Model;
 use super::stages::Sharing;
 use super::{Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Renderer, Retired, RetiredObject};
-use crate::gpu::Spacing;
+use crate::gpu::{Features, Spacing};
 use ash::vk;
 
-/// Tells what a model has that its evaluation does not go with.
-pub(super) fn check_evaluation(id: ModelId, options: &ModelOptions, tables: &ModelTables) -> Result<(), Error> {
+/// Tells what a model has that its evaluation does not go with, or what the device lacks for it.
+pub(super) fn check_evaluation(
+    id: ModelId,
+    options: &ModelOptions,
+    tables: &ModelTables,
+    features: Features,
+) -> Result<(), Error> {
     let ModelOptions { evaluation, construction, .. } = *options;
+    let missing = features.missing(evaluation.features());
+    if !missing.is_empty() {
+        return Err(Error::EvaluationNeeds { id, evaluation, missing });
+    }
     if !evaluation.constructions().contains(&construction) {
         return Err(Error::NotConstructedBy { id, evaluation, construction });
     }
@@ -95,13 +104,39 @@ impl Renderer {
     }
 }
 
+/// What the surface of a model is drawn from.
+#[derive(Clone, Copy)]
+pub(super) enum Drawn<'m> {
+    /// Patches, for the tessellation stages.
+    Patches,
+    Lattice(&'m Lattice),
+    /// Tiles of patches, for the geometry shader.
+    Tiles {
+        segments: u32,
+    },
+}
+
 impl Model {
-    /// What a draw with this factor is drawn from, where the evaluation needs segments.
-    pub(super) fn drawn_lattice(&self, factor: Factor) -> Result<&Lattice, Error> {
-        let segments = self.lattice.as_ref().map_or(0, |lattice| lattice.segments);
-        let fits = |lattice: &&Lattice| matches!(factor, Factor::Uniform(f) if f.ceil() == lattice.segments as f32);
-        let lattice = self.lattice.as_ref().filter(fits);
-        let lattice = lattice.ok_or(Error::OtherSegments { id: self.id, factor, segments })?;
-        if lattice.needs_copies() { Err(Error::NotPrepared { id: self.id }) } else { Ok(lattice) }
+    /// What a draw with this factor is of.
+    pub(super) fn drawn(&self, factor: Factor) -> Result<Drawn<'_>, Error> {
+        let (id, evaluation) = (self.id, self.evaluation);
+        let asked = match factor {
+            Factor::Uniform(factor) => Some(factor.ceil() as u32),
+            _ => None,
+        };
+        if evaluation == Evaluation::Tessellation {
+            Ok(Drawn::Patches)
+        } else if evaluation.needs_segments() {
+            let segments = self.lattice.as_ref().map_or(0, |lattice| lattice.segments);
+            let lattice = self.lattice.as_ref().filter(|lattice| asked == Some(lattice.segments));
+            let lattice = lattice.ok_or(Error::OtherSegments { id, factor, segments })?;
+            if lattice.needs_copies() { Err(Error::NotPrepared { id }) } else { Ok(Drawn::Lattice(lattice)) }
+        } else {
+            let segments = asked.ok_or(Error::NotUniform { id, evaluation, factor })?;
+            if segments > MAX_SEGMENTS {
+                return Err(Error::BadSegments { id, given: segments, max: MAX_SEGMENTS });
+            }
+            Ok(Drawn::Tiles { segments })
+        }
     }
 }

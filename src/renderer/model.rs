@@ -1,6 +1,5 @@
 //! A model on the GPU.
 
-use super::cached::CachedPipelines;
 use super::evaluated::check_evaluation;
 use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::{MODEL_BUFFERS, Pipelines};
@@ -70,7 +69,7 @@ impl Model {
         control: &[[f32; 3]],
         map: DisplacementMap,
     ) -> Result<Self, Error> {
-        check_evaluation(id, model_options, &tables)?;
+        check_evaluation(id, model_options, &tables, context.features())?;
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
         let check = |table: &'static str, bytes: u64| {
@@ -251,14 +250,22 @@ impl Model {
         }
     }
 
-    /// Records the computation of the control points.
+    /// Records what makes the control points.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after the copies; `pipelines` have those of the model's kinds.
-    pub(super) unsafe fn cmd_compute(&mut self, pipelines: &CachedPipelines, cmd: vk::CommandBuffer) {
+    pub(super) unsafe fn cmd_construct(&mut self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
         self.stale = false;
+        let (set, stages, plan) = (self.set, &self.stages, &self.tables.plan);
         // SAFETY: as the caller promises.
-        unsafe { pipelines.cmd_compute(cmd, self.set, &self.stages, &self.tables.plan) };
+        unsafe {
+            match &pipelines.conversion {
+                Some(conversion) if self.evaluation == Evaluation::GeometryTwoPass => {
+                    conversion.cmd_convert(cmd, set, stages, plan);
+                }
+                _ => pipelines.cached.cmd_compute(cmd, set, stages, plan),
+            }
+        }
     }
 
     /// Records the copies that are due, and gives away the staging buffers to be kept until the frame is done.

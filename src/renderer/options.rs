@@ -1,8 +1,7 @@
 //! What the caller says once: where to draw, and how.
 
-use super::{DisplacementId, Error};
-use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, Spacing};
-use crate::patch::{Fallback, Scheme};
+use super::{Error, Evaluation};
+use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features};
 use ash::vk;
 
 /// What the renderer draws into.
@@ -176,6 +175,9 @@ pub struct Options {
     pub styles: Vec<Style>,
     /// Give texture coordinates to the fragment stage.
     pub texcoords: bool,
+    /// What models will be evaluated by, besides the tessellation stages: [`requirements`] lists what the device must have for
+    /// it.
+    pub evaluations: Vec<Evaluation>,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
     /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]): such
@@ -193,116 +195,12 @@ impl Default for Options {
             views_per_frame: 16,
             styles: vec![Style::default()],
             texcoords: false,
+            evaluations: Vec::new(),
             set_layouts: Vec::new(),
             shaders: Vec::new(),
             pipeline_cache: vk::PipelineCache::null(),
         }
     }
-}
-
-/// How the control points are made on the GPU. All give the same points but for rounding.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Construction {
-    /// The vertex shader turns each control vertex and its one-ring into limit point and tangents, the control shader
-    /// assembles the patch. The smaller tables.
-    #[default]
-    TwoStage,
-    /// The control shader sums the vertices around the patch with the weights of its type of connectivity.
-    Stencil,
-    /// The same sums in a compute shader, once a frame in which the vertices moved; the control shader reads them. Takes
-    /// memory, and pays where a model is drawn in several passes or stands still. Needs a queue that computes.
-    Cached,
-}
-
-impl Construction {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::TwoStage, Self::Stencil, Self::Cached];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::TwoStage => "two-stage",
-            Self::Stencil => "stencil",
-            Self::Cached => "cached",
-        }
-    }
-}
-
-/// What evaluates the patches.
-///
-/// All but the tessellation stages evaluate on a lattice with the same number of segments along every edge, from 1 to 1024:
-/// they are for [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), and so far without displacement and shared
-/// normals. Nothing is culled. Along edges they have the vertices of the tessellation stages to the bit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Evaluation {
-    /// The tessellation stages, in each draw anew.
-    #[default]
-    Tessellation,
-    /// A compute shader, once a frame in which the vertices or the segments changed
-    /// ([`Renderer::set_segments`](super::Renderer::set_segments)). Draws are of indexed triangles. Takes memory for the vertices,
-    /// and pays where a model is drawn in several passes or stands still.
-    Compute,
-    /// The vertex shader, in each draw anew: one lattice of indexed triangles is instanced over the patches (the Direct3D 10
-    /// path of Loop et al. 2009). Its segments are those of [`Renderer::set_segments`](super::Renderer::set_segments).
-    Instanced,
-}
-
-impl Evaluation {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Tessellation, Self::Compute, Self::Instanced];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Tessellation => "tessellation",
-            Self::Compute => "compute",
-            Self::Instanced => "instanced",
-        }
-    }
-
-    /// The constructions that it goes with, the usual one first.
-    pub fn constructions(self) -> &'static [Construction] {
-        match self {
-            Self::Tessellation => &Construction::ALL,
-            Self::Compute | Self::Instanced => &[Construction::Cached],
-        }
-    }
-
-    /// Whether [`Renderer::set_segments`](super::Renderer::set_segments) has to say how many segments edges have.
-    pub fn needs_segments(self) -> bool {
-        matches!(self, Self::Compute | Self::Instanced)
-    }
-}
-
-/// How one model is drawn.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ModelOptions {
-    /// The debug name.
-    pub name: String,
-    /// Which patches faces become.
-    pub scheme: Scheme,
-    /// What becomes of faces that the scheme has no patches for.
-    pub fallback: Fallback,
-    /// How the control points are made.
-    pub construction: Construction,
-    /// What evaluates the patches.
-    pub evaluation: Evaluation,
-    /// Where the tessellator puts its vertices along an edge.
-    pub spacing: Spacing,
-    /// Give neighbouring patches the same normals along their edges and at their corners, to the last bit: positions are the
-    /// same in any case. Costs table memory and some 10 % of the geometry's time; displacement needs it.
-    ///
-    /// For schemes that are watertight ([`Scheme::is_watertight`]).
-    pub shared_normals: bool,
-    /// Move the surface along its normal by what a map says, a height map or one of vectors
-    /// ([`Renderer::add_displacement`](super::Renderer::add_displacement)); draws say how far
-    /// ([`DrawItem::displacement`](super::DrawItem::displacement)). The mesh has to have texture coordinates. Normals are
-    /// shared then in any case.
-    pub displacement: Option<DisplacementId>,
-    /// Let edges have tessellation factors of their own ([`Factor::Edges`](super::Factor::Edges)).
-    pub edge_factors: bool,
-    /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
-    pub refine: u32,
 }
 
 /// What a device must be made with for [`Options`].
@@ -332,6 +230,7 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
         wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
         ..Features::NONE
     };
+    let features = options.evaluations.iter().fold(features, |all, evaluation| all.union(evaluation.features()));
     Requirements { api_version: vk::API_VERSION_1_3, features, device_extensions: features.extensions() }
 }
 

@@ -1,11 +1,12 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
 use super::cached::CachedPipelines;
+use super::conversion::Conversion;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
-    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
+    DeviceContext, Features, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
     descriptor_set_layout, pipeline_layout, shaders,
 };
 use ash::vk;
@@ -58,6 +59,8 @@ pub(super) struct Pipelines {
     pub layout: Owned<vk::PipelineLayout>,
     /// For what the cached construction computes.
     pub cached: CachedPipelines,
+    /// For the first of two passes, once a model wants it.
+    pub conversion: Option<Conversion>,
     /// For what evaluation by compute does.
     pub lattice: LatticePipelines,
     made: HashMap<PipelineKey, Owned<vk::Pipeline>>,
@@ -68,8 +71,16 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::VERTEX.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw()
+        | vk::ShaderStageFlags::GEOMETRY.as_raw()
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
+
+/// The stages that read what models keep in buffers, on a device with these features.
+pub(super) fn shader_readers(features: Features) -> vk::PipelineStageFlags {
+    use vk::PipelineStageFlags as Stage;
+    let all = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
+    if features.geometry { all | Stage::GEOMETRY_SHADER } else { all }
+}
 
 /// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
 /// points. The displacement map comes after them.
@@ -108,6 +119,7 @@ impl Pipelines {
             model_layout,
             layout,
             cached,
+            conversion: None,
             lattice,
             made: HashMap::new(),
         })
@@ -124,8 +136,10 @@ impl Pipelines {
     /// Makes what these patches need in every style.
     pub(super) fn make(&mut self, patches: &[PatchStages]) -> Result<(), GpuError> {
         for &stages in patches {
-            if stages.construction == Construction::Cached {
-                self.cached.make(stages)?;
+            match (stages.construction, stages.evaluation) {
+                (Construction::Cached, Evaluation::GeometryTwoPass) => self.conversion()?.make(stages)?,
+                (Construction::Cached, _) => self.cached.make(stages)?,
+                _ => {}
             }
             if stages.evaluation == Evaluation::Compute {
                 self.lattice.make(stages)?;
@@ -141,6 +155,14 @@ impl Pipelines {
             }
         }
         Ok(())
+    }
+
+    fn conversion(&mut self) -> Result<&mut Conversion, GpuError> {
+        let made = match self.conversion.take() {
+            Some(made) => made,
+            None => Conversion::new(&self.context, [self.view_layout.raw(), self.model_layout.raw()], self.cache)?,
+        };
+        Ok(self.conversion.insert(made))
     }
 
     fn make_one(&mut self, key: PipelineKey) -> Result<(), GpuError> {
@@ -172,10 +194,15 @@ impl Pipelines {
                 let fragment = fragment(style, patch.sharing, &encode);
                 match patch.evaluation {
                     Evaluation::Tessellation => self.create_tessellating(&name, key, patch, fragment)?,
-                    Evaluation::Compute | Evaluation::Instanced => {
+                    evaluation => {
                         let stride = [Specialization::uint(3, patch.stride)];
-                        let vertex = self.find(&patch.evaluation(self.capture, self.texcoords))?;
-                        self.create(&name, key, &[Shader::vertex(vertex).specialized(&stride), fragment], 0)?
+                        let code = self.find(&patch.evaluation(self.capture, self.texcoords))?;
+                        let tile = Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT);
+                        let stages = match evaluation {
+                            Evaluation::Geometry => vec![tile, Shader::geometry(code).specialized(&stride), fragment],
+                            _ => vec![Shader::vertex(code).specialized(&stride), fragment],
+                        };
+                        self.create(&name, key, &stages, 0)?
                     }
                 }
             }
@@ -235,7 +262,13 @@ impl Pipelines {
             }
         };
         let stages = if style.rasterizer_discard { &stages[..stages.len() - 1] } else { stages };
-        let lines = style.geometry == Geometry::ControlEdges;
+        let topology = match key.geometry {
+            GeometryKey::Patches(PatchStages { evaluation: Evaluation::Geometry, .. }) => {
+                vk::PrimitiveTopology::POINT_LIST
+            }
+            _ if style.geometry == Geometry::ControlEdges => vk::PrimitiveTopology::LINE_LIST,
+            _ => vk::PrimitiveTopology::TRIANGLE_LIST,
+        };
         let stride = vertex_bytes(self.texcoords);
         let bindings = [vk::VertexInputBindingDescription { binding: 0, stride, ..Default::default() }];
         let attributes =
@@ -248,7 +281,7 @@ impl Pipelines {
             patch_control_points,
             vertex_bindings: if evaluated { &bindings } else { &[] },
             vertex_attributes: if evaluated { &attributes } else { &[] },
-            topology: if lines { vk::PrimitiveTopology::LINE_LIST } else { vk::PrimitiveTopology::TRIANGLE_LIST },
+            topology,
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,
             front_face: style.front_face,

@@ -68,8 +68,13 @@ impl PatchStages {
     pub(super) fn geometry(self) -> GeometryKey {
         match self.evaluation {
             Evaluation::Compute => GeometryKey::Evaluated,
-            Evaluation::Tessellation | Evaluation::Instanced => GeometryKey::Patches(self),
+            _ => GeometryKey::Patches(self),
         }
+    }
+
+    /// What tells apart the pipelines that make cached control points: those that a corner owns, and those it has room for.
+    pub(super) fn cached_key(self) -> [u32; 2] {
+        [self.scheme.owned(self.kind) as u32, self.stride]
     }
 
     /// The name of the control shader.
@@ -102,8 +107,12 @@ impl PatchStages {
         let mut name = match self.evaluation {
             Evaluation::Tessellation => format!("EVALUATE_{file}_TESE"),
             Evaluation::Compute => format!("EVALUATE_LATTICE_COMP_{file}"),
-            Evaluation::Instanced => format!("EVALUATE_INSTANCED_VERT_{file}"),
+            Evaluation::Instanced | Evaluation::GeometryTwoPass => format!("EVALUATE_INSTANCED_VERT_{file}"),
+            Evaluation::Geometry => format!("EVALUATE_STRIPS_GEOM_{file}"),
         };
+        if (self.evaluation, self.construction) == (Evaluation::Geometry, Construction::Cached) {
+            name += "_CACHED";
+        }
         name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Grid => "_CAPTURE_GRID",
@@ -168,7 +177,7 @@ mod tests {
                     let watched = match evaluation {
                         Evaluation::Tessellation => true,
                         Evaluation::Compute => capture == Capture::Off,
-                        Evaluation::Instanced => matches!(capture, Capture::Off | Capture::Vertices),
+                        _ => matches!(capture, Capture::Off | Capture::Vertices),
                     };
                     let evaluation = watched.then(|| stages.evaluation(capture, texcoords));
                     for name in control.into_iter().chain(evaluation) {

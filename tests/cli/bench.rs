@@ -24,10 +24,10 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
     assert!(results["command"].as_str().unwrap().starts_with("subdiv bench --size 32x32"), "{results}");
     assert_eq!(results["options"]["frames"], 6);
     // A torus in 5 schemes and 3 constructions, a tetrahedron in 3; each in 2 floors, 2 spacings and 2 factors.
-    // Left out: 2 schemes without triangles in 3 constructions, and lattices of 5 schemes in 2 evaluations, which have no
+    // Left out: 2 schemes without triangles in 3 constructions, and 5 ways to evaluate lattices of 5 schemes, which have no
     // such spacing.
     let rows = results["rows"].as_array().unwrap();
-    assert_eq!((rows.len(), length(&results["left_out"])), ((5 * 3 + 2 + 3 * 3 + 2) * 4, 2 * 3 * 2 + 2 * 2 * 5 * 2));
+    assert_eq!((rows.len(), length(&results["left_out"])), ((5 * 3 + 2 + 3 * 3 + 2) * 4, 2 * 3 * 2 + 5 * 2 * 5 * 2));
     for row in rows {
         assert_eq!(
             keys(row),
@@ -186,7 +186,7 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths magic",
         2,
-        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, compute, instanced, bilinear, vertex-buffer]",
+        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, compute, instanced, geometry, geometry-two-pass, bilinear, vertex-buffer]",
     );
     fails(
         "bench --results x.json --factors 1",
@@ -194,9 +194,9 @@ fn bench_says_what_is_wrong() {
         "the argument '--results <FILE.json>' cannot be used with '--factors <FACTOR>'",
     );
     fails(
-        "bench --paths compute --constructions stencil",
+        "bench --paths compute,geometry --constructions two-stage",
         2,
-        "no path of --paths goes with --constructions: compute and instanced go with cached",
+        "no path of --paths goes with --constructions: compute goes with cached, geometry goes with stencil and cached",
     );
     fails("bench --compare no.json", 1, "no.json: No such file or directory (os error 2)");
     let results = folder("bench-bad").join("bad.json");

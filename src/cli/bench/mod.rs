@@ -107,8 +107,9 @@ x base:       the median of ratios to the first row, frame by frame, with the in
 construction: control points alone: factor 1 less the bilinear floor at factor 1, without rasterization.
 set-up:       tables and upload, without pipelines.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
-`compute` evaluates once a frame into a vertex buffer that all passes draw, `instanced` draws one lattice as an instance for
-each patch, whose vertex shader evaluates; both go with the construction `cached`.
+`compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one lattice for all patches, an
+instance for each, which the vertex shader evaluates; in `geometry` the geometry shader evaluates, in `geometry-two-pass` it
+makes control points for `instanced`. They go with the construction `cached`, `geometry` also with `stencil`.
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
 
 JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
@@ -220,8 +221,13 @@ impl BenchArgs {
         drop(progress);
         let contestants = self.contestants();
         if contestants.is_empty() {
-            let message = "no path of --paths goes with --constructions: compute and instanced go with cached";
-            return Err(CliError::Usage(message.into()));
+            let goes_with = |path: &Path| {
+                let names: Vec<_> = path.evaluation()?.constructions().iter().map(|c| c.name()).collect();
+                Some(format!("{} goes with {}", path.name(), names.join(" and ")))
+            };
+            let all: Vec<String> = self.paths.iter().filter_map(goes_with).collect();
+            let message = format!("no path of --paths goes with --constructions: {}", all.join(", "));
+            return Err(CliError::Usage(message));
         }
         let options = BenchOptions {
             factors: self.factors(),
