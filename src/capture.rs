@@ -12,7 +12,7 @@ use crate::renderer::{
     Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Evaluation, Factor, ModelOptions, ModelTables,
     Options, Renderer, STAGES, Style, Target, View,
 };
-use crate::table::lattice_vertices;
+use crate::table::{MAX_SEGMENTS, lattice_vertices};
 use crate::topology::PatchKind;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -257,12 +257,16 @@ impl<'h> Captured<'h> {
             Factor::Edges(scale) => draw.edge_factors.iter().fold(1.0, |most, &factor| (scale * factor).max(most)),
         };
         let tessellated = self.evaluation(Capture::Vertices) == Evaluation::Tessellation;
+        let segments = match tessellated {
+            true => self.options.spacing.segments(most, max),
+            false => (most.ceil() as u32).min(MAX_SEGMENTS),
+        };
         let bytes = |kind: PatchKind| {
             let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
             let vertices = match which {
-                Which::All if !tessellated => lattice_vertices(kind, most.ceil() as u32),
+                Which::All if !tessellated => lattice_vertices(kind, segments),
                 Which::All => tessellated_vertices(domain, self.options.spacing, most, max).into(),
-                Which::OnEdges => 4 * (u64::from(self.options.spacing.segments(most, max)) + 1),
+                Which::OnEdges => 4 * (u64::from(segments) + 1),
             };
             // At worst a device shares nothing between the triangles of a patch.
             let shares = tessellated && self.headless.properties().patch_batch == crate::gpu::PatchBatch::LAVAPIPE;

@@ -3,6 +3,7 @@
 
 mod common;
 
+use ash::vk;
 use ash_subdiv::capture::{Captured, CapturedVertex};
 use ash_subdiv::renderer::{Evaluation, Fragment, ModelTables};
 use ash_subdiv::table::{Patch, grid_parameters};
@@ -201,9 +202,10 @@ fn assert_same(a: &[u8], b: &[u8], what: &str) {
 fn pictures_follow_positions_and_segments() {
     let stage = Stage::new();
     let mesh = shape("creature").expect("built in");
-    // Texture coordinates as colours.
+    // Texture coordinates as colours, from the front only.
     let fragment = Fragment::Spirv(test_shaders::TEXCOORD_FRAG.to_vec());
-    let styles = vec![Style { fragment, ..Style::default() }, Style::default()];
+    let cull = vk::CullModeFlags::BACK;
+    let styles = vec![Style { fragment, cull, ..Style::default() }, Style::default()];
     let mut renderer = stage.renderer(&Options { texcoords: true, styles, ..Options::default() });
     let tessellated = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
     let models: Vec<_> = ways(Scheme::Gregory)
@@ -244,7 +246,8 @@ fn lattices_may_be_fine() {
     let stage = Stage::new();
     for (name, segments) in [("cube", 150), ("tetrahedron", 301), ("single-quad", 1024)] {
         let mesh = shape(name).expect("built in");
-        let mut renderer = stage.renderer(&Options::default());
+        let styles = vec![Style { cull: vk::CullModeFlags::BACK, ..Style::default() }];
+        let mut renderer = stage.renderer(&Options { styles, ..Options::default() });
         let mut expected = None;
         for options in ways(Scheme::Gregory) {
             let model = renderer.add_model(&mesh, &options).expect("a model");

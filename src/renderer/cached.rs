@@ -1,7 +1,7 @@
 //! What a frame makes before its draws: the control points of the cached construction, by compute, and what follows from them.
 
 use super::stages::PatchStages;
-use super::{ModelId, Renderer, pipelines};
+use super::{ModelId, Renderer};
 use crate::gpu::{
     ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout, shaders,
 };
@@ -130,7 +130,7 @@ impl Renderer {
             }
         }
         use vk::PipelineStageFlags as Stage;
-        let readers = pipelines::shader_readers(self.context.features());
+        let readers = self.shader_readers();
         let makers = readers & (Stage::COMPUTE_SHADER | Stage::GEOMETRY_SHADER);
         let written = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
@@ -150,7 +150,7 @@ impl Renderer {
             .dst_access_mask(vk::AccessFlags::VERTEX_ATTRIBUTE_READ)];
         // SAFETY: as the caller promises.
         unsafe {
-            device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, Stage::VERTEX_INPUT, none, &evaluated, &[], &[]);
+            device.cmd_pipeline_barrier(cmd, makers, Stage::VERTEX_INPUT, none, &evaluated, &[], &[]);
         }
     }
 

@@ -1,10 +1,11 @@
 //! Models that are not evaluated by the tessellation stages: what they go with, and what the caller sees of them.
 
-use super::lattice::{Lattice, MAX_SEGMENTS, vertex_bytes};
+use super::lattice::{Lattice, vertex_bytes};
 use super::model::Model;
 use super::stages::Sharing;
 use super::{Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Renderer, Retired, RetiredObject};
 use crate::gpu::{Features, Spacing};
+use crate::table::MAX_SEGMENTS;
 use ash::vk;
 
 /// Tells what a model has that its evaluation does not go with, or what the device lacks for it.

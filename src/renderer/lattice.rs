@@ -17,8 +17,6 @@ use std::sync::Arc;
 const GROUP_VERTICES: u32 = 256;
 /// Every Vulkan device has as many workgroups along an axis.
 const MAX_GROUPS: u32 = 65_535;
-/// What the shaders' arithmetic is right for.
-pub(super) const MAX_SEGMENTS: u32 = 1024;
 /// About as many evaluated vertices are drawn with the same indices, of one patch at least.
 const BLOCK_VERTICES: u64 = 65_536;
 

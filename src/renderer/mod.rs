@@ -305,7 +305,7 @@ impl Renderer {
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
-    /// [`Construction::Cached`]. The device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue.
+    /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]). The device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue.
     pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         self.views_drawn[frame_index as usize] = 0;
@@ -318,7 +318,7 @@ impl Renderer {
             return Ok(());
         }
         let device = self.context.device();
-        let readers = vk::PipelineStageFlags::VERTEX_INPUT | pipelines::shader_readers(self.context.features());
+        let readers = vk::PipelineStageFlags::VERTEX_INPUT | self.shader_readers();
         let transfer = vk::PipelineStageFlags::TRANSFER;
         let none = vk::DependencyFlags::empty();
         let after_copies = [vk::MemoryBarrier::default()
@@ -356,6 +356,20 @@ impl Renderer {
         let mut usage = MemoryUsage { views: self.views.size(), ..MemoryUsage::default() };
         self.models.values().for_each(|model| model.add_memory(&mut usage));
         usage
+    }
+
+    /// The shader stages that read what models keep in buffers.
+    fn shader_readers(&self) -> vk::PipelineStageFlags {
+        use vk::PipelineStageFlags as Stage;
+        let mut readers = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER;
+        if self.context.features().geometry {
+            readers |= Stage::GEOMETRY_SHADER;
+        }
+        // The queue may be one that does not compute.
+        if self.models.values().any(Model::computes) {
+            readers |= Stage::COMPUTE_SHADER;
+        }
+        readers
     }
 
     fn model(&self, id: ModelId) -> Result<&Model, Error> {

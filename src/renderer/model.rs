@@ -227,6 +227,11 @@ impl Model {
         self.control_points.is_some() && (self.stale || self.needs_copies(frame))
     }
 
+    /// Whether compute shaders make something of it.
+    pub(super) fn computes(&self) -> bool {
+        self.control_points.is_some() && self.evaluation != Evaluation::GeometryTwoPass
+    }
+
     /// Has the control points computed anew in the next frame, even though nothing moved.
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(super) fn forget_points(&mut self) {

@@ -37,7 +37,7 @@ impl Construction {
 ///
 /// All but the tessellation stages evaluate on a lattice with the same number of segments along every edge, from 1 to 1024:
 /// they are for [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), and so far without displacement and shared
-/// normals. Nothing is culled. Along edges they have the vertices of the tessellation stages to the bit.
+/// normals. Nothing is culled. Where patches share positions to the last bit, they do so here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Evaluation {
     /// The tessellation stages, in each draw anew.

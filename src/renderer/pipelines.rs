@@ -6,7 +6,7 @@ use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
-    DeviceContext, Features, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
+    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
     descriptor_set_layout, pipeline_layout, shaders,
 };
 use ash::vk;
@@ -74,13 +74,6 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::GEOMETRY.as_raw()
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
-
-/// The stages that read what models keep in buffers, on a device with these features.
-pub(super) fn shader_readers(features: Features) -> vk::PipelineStageFlags {
-    use vk::PipelineStageFlags as Stage;
-    let all = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
-    if features.geometry { all | Stage::GEOMETRY_SHADER } else { all }
-}
 
 /// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
 /// points. The displacement map comes after them.
@@ -192,17 +185,18 @@ impl Pipelines {
             GeometryKey::Patches(patch) => {
                 let name = format!("subdiv style {} {patch:?}", key.style);
                 let fragment = fragment(style, patch.sharing, &encode);
+                let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
+                let stride = [Specialization::uint(3, patch.stride)];
                 match patch.evaluation {
-                    Evaluation::Tessellation => self.create_tessellating(&name, key, patch, fragment)?,
-                    evaluation => {
-                        let stride = [Specialization::uint(3, patch.stride)];
-                        let code = self.find(&patch.evaluation(self.capture, self.texcoords))?;
+                    Evaluation::Tessellation => self.create_tessellating(&name, key, patch, evaluation, fragment)?,
+                    Evaluation::Geometry => {
                         let tile = Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT);
-                        let stages = match evaluation {
-                            Evaluation::Geometry => vec![tile, Shader::geometry(code).specialized(&stride), fragment],
-                            _ => vec![Shader::vertex(code).specialized(&stride), fragment],
-                        };
-                        self.create(&name, key, &stages, 0)?
+                        let evaluation = Shader::geometry(evaluation).specialized(&stride);
+                        self.create(&name, key, &[tile, evaluation, fragment], 0)?
+                    }
+                    _ => {
+                        let evaluation = Shader::vertex(evaluation).specialized(&stride);
+                        self.create(&name, key, &[evaluation, fragment], 0)?
                     }
                 }
             }
@@ -216,6 +210,7 @@ impl Pipelines {
         name: &str,
         key: PipelineKey,
         patch: PatchStages,
+        evaluation: &[u32],
         fragment: Shader,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
         let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
@@ -224,7 +219,6 @@ impl Pipelines {
             Construction::Stencil | Construction::Cached => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
         };
         let control = self.find(&patch.control(self.capture, self.texcoords))?;
-        let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
         let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
         let evaluation = spaced(evaluation, spacing);
         let most = self.context.properties().max_tessellation_level as f32;

@@ -3,6 +3,9 @@
 use crate::topology::PatchKind;
 use std::cmp::Ordering;
 
+/// The most segments along a side: what the arithmetic of `glsl/lib/lattice.glsl` is right for.
+pub(crate) const MAX_SEGMENTS: u32 = 1024;
+
 /// How many vertices a patch has with `n` segments along each side.
 pub(crate) fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
     let n = u64::from(n);

@@ -18,7 +18,9 @@ mod stencils;
 
 pub use cpu::{CpuSurface, grid_parameters};
 pub use error::TableError;
-pub(crate) use lattice::{TILE_VERTICES, lattice_indices, lattice_tiles, lattice_triangles, lattice_vertices};
+pub(crate) use lattice::{
+    MAX_SEGMENTS, TILE_VERTICES, lattice_indices, lattice_tiles, lattice_triangles, lattice_vertices,
+};
 pub use plan::{Patch, PatchGroup, PatchPlan};
 pub use prepare::{FaceOrigin, Notice, Prepared, prepare, prepare_patches};
 pub use rings::RingTable;
