@@ -251,11 +251,7 @@ impl<'h> Captured<'h> {
     /// As [`Renderer::cmd_draw`] and [`Renderer::set_edge_factors`].
     pub fn vertices_of(&self, draw: &CaptureDraw, which: Which) -> Result<Vec<CapturedVertex>, Error> {
         let max = self.headless.properties().max_tessellation_level;
-        let most = match draw.factor {
-            Factor::Uniform(factor) => factor,
-            Factor::Pixels(_) | Factor::Curvature(_) => max as f32,
-            Factor::Edges(scale) => draw.edge_factors.iter().fold(1.0, |most, &factor| (scale * factor).max(most)),
-        };
+        let most = self.largest_factor(draw)?;
         let tessellated = self.evaluation(Capture::Vertices) == Evaluation::Tessellation;
         let segments = match tessellated {
             true => self.options.spacing.segments(most, max),
@@ -304,11 +300,10 @@ impl<'h> Captured<'h> {
             let device = self.headless.properties().name.clone();
             return Err(Error::Unsupported { device, missing: vec!["geometryShader".into()] });
         }
-        let most = match draw.factor {
-            Factor::Uniform(factor) => factor,
-            _ => self.factors(draw)?.iter().flat_map(|f| f.asked).fold(1.0, f32::max),
-        };
-        let segments = self.options.spacing.segments(most, self.headless.properties().max_tessellation_level);
+        let segments = self
+            .options
+            .spacing
+            .segments(self.largest_factor(draw)?, self.headless.properties().max_tessellation_level);
         // Those of a quad; triangles have fewer.
         let bytes = 2 * u64::from(segments).pow(2) * 3 * RECORD_BYTES;
         let head = |patches: &Range<u32>| Head {
@@ -326,6 +321,14 @@ impl<'h> Captured<'h> {
         match self.options.evaluation {
             evaluation if mode == Capture::Vertices && evaluation != Evaluation::Compute => evaluation,
             _ => Evaluation::Tessellation,
+        }
+    }
+
+    /// The largest that an edge asks for.
+    fn largest_factor(&self, draw: &CaptureDraw) -> Result<f32, Error> {
+        match draw.factor {
+            Factor::Uniform(factor) => Ok(factor),
+            _ => Ok(self.factors(draw)?.iter().flat_map(|f| f.asked).fold(1.0, f32::max)),
         }
     }
 

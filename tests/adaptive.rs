@@ -5,7 +5,7 @@ mod common;
 
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors, CapturedVertex, Which};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
-use ash_subdiv::renderer::{Cull, Factor};
+use ash_subdiv::renderer::{Cull, Evaluation, Factor};
 use ash_subdiv::{
     Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Spacing, Style, Target, View, shape,
 };
@@ -270,5 +270,33 @@ fn factors_are_kept_within_limits() {
     for factors in captured.factors(&draw).expect("a capture") {
         assert!(factors.asked.iter().all(|asked| asked.is_finite() && *asked >= 0.0), "{factors:?}");
     }
+    headless.finish_silent();
+}
+
+#[test]
+fn wrong_displacement_is_told() {
+    let headless = common::headless();
+    let heights = |channels: u32| Texels { width: 1, height: 1, channels, values: vec![0.0; channels as usize] };
+    let error = Texture::new(&headless, "pairs", &heights(2)).map(drop).unwrap_err().to_string();
+    assert_eq!(error, "pairs: 2 numbers a texel: 1 or 4 are possible");
+
+    let texture = Texture::new(&headless, "flat", &heights(1)).expect("a texture");
+    let desc = OffscreenDesc::new(4, 4);
+    let target = Target::dynamic(desc.color, desc.depth, desc.samples);
+    // SAFETY: nothing is drawn with either.
+    let renderers = [(); 2].map(|()| unsafe { Renderer::new(headless.context(), &target, &Options::default()) });
+    let [mut first, mut second] = renderers.map(|renderer| renderer.expect("a renderer"));
+    // SAFETY: the texture outlives the renderer.
+    let displacement = Some(unsafe { first.add_displacement((&texture).into()) });
+    let mesh = shape("creature").expect("built in");
+    let error = second.add_model(&mesh, &ModelOptions { displacement, ..ModelOptions::default() }).unwrap_err();
+    assert_eq!(error.to_string(), "displacement map 0: this renderer was not told of it: call add_displacement first");
+    let (evaluation, construction) = (Evaluation::Compute, Construction::Cached);
+    let options = ModelOptions { displacement, evaluation, construction, ..ModelOptions::default() };
+    assert_eq!(
+        first.add_model(&mesh, &options).unwrap_err().to_string(),
+        "model 0: evaluation by compute does not go with displacement: do without, or choose Evaluation::Tessellation"
+    );
+    drop((first, second, texture));
     headless.finish_silent();
 }

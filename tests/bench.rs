@@ -3,16 +3,16 @@
 
 mod common;
 
-use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Event, Path, Row, Subject, Subset};
+use ash_subdiv::bench::{Bench, BenchOptions, Camera, Contestant, Crowd, Event, Normals, Path, Row, Subject, Subset};
 use ash_subdiv::headless::Headless;
+use ash_subdiv::renderer::Cull;
 use ash_subdiv::{Construction, Scheme, Spacing, shape};
 use common::headless;
 
-const GREGORY: Contestant =
-    Contestant { path: Path::Tessellation, patches: Some((Scheme::Gregory, Construction::TwoStage)) };
+const GREGORY: Contestant = Contestant::new(Path::Tessellation, Some((Scheme::Gregory, Construction::TwoStage)));
 
 fn floor(path: Path) -> Contestant {
-    Contestant { path, patches: None }
+    Contestant::new(path, None)
 }
 
 fn options() -> BenchOptions {
@@ -137,7 +137,7 @@ fn contestants_that_cannot_are_left_out() {
     let error = bench.picture(&subject("tetrahedron"), all[1], 1.0).unwrap_err().to_string();
     assert!(error.contains("no patches for triangles"));
     let few = Bench::new(&headless, BenchOptions { frames: 5, ..options() }).map(drop).unwrap_err();
-    assert_eq!(few.to_string(), "frames of BenchOptions is 5: it must be at least 6");
+    assert_eq!(few.to_string(), "BenchOptions::frames is 5: it must be at least 6");
     drop(bench);
     headless.finish_silent();
 }
@@ -159,5 +159,110 @@ fn cached_control_points_are_made_in_every_frame_that_is_timed() {
     let counted = rows[1].computed.expect("lavapipe counts");
     assert!(counted >= corners && counted < corners + 3 * 64, "{counted} for {corners}");
     assert_eq!(rows[0].computed, Some(0));
+    headless.finish_silent();
+}
+
+#[test]
+fn variants_are_of_what_can_be_combined() {
+    let all = Contestant::all(&Path::ALL, &[Scheme::Gregory, Scheme::Acc], &[Construction::Cached]);
+    let variants = |normals: &[Normals], culls: &[Cull]| -> Vec<Contestant> {
+        all.iter().flat_map(|contestant| contestant.variants(normals, culls)).collect()
+    };
+    assert_eq!(variants(&[Normals::Own], &[Cull::NONE]), all);
+    let of = |variants: &[Contestant], path, scheme| {
+        let is = |c: &&Contestant| c.path == path && c.patches.is_none_or(|(s, _)| s == scheme);
+        variants.iter().filter(is).count()
+    };
+    let every = variants(&Normals::ALL, &[Cull::NONE, Cull::ALL]);
+    for path in Path::ALL {
+        let tessellates = path == Path::Tessellation;
+        assert_eq!(of(&every, path, Scheme::Gregory), if tessellates { 4 } else { 1 }, "{path:?}");
+        assert_eq!(of(&every, path, Scheme::Acc), if tessellates { 2 } else { 1 }, "{path:?}");
+    }
+    // Floors are there in any case: what others cannot get below.
+    let shared = variants(&[Normals::Shared], &[Cull::NONE]);
+    assert!(shared.iter().all(|c| c.path.is_floor() || c.normals == Normals::Shared) && shared.len() == 3);
+}
+
+#[test]
+fn normals_and_culling_are_those_of_the_row() {
+    let headless = headless();
+    let with = |normals, cull| Contestant { normals, cull, ..GREGORY };
+    let rows = race(
+        &headless,
+        options(),
+        "creature",
+        &[
+            GREGORY,
+            with(Normals::Shared, Cull::NONE),
+            with(Normals::Own, Cull { back: true, ..Cull::NONE }),
+            with(Normals::Shared, Cull { back: true, ..Cull::NONE }),
+        ],
+    );
+    let bytes = |row: &Row| row.bytes.iter().map(|(_, bytes)| bytes).sum::<u64>();
+    for rows in rows.chunks(4) {
+        let triangles: Vec<u64> = rows.iter().map(|row| row.triangles.expect("lavapipe counts")).collect();
+        assert!(triangles[0] == triangles[1] && triangles[2] == triangles[3]);
+        assert!(triangles[2] < triangles[0] * 19 / 20, "{triangles:?}");
+        assert!(bytes(&rows[1]) > bytes(&rows[0]) && bytes(&rows[2]) == bytes(&rows[0]));
+    }
+    let bench = Bench::new(&headless, options()).unwrap();
+    let subject = subject("creature");
+    let [plain, culled] = [GREGORY, with(Normals::Own, Cull::ALL)].map(|c| bench.picture(&subject, c, 4.0).unwrap());
+    assert_eq!(different(&plain, &culled), 0);
+    drop(bench);
+    headless.finish_silent();
+}
+
+#[test]
+fn cameras_are_raced_in_turns() {
+    let headless = headless();
+    let cameras = vec![Camera::Fit, Camera::Clipped];
+    let culled = Contestant { cull: Cull { frustum: true, ..Cull::NONE }, ..GREGORY };
+    let all = [GREGORY, culled, floor(Path::Bilinear)];
+    let rows = race(&headless, BenchOptions { cameras, ..options() }, "creature", &all);
+    for rows in rows.chunks(6) {
+        for (row, (camera, contestant)) in
+            rows.iter().zip(Camera::ALL.iter().flat_map(|camera| all.iter().map(move |c| (camera, c))))
+        {
+            assert_eq!((row.camera, row.contestant, row.factor), (*camera, *contestant, rows[0].factor));
+        }
+        let counts = |row: &Row| (row.triangles.expect("lavapipe counts"), row.visible.expect("lavapipe counts"));
+        let (made, visible) = counts(&rows[0]);
+        assert_eq!(made, visible);
+        assert_eq!(counts(&rows[1]), (made, made));
+        let (clipped_made, clipped) = counts(&rows[3]);
+        assert!(clipped_made == made && clipped > made / 10 && clipped < made * 3 / 4, "{clipped} of {made}");
+        // Culling leaves out what is not seen, and nothing else.
+        let (culled_made, culled) = counts(&rows[4]);
+        assert!(culled == clipped && culled_made < made * 4 / 5, "{culled} of {culled_made}, {clipped} of {made}");
+    }
+    let none = Bench::new(&headless, BenchOptions { cameras: vec![], ..options() }).map(drop).unwrap_err();
+    assert_eq!(none.to_string(), "BenchOptions::cameras is 0: it must be at least 1");
+    headless.finish_silent();
+}
+
+#[test]
+fn recording_is_timed_frame_by_frame() {
+    let headless = headless();
+    let bench = Bench::new(&headless, options()).unwrap();
+    let subject = subject("creature");
+    let of = |path, construction| Contestant::new(path, Some((Scheme::Gregory, construction)));
+    for contestant in [GREGORY, of(Path::Tessellation, Construction::Cached), of(Path::Compute, Construction::Cached)] {
+        let recordings = bench.recording(&subject, contestant, 3).unwrap();
+        let crowds: Vec<Crowd> = recordings.iter().map(|recording| recording.crowd).collect();
+        assert_eq!(crowds, [Crowd::Instances, Crowd::Models, Crowd::Moving]);
+        for recording in &recordings {
+            assert_eq!((recording.prepare.len(), recording.draw.len()), (6, 6));
+            assert!(recording.draw.iter().all(|&ms| ms > 0.0));
+        }
+    }
+    let error = |contestant, models| bench.recording(&subject, contestant, models).unwrap_err().to_string();
+    assert_eq!(error(GREGORY, 0), "models is 0: it must be at least 1");
+    assert_eq!(
+        error(floor(Path::Bilinear), 1),
+        "the path bilinear is not recorded by the renderer alone: measure tessellation or compute"
+    );
+    drop(bench);
     headless.finish_silent();
 }

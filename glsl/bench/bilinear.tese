@@ -18,5 +18,5 @@ void main() {
     vec3 dv = high - low;
     vec3 position = mix(low, high, at.y);
 #endif
-    emit(Sample(position, normalize(cross(du, dv))), at);
+    emit_sample(Sample(position, normalize(cross(du, dv))), at);
 }

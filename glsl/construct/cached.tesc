@@ -38,7 +38,7 @@ void main() {
     }
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
-    share_corner(corner, framed_ring(patch_corners[corner].x));
+    write_shared(corner, share_corner(corner));
 #endif
     barrier();
     finish_patch(in_patch_number[0]);

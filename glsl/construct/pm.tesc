@@ -7,6 +7,7 @@
 #define OWNED 6
 // Its spokes may leave the hull of what corners own.
 #define HULL 0
+#define INNER 3
 #include "control.glsl"
 #include "frames.glsl"
 
@@ -15,13 +16,6 @@ layout(location = 10) patch out vec3 centre_share[CORNERS];
 
 // 1 - cos(2 pi / CORNERS)
 const float MU = CORNERS == 3u ? 1.5 : CORNERS == 4u ? 1.0 : 0.690983005625;
-
-// f_i of ring face i; `first` and `second` are the ends of its edges.
-vec3 pm_face(Ring ring, uint i, vec3 centre, vec3 first, vec3 second) {
-    uint entry = ring_entries[ring.entries + 2u * i + 1u];
-    vec3 diagonal = (entry & TRIANGLE_BIT) != 0u ? 0.5 * (first + second) : entry_position(entry);
-    return (4.0 * centre + 2.0 * (first + second) + diagonal) / 9.0;
-}
 
 // b211 at the near end of an edge, or b121 at its far end, seen from there; `across` is f - e.
 vec3 pm_beside(vec3 v, vec3 t0, vec3 t1, vec3 across, float cos_near, float cos_far) {
@@ -63,23 +57,13 @@ void main() {
     uint k = uint(gl_InvocationID);
     uint next = k + 1u == CORNERS ? 0u : k + 1u;
     uint before = k == 0u ? CORNERS - 1u : k - 1u;
-    Corner corner = corner_at(k);
-    Ring ring = corner.ring;
-    vec3 centre = in_centre[k];
-    vec3 v = in_limit[k].xyz;
-
-    // The faces before, at and after the patch around the corner. The ring is closed: there is no rule for others.
-    uint before_plus = (corner.plus == 0u ? ring.edges : corner.plus) - 1u;
-    vec3 a0 = edge_neighbour(ring, before_plus);
-    vec3 a1 = edge_neighbour(ring, corner.plus);
-    vec3 a2 = edge_neighbour(ring, corner.minus);
-    vec3 a3 = edge_neighbour(ring, corner.minus + 1u);
-    vec3 f = pm_face(ring, corner.plus, centre, a1, a2);
-    vec3 e_plus = 0.5 * (f + pm_face(ring, before_plus, centre, a0, a1));
-    vec3 e_minus = 0.5 * (f + pm_face(ring, corner.minus, centre, a2, a3));
+    precise vec3 v = in_limit[k].xyz;
+    precise vec3 t_plus = v + in_plus[k];
+    precise vec3 t_minus = v + in_minus[k];
+    vec3 f = in_inner[k][0], e_plus = in_inner[k][1], e_minus = in_inner[k][2];
     owned[gl_InvocationID][0] = v;
-    owned[gl_InvocationID][1] = corner_edge_point(corner, k, corner.plus);
-    owned[gl_InvocationID][2] = corner_edge_point(corner, k, corner.minus);
+    owned[gl_InvocationID][1] = t_plus;
+    owned[gl_InvocationID][2] = t_minus;
     const float weight = CORNERS == 3u ? 2.0 : 1.0;
     centre_share[gl_InvocationID] =
         (weight * v + 3.0 * (e_plus + e_minus) + 9.0 * f) / (float(CORNERS) * (15.0 + weight));
@@ -108,7 +92,7 @@ void main() {
         (3.0 / 16.0) * (owned[k][3] + owned[next][4] - owned[opposite][4] - owned[before][3]) +
         (1.0 / 16.0) * (owned[next][3] + owned[k][4] - owned[before][4] - owned[opposite][3]);
 #endif
-    finish_corner(in_patch_number[0]);
+    finish_framed_corner(k);
     barrier();
     finish_patch(in_patch_number[0]);
 }

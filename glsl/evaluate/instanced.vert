@@ -25,7 +25,7 @@ void main() {
     uint first_corner = draw.first_corner + patch_number * CORNERS;
     read_cached(first_corner);
     vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()));
-    Sample surface = evaluate_patch(at);
+    Sample surface = sample_of(evaluate_surface(at));
 #ifdef CAPTURE
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
 #endif

@@ -42,7 +42,7 @@ void main() {
     uint end = min(start + GROUP_VERTICES, patches.vertices);
     for (uint i = start + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) {
         vec3 at = lattice_parameter(i, patches.segments);
-        Sample surface = evaluate_patch(at);
+        Sample surface = sample_of(evaluate_surface(at));
         uint word = VERTEX_WORDS * (first_vertex + i);
         put(word, surface.position);
         put(word + 3u, surface.normal);

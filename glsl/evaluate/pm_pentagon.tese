@@ -11,5 +11,5 @@
 
 void main() {
     vec3 at = parameter();
-    emit(evaluate_patch(at), at);
+    emit(evaluate_surface(at), at);
 }

@@ -67,7 +67,7 @@ uint segments;
 
 void emit(uint row, uint place) {
     vec3 at = lattice_parameter(row, place, segments);
-    Sample surface = evaluate_patch(at);
+    Sample surface = sample_of(evaluate_surface(at));
 #ifdef CAPTURE
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
 #endif

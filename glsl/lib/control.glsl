@@ -50,7 +50,7 @@ float plus_factor(uint patch_number, uint k, uint next) {
     case METRIC_EDGES:
         return draw_factor() * corner_factors[draw.first_corner + patch_number * CORNERS + k];
     default:
-        return edge_factor(owned[k][0], owned[k][1], owned[next][2], owned[next][0]);
+        return edge_factor(owned[k][0], CONTROL_POINT(k, 1), CONTROL_POINT(next, 2), owned[next][0]);
     }
 }
 
@@ -59,7 +59,7 @@ void finish_patch(uint patch_number) {
     if (gl_InvocationID != 0) {
         return;
     }
-    bool culled = (draw.flags & CULL_FLAGS) != 0u && is_culled();
+    bool culled = (DRAW_FLAGS & CULL_FLAGS) != 0u && is_culled();
     float asked[CORNERS], outer[CORNERS];
     float largest = 1.0;
     for (uint k = 0u; k < CORNERS; ++k) {
@@ -114,7 +114,8 @@ void finish_corner(uint patch_number) {
     examine_corner();
 #ifdef CAPTURE_POINTS
     for (uint i = 0u; i < OWNED; ++i) {
-        capture_point(draw.first_patch + patch_number, uint(gl_InvocationID) * OWNED + i, owned[gl_InvocationID][i]);
+        capture_point(draw.first_patch + patch_number, uint(gl_InvocationID) * OWNED + i,
+                      i == 0u ? owned[gl_InvocationID][0] : CONTROL_POINT(gl_InvocationID, i));
     }
 #endif
 }

@@ -26,7 +26,7 @@ vec4 clip_row(int i) {
 #if HULL > 0
 // Writes what the control points of this corner say.
 void examine_corner() {
-    if ((draw.flags & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
+    if ((DRAW_FLAGS & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
         return;
     }
     float margin = reach();
@@ -35,7 +35,7 @@ void examine_corner() {
     uint beyond = 63u;
     vec4 box = vec4(1e30, 1e30, -1e30, -1e30);
     for (int i = 0; i < HULL; ++i) {
-        vec4 at = vec4(to_world(owned[gl_InvocationID][i]), 1.0);
+        vec4 at = vec4(to_world(i == 0 ? owned[gl_InvocationID][0] : CONTROL_POINT(gl_InvocationID, i)), 1.0);
         for (int plane = 0; plane < 6; ++plane) {
             if (dot(planes[plane], at) + margin * length(planes[plane].xyz) >= 0.0) {
                 beyond &= ~(1u << plane);
@@ -95,12 +95,12 @@ bool faces_away() {
     vec3 centre = vec3(0.0);
     for (int k = 0; k < 4; ++k) {
         p[k] = to_world(owned[k][0]);
-        plus[k] = to_world(owned[k][1]);
-        minus[k] = to_world(owned[k][2]);
-        inner[k] = to_world(owned[k][3]);
+        plus[k] = to_world(CONTROL_POINT(k, 1));
+        minus[k] = to_world(CONTROL_POINT(k, 2));
+        inner[k] = to_world(CONTROL_POINT(k, 3));
 #if HULL == 5
         // The face point moves between two, and by that turns the tangents, too: by less than a third of their distance.
-        vec3 other = to_world(owned[k][4]);
+        vec3 other = to_world(CONTROL_POINT(k, 4));
         radius = max(radius, 1.3 * length(inner[k] - other));
         inner[k] = 0.5 * (inner[k] + other);
 #endif
@@ -144,10 +144,10 @@ bool is_culled() {
     beyond &= outside[3];
     box = vec4(min(box.xy, pixel_box[3].xy), max(box.zw, pixel_box[3].zw));
 #endif
-    bool culled = (draw.flags & CULL_FRUSTUM_FLAG) != 0u && beyond != 0u;
-    culled = culled || ((draw.flags & CULL_SMALL_FLAG) != 0u && reach() == 0.0 && between_pixels(box));
+    bool culled = (DRAW_FLAGS & CULL_FRUSTUM_FLAG) != 0u && beyond != 0u;
+    culled = culled || ((DRAW_FLAGS & CULL_SMALL_FLAG) != 0u && reach() == 0.0 && between_pixels(box));
 #ifndef TRIANGLE
-    culled = culled || ((draw.flags & CULL_BACK_FLAG) != 0u && faces_away());
+    culled = culled || ((DRAW_FLAGS & CULL_BACK_FLAG) != 0u && faces_away());
 #endif
     return culled;
 }

@@ -5,25 +5,20 @@
 #include "patch.glsl"
 #include "shared_bits.glsl"
 
-struct Edge {
-    vec3 p0, e0, e1, p1;        // its curve
-    vec3 across0, across1;      // across it at either end, as the vertex there sees it
-    vec3 transversal0, transversal1;
-};
-
-vec3 edge_position(Edge edge, float t) {
-    return symmetric_sum(cubic_basis(t).value, edge.p0, edge.e0, edge.e1, edge.p1);
-}
-
-vec3 edge_normal(Edge edge, float t, vec3 fallback) {
+// Across an edge at `t` from its start, by what its ends see across it and their transversals: the same from either end, but for
+// its sign. With the derivative along the edge it makes the normal of both patches. Rust twin: `edge_normal`.
+vec3 edge_across(vec3 across0, vec3 transversal0, vec3 transversal1, vec3 across1, float t) {
     precise float s = 1.0 - t;
     precise float ss = s * s;
-    precise float st = 2.0 * (s * t);
     precise float tt = t * t;
-    precise vec3 along = (edge.e0 - edge.p0) * ss + (edge.e1 - edge.e0) * st + (edge.p1 - edge.e1) * tt;
-    precise vec3 across = (edge.across0 * (ss * s) - edge.across1 * (tt * t))
-        + (edge.transversal0 * (3.0 * ss * t) - edge.transversal1 * (3.0 * tt * s));
-    return unit_normal(along, across, fallback);
+#ifdef FAULT_ONE_WAY
+    precise vec3 across = ((across0 * (ss * s) + transversal0 * (3.0 * ss * t)) - transversal1 * (3.0 * tt * s))
+        - across1 * (tt * t);
+#else
+    precise vec3 across = (across0 * (ss * s) - across1 * (tt * t))
+        + (transversal0 * (3.0 * ss * t) - transversal1 * (3.0 * tt * s));
+#endif
+    return across;
 }
 
 #ifdef SHARED
@@ -40,21 +35,16 @@ layout(location = 26) in float shared_lod[];
 struct SharedSample {
     vec3 position;
     vec3 normal;
-    vec3 direction;
 #ifdef DISPLACED
+    vec3 direction;
     vec2 texcoord;  // where the displacement is looked up
     float lod;
 #endif
 };
 
-// Puts what is shared in the place of what the patch alone makes of it.
-SharedSample share(Sample own, vec3 at) {
-#ifdef DISPLACED
-    SharedSample surface =
-        SharedSample(own.position, own.normal, own.normal, INTERPOLATED(texcoord, at), INTERPOLATED(shared_lod, at));
-#else
-    SharedSample surface = SharedSample(own.position, own.normal, own.normal);
-#endif
+// The surface with what is shared in the place of what the patch alone makes of it. Positions on edges are the same in any
+// case.
+SharedSample share(Surface own, vec3 at) {
     // On which edge, and how far from its corner on the way around the patch.
 #ifdef TRIANGLE
     bvec4 on = bvec4(at.z == 0.0, at.x == 0.0, at.y == 0.0, false);
@@ -67,13 +57,6 @@ SharedSample share(Sample own, vec3 at) {
     float way = on.x ? at.x : on.y ? at.y : on.z ? left : up;
 #define PICK(of) (on.x ? of(0, 1) : on.y ? of(1, 2) : on.z ? of(2, 3) : of(3, 0))
 #endif
-    if (!any(on)) {
-        return surface;
-    }
-#define P0(k, n) owned[k][0]
-#define E0(k, n) owned[k][1]
-#define E1(k, n) owned[n][2]
-#define P1(k, n) owned[n][0]
 #define ACROSS0(k, n) shared_with[k][0]
 #define TRANSVERSAL0(k, n) shared_with[k][1]
 #define ACROSS1(k, n) shared_with[n][2]
@@ -82,46 +65,54 @@ SharedSample share(Sample own, vec3 at) {
 #define NORMAL1(k, n) shared_with[n][4]
 #define DIRECTION0(k, n) shared_with[k][SHARED_VECTORS - 1]
 #define DIRECTION1(k, n) shared_with[n][SHARED_VECTORS - 1]
-#define BITS(k, n) shared_bits[k]
-    Edge edge = Edge(PICK(P0), PICK(E0), PICK(E1), PICK(P1), PICK(ACROSS0), PICK(ACROSS1), PICK(TRANSVERSAL0),
-                     PICK(TRANSVERSAL1));
-    vec3 direction0 = PICK(DIRECTION0), direction1 = PICK(DIRECTION1);
-    uint bits = PICK(BITS);
-    // From the lower vertex to the higher.
-#ifdef FAULT_OWN_ORDER
-    bool reversed = false;
-#else
-    bool reversed = (bits & REVERSED_BIT) != 0u;
-#endif
-    precise float back = 1.0 - way;
-    float t = reversed ? back : way;
-    edge = reversed ? Edge(edge.p1, edge.e1, edge.e0, edge.p0, edge.across1, edge.across0, edge.transversal1,
-                           edge.transversal0)
-                    : edge;
-    surface.position = edge_position(edge, t);
-#ifndef FAULT_OWN_NORMAL
-    // A sum of two is the same both ways.
-    precise vec3 fallback = direction0 + direction1;
-    vec3 along_edge = edge_normal(edge, t, fallback);
-    surface.direction = way == 0.0 ? direction0 : way == 1.0 ? direction1 : along_edge;
-    bool sharp = (bits & SHARP_EDGE_BIT) != 0u;
-    surface.normal = way == 0.0 ? PICK(NORMAL0) : way == 1.0 ? PICK(NORMAL1) : sharp ? own.normal : along_edge;
-#endif
-#ifdef DISPLACED
+#define SHARP(k, n) (shared_bits[k] & SHARP_EDGE_BIT) != 0u
+#define AFTER(k, n) owned[k][1]
+#define BEFORE(k, n) owned[n][2]
+#define BETWEEN(k, n) CONTROL_POINT(n, 2) - CONTROL_POINT(k, 1)
 #define TEXCOORD0(k, n) shared_texcoord[k][0]
 #define TEXCOORD1(k, n) shared_texcoord[n][1]
 #define CORNER_TEXCOORD0(k, n) shared_texcoord[k][2]
 #define CORNER_TEXCOORD1(k, n) shared_texcoord[n][2]
 #define LOD0(k, n) shared_lod[k]
 #define LOD1(k, n) shared_lod[n]
-    vec2 texcoord0 = PICK(TEXCOORD0), texcoord1 = PICK(TEXCOORD1);
-    float lod0 = PICK(LOD0), lod1 = PICK(LOD1);
-    precise float s = 1.0 - t;
-    precise vec2 on_edge = s * (reversed ? texcoord1 : texcoord0) + t * (reversed ? texcoord0 : texcoord1);
-    precise float lod = s * (reversed ? lod1 : lod0) + t * (reversed ? lod0 : lod1);
-    surface.texcoord = way == 0.0 ? PICK(CORNER_TEXCOORD0) : way == 1.0 ? PICK(CORNER_TEXCOORD1) : on_edge;
-    surface.lod = lod;
+    SharedSample surface;
+    surface.position = own.position;
+#ifdef DISPLACED
+    surface.direction = sample_of(own).normal;
+    surface.texcoord = INTERPOLATED(texcoord, at);
+    surface.lod = INTERPOLATED(shared_lod, at);
 #endif
+    if (any(on)) {
+        vec3 across = edge_across(PICK(ACROSS0), PICK(TRANSVERSAL0), PICK(TRANSVERSAL1), PICK(ACROSS1), way);
+#ifdef TRIANGLE
+        vec3 along = edge_slope(cubic_basis(way).slope, PICK(AFTER), PICK(BETWEEN), PICK(BEFORE));
+#else
+        vec3 along = on.x ? own.du : on.y ? own.dv : on.z ? -own.du : -own.dv;
+#endif
+        // A sum of two is the same both ways.
+        precise vec3 facing = PICK(DIRECTION0) + PICK(DIRECTION1);
+#ifndef FAULT_OWN_NORMAL
+#ifdef DISPLACED
+        vec3 of_edge = unit_normal(along, across, facing);
+        surface.direction = way == 0.0 ? PICK(DIRECTION0) : way == 1.0 ? PICK(DIRECTION1) : of_edge;
+#endif
+        if (way == 0.0) {
+            own = Surface(own.position, vec3(0.0), vec3(0.0), PICK(NORMAL0));
+        } else if (way == 1.0) {
+            own = Surface(own.position, vec3(0.0), vec3(0.0), PICK(NORMAL1));
+        } else if (!(PICK(SHARP))) {
+            own = Surface(own.position, along, across, facing);
+        }
+#endif
+#ifdef DISPLACED
+        precise float s = 1.0 - way;
+        precise vec2 on_edge = s * PICK(TEXCOORD0) + way * PICK(TEXCOORD1);
+        precise float lod = s * PICK(LOD0) + way * PICK(LOD1);
+        surface.texcoord = way == 0.0 ? PICK(CORNER_TEXCOORD0) : way == 1.0 ? PICK(CORNER_TEXCOORD1) : on_edge;
+        surface.lod = lod;
+#endif
+    }
+    surface.normal = sample_of(own).normal;
     return surface;
 }
 #endif

@@ -21,7 +21,7 @@ vec3 tangent(vec3 x0, vec3 near, vec3 far, vec3 x2, float t) {
     return (s * s) * x0 + (t * t) * x2 + (2.0 * (s * t)) * (3.0 * (far - near));
 }
 
-Sample evaluate_acc(float u, float v) {
+Surface evaluate_acc(float u, float v) {
     Basis bu = cubic_basis(u);
     Basis bv = cubic_basis(v);
     vec3 c0 = symmetric_sum(bu.value, corner(0), edge_plus(0), edge_minus(1), corner(1));
@@ -37,11 +37,11 @@ Sample evaluate_acc(float u, float v) {
     vec3 v2 = tangent(x_minus(1), inner(1), inner(2), -x_plus(2), v);
     vec3 v3 = tangent(t_plus(1), edge_plus(1), edge_minus(2), -t_minus(2), v);
     vec3 diagonals = cross(corner(2) - corner(0), corner(3) - corner(1));
-    return Sample(symmetric_sum(bv.value, c0, c1, c2, c3),
-                  unit_normal(symmetric_sum(bv.value, u0, u1, u2, u3), symmetric_sum(bu.value, v0, v1, v2, v3), diagonals));
+    return Surface(symmetric_sum(bv.value, c0, c1, c2, c3), symmetric_sum(bv.value, u0, u1, u2, u3),
+                   symmetric_sum(bu.value, v0, v1, v2, v3), diagonals);
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_acc(at.x, at.y);
 }
 

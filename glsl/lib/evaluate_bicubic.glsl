@@ -5,20 +5,13 @@
 
 #include "patch.glsl"
 
-// The points of corner k.
-#define corner(k) owned[k][0]
-#define edge_plus(k) owned[k][1]
-#define edge_minus(k) owned[k][2]
-#define face_plus(k) owned[k][3]
-
-Sample evaluate_bicubic(float u, float v) {
-    return evaluate_tensor(corner(0), edge_minus(0), edge_plus(3), corner(3),          //
-                           edge_plus(0), face_plus(0), face_plus(3), edge_minus(3),    //
-                           edge_minus(1), face_plus(1), face_plus(2), edge_plus(2),    //
-                           corner(1), edge_plus(1), edge_minus(2), corner(2), u, v);
+Surface evaluate_bicubic(float u, float v) {
+#define CORNER(k) TensorCorner(owned[k][0], owned[k][1], owned[k][2], owned[k][3])
+    return evaluate_tensor(CORNER(0), CORNER(1), CORNER(2), CORNER(3), u, v);
+#undef CORNER
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_bicubic(at.x, at.y);
 }
 

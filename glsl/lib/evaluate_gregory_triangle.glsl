@@ -5,15 +5,13 @@
 
 #include "patch.glsl"
 
-// The points of corner k.
 #define corner(k) owned[k][0]
-#define edge_plus(k) owned[k][1]
-#define edge_minus(k) owned[k][2]
-#define face_plus(k) owned[k][3]
-#define face_minus(k) owned[k][4]
+#define edge_plus(k) from_corner(owned[k][0], owned[k][1])
+#define edge_minus(k) from_corner(owned[k][0], owned[k][2])
 
 // The terms of corner k with coordinate x, and of its edge to the next corner, whose coordinate is y: the derivatives,
-// and of the position what vanishes on the edges. Points are given as seen from `origin`: see `evaluate_tensor`.
+// and of the position what vanishes on the edges. Points are given as seen from `origin`,
+// corner 0: see `evaluate_tensor`.
 void add_corner(float x, float y, float z, vec3 origin, vec3 p, vec3 plus, vec3 next_minus, vec3 f_plus, vec3 f_minus,
                 inout vec3 inner, inout vec3 dx, inout vec3 dy, inout vec3 dz) {
     vec3 edge = x * plus + y * next_minus;
@@ -40,20 +38,16 @@ vec3 position_at(float u, float v, float w, vec3 inner) {
     return position;
 }
 
-Sample evaluate_gregory_triangle(float u, float v, float w) {
-    precise vec3 o = corner(0);
+Surface evaluate_gregory_triangle(float u, float v, float w) {
+    precise vec3 o = corner(0), b = corner(1) - o, c = corner(2) - o;
     vec3 inner = vec3(0.0), du = vec3(0.0), dv = vec3(0.0), dw = vec3(0.0);
-    add_corner(u, v, w, o, corner(0) - o, edge_plus(0) - o, edge_minus(1) - o, face_plus(0) - o,
-               face_minus(0) - o, inner, du, dv, dw);
-    add_corner(v, w, u, o, corner(1) - o, edge_plus(1) - o, edge_minus(2) - o, face_plus(1) - o,
-               face_minus(1) - o, inner, dv, dw, du);
-    add_corner(w, u, v, o, corner(2) - o, edge_plus(2) - o, edge_minus(0) - o, face_plus(2) - o,
-               face_minus(2) - o, inner, dw, du, dv);
-    vec3 chords = cross(corner(1) - corner(0), corner(2) - corner(0));
-    return Sample(position_at(u, v, w, inner), unit_normal(du - dw, dv - dw, chords));
+    add_corner(u, v, w, o, vec3(0.0), owned[0][1], b + owned[1][2], owned[0][3], owned[0][4], inner, du, dv, dw);
+    add_corner(v, w, u, o, b, b + owned[1][1], c + owned[2][2], b + owned[1][3], b + owned[1][4], inner, dv, dw, du);
+    add_corner(w, u, v, o, c, c + owned[2][1], owned[0][2], c + owned[2][3], c + owned[2][4], inner, dw, du, dv);
+    return Surface(position_at(u, v, w, inner), du - dw, dv - dw, cross(b, c));
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_gregory_triangle(at.x, at.y, at.z);
 }
 

@@ -10,7 +10,7 @@ PmCorner corner_of(uint k) {
     return PmCorner(owned[k][0], owned[k][1], owned[k][2], owned[k][3], owned[k][4], owned[k][5]);
 }
 
-Sample evaluate_pm_pentagon(float x, float y, float z) {
+Surface evaluate_pm_pentagon(float x, float y, float z) {
     PmCorner i = corner_of(0);
     PmCorner j = corner_of(1);
     Spoke si = pm_spoke(i, owned[4][5]);
@@ -20,7 +20,7 @@ Sample evaluate_pm_pentagon(float x, float y, float z) {
     return evaluate_sector(i, j, si, sj, sum / 5.0, x, y, z);
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_pm_pentagon(at.x, at.y, at.z);
 }
 

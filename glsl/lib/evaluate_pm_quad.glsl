@@ -17,7 +17,7 @@ PmCorner corner_of(vec4 which) {
     return PmCorner(PICK(which, 0), PICK(which, 1), PICK(which, 2), PICK(which, 3), PICK(which, 4), PICK(which, 5));
 }
 
-Sample evaluate_pm_quad(float u, float v) {
+Surface evaluate_pm_quad(float u, float v) {
     bool below = v <= u;
     bool left = u + v <= 1.0;
     vec4 which = below ? (left ? vec4(1, 0, 0, 0) : vec4(0, 1, 0, 0)) : (left ? vec4(0, 0, 0, 1) : vec4(0, 0, 1, 0));
@@ -31,7 +31,7 @@ Sample evaluate_pm_quad(float u, float v) {
     return evaluate_sector(i, j, si, sj, centre, at.x, at.y, at.z);
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_pm_quad(at.x, at.y);
 }
 

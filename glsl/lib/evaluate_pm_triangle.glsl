@@ -17,7 +17,7 @@ PmCorner corner_of(vec3 which) {
     return PmCorner(PICK(which, 0), PICK(which, 1), PICK(which, 2), PICK(which, 3), PICK(which, 4), PICK(which, 5));
 }
 
-Sample evaluate_pm_triangle(float u, float v, float w) {
+Surface evaluate_pm_triangle(float u, float v, float w) {
     // A sector is where its opposite corner's coordinate is the least.
     bool first = w <= u && w <= v;
     bool second = u <= v;
@@ -33,7 +33,7 @@ Sample evaluate_pm_triangle(float u, float v, float w) {
     return evaluate_sector(i, j, si, sj, centre, at.x, at.y, at.z);
 }
 
-Sample evaluate_patch(vec3 at) {
+Surface evaluate_surface(vec3 at) {
     return evaluate_pm_triangle(at.x, at.y, at.z);
 }
 

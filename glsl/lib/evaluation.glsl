@@ -76,15 +76,8 @@ vec3 parameter() {
 #endif
 }
 
-void emit(Sample surface, vec3 at) {
-#ifdef SHARED
-    SharedSample of_all = share(surface, at);
-    surface = Sample(of_all.position, of_all.normal);
-#endif
-#ifdef DISPLACED
-    vec3 displaced = displace(of_all.position, of_all.direction, of_all.texcoord, of_all.lod);
-    surface = Sample(displaced, of_all.normal);
-#endif
+// Hands on a vertex.
+void emit_sample(Sample surface, vec3 at) {
 #ifdef CAPTURE
     capture_sample(captured_patch, 0u, 0u, at, surface.position, surface.normal);
 #endif
@@ -101,6 +94,20 @@ void emit(Sample surface, vec3 at) {
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);
     gl_Position = to_clip(world_position);
+}
+
+// A vertex of the surface, as all patches at an edge have it.
+void emit(Surface surface, vec3 at) {
+#ifdef DISPLACED
+    SharedSample of_all = share(surface, at);
+    vec3 displaced = displace(of_all.position, of_all.direction, of_all.texcoord, of_all.lod);
+    emit_sample(Sample(displaced, of_all.normal), at);
+#elif defined(SHARED)
+    SharedSample of_all = share(surface, at);
+    emit_sample(Sample(of_all.position, of_all.normal), at);
+#else
+    emit_sample(sample_of(surface), at);
+#endif
 }
 
 #endif

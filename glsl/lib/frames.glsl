@@ -1,43 +1,39 @@
-// What the control shaders of the two-stage construction get from its vertex shader, and share.
+// What the control shaders of the two-stage construction get from its vertex shader for each corner: see
+// glsl/construct/two_stage.vert.
 #ifndef FRAMES_GLSL
 #define FRAMES_GLSL
 
-#include "rings.glsl"
 #ifdef SHARED
 #include "shared.glsl"
 #endif
 
 layout(location = 0) in vec3 in_centre[];
 layout(location = 1) in vec4 in_limit[];  // w: the ring's cosine
-layout(location = 2) in vec3 in_tangent_a[];
-layout(location = 3) in vec3 in_tangent_b[];
+layout(location = 2) in vec3 in_plus[];   // as seen from the limit point
+layout(location = 3) in vec3 in_minus[];  // likewise
 layout(location = 4) in uint in_patch_number[];
-
-// A corner of the patch and its ring.
-struct Corner {
-    uint index;  // of its ring
-    Ring ring;
-    uint plus;   // the ring edge that is its plus edge
-    uint minus;  // and its minus edge
-};
-
-Corner corner_at(uint k) {
-    uvec2 place = patch_corners[draw.first_corner + in_patch_number[0] * CORNERS + k];
-    Ring ring = ring_at(place.x);
-    return Corner(place.x, ring, place.y, place.y + 1u == ring.edges ? 0u : place.y + 1u);
-}
-
-// The frame's edge point of corner k, this invocation's, at its ring edge j.
-vec3 corner_edge_point(Corner corner, uint k, uint j) {
-    return edge_point(corner.ring, j, in_centre[k], in_limit[k].xyz, in_tangent_a[k], in_tangent_b[k]);
-}
+#ifdef INNER
+layout(location = 5) in vec3 in_inner[][INNER];
+#endif
+#ifdef SHARED
+layout(location = 8) in vec3 in_shared_with[][SHARED_VECTORS];
+layout(location = 14) in uint in_shared_bits[];
+#ifdef DISPLACED
+layout(location = 15) in float in_shared_lod[];
+#endif
+#endif
 
 // What is left to do when the corner's control points are written: see `finish_corner`.
-void finish_framed_corner(Corner corner, uint k) {
+void finish_framed_corner(uint k) {
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
-    share_corner(draw.first_corner + in_patch_number[0] * CORNERS + k,
-                 FramedRing(corner.index, corner.ring, in_centre[k], in_limit[k].xyz, in_tangent_a[k], in_tangent_b[k]));
+    SharedCorner with;
+    with.vectors = in_shared_with[k];
+    with.bits = in_shared_bits[k];
+#ifdef DISPLACED
+    with.lod = in_shared_lod[k];
+#endif
+    write_shared(draw.first_corner + in_patch_number[0] * CORNERS + k, with);
 #endif
 }
 

@@ -1,5 +1,5 @@
 // The kind of patch that a shader which evaluates a lattice is compiled for, by the macro that its variant names: how many
-// control points its corners own, and `evaluate_patch`. The names are those of `files` in src/renderer/stages.rs.
+// control points its corners own, and `evaluate_surface`. The names are those of `files` in src/renderer/stages.rs.
 #ifndef KINDS_GLSL
 #define KINDS_GLSL
 
@@ -25,7 +25,7 @@
 #define OWNED 4
 #endif
 
-// The control points that each corner of the patch owns: to be there before `evaluate_patch`.
+// The control points that each corner of the patch owns: to be there before `evaluate_surface`.
 vec3 owned[CORNERS][OWNED];
 
 #if defined(GREGORY_QUAD)

@@ -4,6 +4,13 @@
 #ifndef PATCH_GLSL
 #define PATCH_GLSL
 
+// What evaluating a patch gives: of the derivatives only the direction counts.
+struct Surface {
+    vec3 position;
+    vec3 du, dv;
+    vec3 facing;  // about where the normal goes where the derivatives are parallel
+};
+
 struct Sample {
     vec3 position;
     vec3 normal;
@@ -11,18 +18,16 @@ struct Sample {
 
 struct Basis {
     vec4 value;
-    vec4 derivative;
+    vec3 slope;  // the quadratic polynomials: of the differences of the points they make a third of the derivative
 };
 
-// The cubic Bernstein polynomials and their derivatives: at t and 1 - t the same numbers in reverse order.
+// The cubic Bernstein polynomials: at t and 1 - t the same numbers in reverse order.
 Basis cubic_basis(float t) {
     precise float s = 1.0 - t;
     precise float ss = s * s;
     precise float tt = t * t;
-    precise float st = s * t;
     precise vec4 value = vec4(ss * s, 3.0 * ss * t, 3.0 * tt * s, tt * t);
-    precise vec4 derivative = vec4(-(3.0 * ss), 3.0 * ss - 3.0 * (2.0 * st), 3.0 * (2.0 * st) - 3.0 * tt, 3.0 * tt);
-    return Basis(value, derivative);
+    return Basis(value, vec3(ss, 2.0 * (s * t), tt));
 }
 
 // The sum that both directions along an edge evaluate to the same bits.
@@ -57,41 +62,72 @@ vec3 unit_normal(vec3 du, vec3 dv, vec3 fallback) {
     return unit(parallel ? fallback : normal);
 }
 
-// A 4 x 4 tensor-product Bezier patch, rows along u.
+// A control point that is kept as seen from its corner.
+vec3 from_corner(vec3 p, vec3 vector) {
+    precise vec3 point = p + vector;
+    return point;
+}
+
+// A control point other than the corner itself, of those that a corner owns: bicubic and Gregory patches, with 4 and 5, keep
+// them as seen from the corner, for the differences of which normals are made.
+#if defined(OWNED) && OWNED != 4 && OWNED != 5
+#define CONTROL_POINT(k, i) owned[k][i]
+#else
+#define CONTROL_POINT(k, i) from_corner(owned[k][0], owned[k][i])
+#endif
+
+Sample sample_of(Surface surface) {
+    return Sample(surface.position, unit_normal(surface.du, surface.dv, surface.facing));
+}
+
+// A third of the derivative along a cubic: from its ends `near` and `far` to the points beside them, and between these. From either
+// end the same but for its sign.
+vec3 edge_slope(vec3 slope, vec3 near, vec3 middle, vec3 far) {
+    precise vec3 sum = (slope.x * near - slope.z * far) + slope.y * middle;
+    return sum;
+}
+
+// What a corner of a tensor-product patch owns: its point and, as seen from there, those along its plus and its minus edge, and
+// inside.
+struct TensorCorner {
+    vec3 p, plus, minus, inner;
+};
+
+// A 4 x 4 tensor-product Bezier patch.
 //
-// Derivatives are taken of the points as seen from the first one: they are differences of nearly equal numbers where a patch
-// is small and far from the origin. Positions are not: an edge must get the same bits from both of its patches.
-Sample evaluate_tensor(vec3 x00, vec3 x01, vec3 x02, vec3 x03, vec3 x10, vec3 x11, vec3 x12, vec3 x13, vec3 x20,
-                       vec3 x21, vec3 x22, vec3 x23, vec3 x30, vec3 x31, vec3 x32, vec3 x33, float u, float v) {
+// The row of points beside an edge is the row of the edge and vectors from there, so that slopes across an edge are made of
+// those vectors alone: with points, they would be differences of nearly equal numbers where a patch is small and far from the
+// origin. The derivative along an edge has the same bits for both its patches, but for its sign.
+Surface evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCorner d, float u, float v) {
     Basis bu = cubic_basis(u);
     Basis bv = cubic_basis(v);
-    vec3 c0 = symmetric_sum(bu.value, x00, x10, x20, x30);
-    vec3 c1 = symmetric_sum(bu.value, x01, x11, x21, x31);
-    vec3 c2 = symmetric_sum(bu.value, x02, x12, x22, x32);
-    vec3 c3 = symmetric_sum(bu.value, x03, x13, x23, x33);
-    vec3 position = symmetric_sum(bv.value, c0, c1, c2, c3);
+    // From a to b, and from d to c.
+    vec3 x1 = from_corner(a.p, a.plus), x2 = from_corner(b.p, b.minus);
+    vec3 y1 = from_corner(d.p, d.minus), y2 = from_corner(c.p, c.plus);
+    vec3 x = symmetric_sum(bu.value, a.p, x1, x2, b.p);
+    vec3 y = symmetric_sum(bu.value, d.p, y1, y2, c.p);
+    // From those edges inwards.
+    vec3 v1 = a.inner - a.plus, v2 = b.inner - b.minus;
+    vec3 w1 = d.inner - d.minus, w2 = c.inner - c.plus;
+    vec3 x_in = symmetric_sum(bu.value, a.minus, v1, v2, b.plus);
+    vec3 y_in = symmetric_sum(bu.value, d.plus, w1, w2, c.minus);
+    vec3 x_beside = from_corner(x, x_in), y_beside = from_corner(y, y_in);
+    vec3 position = symmetric_sum(bv.value, x, x_beside, y_beside, y);
 
-    precise vec3 y01 = x01 - x00, y02 = x02 - x00, y03 = x03 - x00;
-    precise vec3 y10 = x10 - x00, y11 = x11 - x00, y12 = x12 - x00, y13 = x13 - x00;
-    precise vec3 y20 = x20 - x00, y21 = x21 - x00, y22 = x22 - x00, y23 = x23 - x00;
-    precise vec3 y30 = x30 - x00, y31 = x31 - x00, y32 = x32 - x00, y33 = x33 - x00;
-    vec3 d0 = symmetric_sum(bu.derivative, vec3(0.0), y10, y20, y30);
-    vec3 d1 = symmetric_sum(bu.derivative, y01, y11, y21, y31);
-    vec3 d2 = symmetric_sum(bu.derivative, y02, y12, y22, y32);
-    vec3 d3 = symmetric_sum(bu.derivative, y03, y13, y23, y33);
-    vec3 e0 = symmetric_sum(bu.value, vec3(0.0), y10, y20, y30);
-    vec3 e1 = symmetric_sum(bu.value, y01, y11, y21, y31);
-    vec3 e2 = symmetric_sum(bu.value, y02, y12, y22, y32);
-    vec3 e3 = symmetric_sum(bu.value, y03, y13, y23, y33);
-    vec3 du = symmetric_sum(bv.value, d0, d1, d2, d3);
-    vec3 dv = symmetric_sum(bv.derivative, e0, e1, e2, e3);
-    return Sample(position, unit_normal(du, dv, cross(y33, y03 - y30)));
+    // A third of the derivatives.
+    vec3 dv = edge_slope(bv.slope, x_in, y_beside - x_beside, y_in);
+    vec3 dx = edge_slope(bu.slope, a.plus, x2 - x1, b.minus);
+    vec3 dy = edge_slope(bu.slope, d.minus, y2 - y1, c.plus);
+    vec3 dx_in = bu.slope.x * (v1 - a.minus) + bu.slope.y * (v2 - v1) + bu.slope.z * (b.plus - v2);
+    vec3 dy_in = bu.slope.x * (w1 - d.plus) + bu.slope.y * (w2 - w1) + bu.slope.z * (c.minus - w2);
+    vec4 at = bv.value;
+    precise vec3 du = ((at.x + at.y) * dx + at.y * dx_in) + ((at.z + at.w) * dy + at.z * dy_in);
+    return Surface(position, du, dv, cross(c.p - a.p, d.p - b.p));
 }
 
 // The face point (a f+ + b f-) / (a + b); at a corner, where both weights vanish, it does not matter.
 vec3 blend(vec3 plus, float a, vec3 minus, float b) {
-    float sum = a + b;
-    return sum > 0.0 ? (a * plus + b * minus) * (1.0 / sum) : plus;
+    return plus + (b / max(a + b, 1e-30)) * (minus - plus);
 }
 
 // What the corners have, at a point of the patch.

@@ -34,7 +34,7 @@ Spoke pm_spoke(PmCorner corner, vec3 b112_before) {
 }
 
 // The sector between corners i and j at barycentric (x, y, z), z = 1 at the centre: de Casteljau's algorithm on a quartic.
-Sample evaluate_sector(PmCorner i, PmCorner j, Spoke si, Spoke sj, vec3 centre, float x, float y, float z) {
+Surface evaluate_sector(PmCorner i, PmCorner j, Spoke si, Spoke sj, vec3 centre, float x, float y, float z) {
     precise vec3 r00 = i.v, r04 = j.v;
     precise vec3 r01 = 0.25 * (i.v + 3.0 * i.t_plus), r03 = 0.25 * (j.v + 3.0 * j.t_minus);
     precise vec3 r02 = 0.5 * (i.t_plus + j.t_minus);
@@ -51,7 +51,7 @@ Sample evaluate_sector(PmCorner i, PmCorner j, Spoke si, Spoke sj, vec3 centre, 
     vec3 q20 = STEP(s20, s21, s30);
     vec3 a = STEP(q00, q01, q10), b = STEP(q01, q02, q11), c = STEP(q10, q11, q20);
     vec3 chords = cross(j.v - i.v, centre - i.v);
-    return Sample(STEP(a, b, c), unit_normal(4.0 * (a - c), 4.0 * (b - c), chords));
+    return Surface(STEP(a, b, c), 4.0 * (a - c), 4.0 * (b - c), chords);
 #undef STEP
 }
 

@@ -16,6 +16,11 @@ const uint CONE_BIT = 1u << 30;
 const uint FITTED_BIT = 1u << 28;
 const uint FALLBACK_BIT = 1u << 29;
 
+// What no ring of the scheme has need not be looked for. Rust twin: `PatchStages::specialization` in
+// src/renderer/stages.rs.
+layout(constant_id = 5) const bool MAY_BE_FITTED = true;
+layout(constant_id = 6) const bool MAY_HAVE_PENTAGONS = true;
+
 struct Ring {
     uint vertex;
     uint entries;
@@ -55,7 +60,7 @@ vec3 edge_neighbour(Ring ring, uint j) {
 
 // What a ring entry stands for: a vertex, or the middle of the far edge of a pentagon.
 vec3 entry_position(uint entry) {
-    if ((entry & PENTAGON_BIT) != 0u) {
+    if (MAY_HAVE_PENTAGONS && (entry & PENTAGON_BIT) != 0u) {
         uint at = entry & ~PENTAGON_BIT;
         return 0.5 * (vertex_position(ring_entries[at]) + vertex_position(ring_entries[at + 1u]));
     }
@@ -89,61 +94,68 @@ void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3
     b_out = b;
 }
 
-// e_j.
-vec3 edge_point(Ring ring, uint j, vec3 centre, vec3 p, vec3 a, vec3 b) {
-    precise vec3 e;
-    if (ring.cone) {
-        e = (2.0 * centre + edge_neighbour(ring, j)) / 3.0;
-    } else {
-        vec2 direction = edge_direction(ring, j);
-        e = p + (direction.x * a + direction.y * b);
-    }
-    return e;
+// e_j as seen from p.
+vec3 edge_vector(Ring ring, uint j, vec3 centre, vec3 here, vec3 a, vec3 b) {
+    vec2 direction = edge_direction(ring, j);
+    precise vec3 in_plane = direction.x * a + direction.y * b;
+    precise vec3 straight = (here - centre) / 3.0;
+    return ring.cone ? straight : in_plane;
 }
 
-// c_i, the mean of the vertices of face i; `first` and `second` are the ends of its edges.
-vec3 face_centroid(Ring ring, uint i, vec3 centre, vec3 first, vec3 second) {
+// A face of the ring.
+struct Face {
+    bool triangle;
+    vec3 diagonal;  // the vertex opposite; of a triangle any
+};
+
+Face ring_face(Ring ring, uint i) {
     uint entry = ring_entries[ring.entries + 2u * i + 1u];
+    return Face((entry & TRIANGLE_BIT) != 0u, entry_position(entry));
+}
+
+// c_i, the mean of the vertices of a face; `first` and `second` are the ends of its edges.
+vec3 face_centroid(Face face, vec3 centre, vec3 first, vec3 second) {
     precise vec3 sum = centre + first + second;
     precise vec3 of_three = sum / 3.0;
-    precise vec3 of_four = (sum + vertex_position(entry & ~TRIANGLE_BIT)) / 4.0;
-    return (entry & TRIANGLE_BIT) != 0u ? of_three : of_four;
+    precise vec3 of_four = (sum + face.diagonal) / 4.0;
+    return face.triangle ? of_three : of_four;
 }
 
+// What the transversal of an edge is made of: its other end and those of the edges before and after it, and the means of the
+// faces between.
+struct Beside {
+    bool first, last;  // there is nothing before or after it
+    vec3 centre, before, here, next, mean_before, mean;
+};
+
 // r_j, the transversal of edge j.
-vec3 transversal(Ring ring, uint j, vec3 centre) {
-    vec3 here = edge_neighbour(ring, j);
-    precise vec3 r;
-    if (ring.open && j == 0u) {
-        vec3 next = edge_neighbour(ring, 1u);
-        vec3 mean = face_centroid(ring, 0u, centre, here, next);
-        r = (next - centre) / 3.0 + (4.0 * mean - 2.0 * (centre + here)) / 3.0;
-        return r;
-    }
-    uint before_j = (j == 0u ? ring.edges : j) - 1u;
-    vec3 before = edge_neighbour(ring, before_j);
-    vec3 mean_before = face_centroid(ring, before_j, centre, before, here);
-    if (ring.open && j == ring.faces) {
-        r = (centre - before) / 3.0 + (2.0 * (centre + here) - 4.0 * mean_before) / 3.0;
-        return r;
-    }
-    vec3 next = edge_neighbour(ring, j + 1u);
-    vec3 mean = face_centroid(ring, j, centre, here, next);
-    r = (next - before) / 6.0 + (2.0 / 3.0) * (mean - mean_before);
-    return r;
+vec3 transversal(Beside at) {
+    precise vec3 inside = (at.next - at.before) / 6.0 + (2.0 / 3.0) * (at.mean - at.mean_before);
+    precise vec3 first = (at.next - at.centre) / 3.0 + (4.0 * at.mean - 2.0 * (at.centre + at.here)) / 3.0;
+    precise vec3 last = (at.centre - at.before) / 3.0 + (2.0 * (at.centre + at.here) - 4.0 * at.mean_before) / 3.0;
+    return at.first ? first : at.last ? last : inside;
 }
 
 // The transversal of edge j as the scheme has it; a and b are the tangent frame. Rust twin: `Scheme::transversal` in
 // src/patch/scheme.rs.
-vec3 scheme_transversal(Ring ring, uint j, vec3 centre, vec3 a, vec3 b) {
-    precise vec3 r = transversal(ring, j, centre);
-    if (ring.fitted) {
+vec3 scheme_transversal(Ring ring, uint j, Beside beside, vec3 a, vec3 b) {
+    precise vec3 r = transversal(beside);
+    if (MAY_BE_FITTED && ring.fitted) {
         // After the ring's cosine, its edges' directions and its frame's weights.
         uint at = ring.type + 1u + 2u * ring.edges + 3u * (1u + ring.edges + ring.faces) + 2u * j;
         vec2 direction = edge_direction(ring, j);
         r = ring_types[at] * r + ring_types[at + 1u] * (direction.x * b - direction.y * a);
     }
     return r;
+}
+
+// Edges and faces before and after an edge; where there is none, any.
+uint edge_before(Ring ring, uint j) {
+    return j > 0u ? j - 1u : ring.open ? 0u : ring.edges - 1u;
+}
+
+uint edge_after(Ring ring, uint j) {
+    return j + 1u < ring.edges ? j + 1u : 0u;
 }
 
 #endif

@@ -1,4 +1,5 @@
-// What a patch corner shares with other patches, for the control shaders to write. Rust twin: src/table/shared.rs.
+// What a patch corner shares with other patches: made in the vertex shader or in the control shader, and handed on by the latter.
+// Rust twin: src/table/shared.rs.
 #ifndef SHARED_GLSL
 #define SHARED_GLSL
 
@@ -6,24 +7,32 @@
 #include "rings.glsl"
 #include "shared_bits.glsl"
 
-layout(set = 1, binding = 9, std430) readonly buffer SharedCorners { uint shared_corners[]; };
+// Whether any corner has another ring than its own speak for what it shares, as at creases.
+layout(constant_id = 7) const bool HAS_SPEAKERS = true;
 
-layout(location = 16) out vec3 shared_with[][SHARED_VECTORS];
-layout(location = 22) out uint shared_bits[];
+layout(set = 1, binding = 9, std430) readonly buffer SharedCorners { uint shared_corners[]; };
 
 #ifdef DISPLACED
 #include "displace.glsl"
+#include "factors.glsl"
 
 // Texture coordinates at a corner: on its plus edge, on its minus edge, at the corner itself; and x: the mean length of an
 // edge there. Rust twin: `SharedTexcoord` in src/table/shared.rs.
 struct SharedTexcoord { vec2 plus, minus, corner, scale; };
 layout(set = 1, binding = 10, std430) readonly buffer SharedTexcoords { SharedTexcoord shared_texcoords[]; };
-layout(location = 23) out vec2 shared_texcoord[][3];
-layout(location = 26) out float shared_lod[];
 #endif
 
 const uint SHARED_WORDS = 5u;
-const uint EDGE_MASK = ~(REVERSED_BIT | SHARP_EDGE_BIT);
+const uint EDGE_MASK = ~SHARP_EDGE_BIT;
+
+// What a corner shares: see SHARED_VECTORS.
+struct SharedCorner {
+    vec3 vectors[SHARED_VECTORS];
+    uint bits;
+#ifdef DISPLACED
+    float lod;
+#endif
+};
 
 // A ring with its limit point and tangent frame.
 struct FramedRing {
@@ -39,26 +48,34 @@ FramedRing framed_ring(uint index) {
     return framed;
 }
 
-vec3 framed_edge_point(FramedRing at, uint j) {
-    return edge_point(at.ring, j, at.centre, at.p, at.a, at.b);
+// An edge as the vertex of a ring sees it.
+struct SharedEdge {
+    vec3 across;
+    vec3 transversal;
+};
+
+// The vector across edge j; e0 and e1 are the edge vectors before and after it. Rust twin: `RingValues::across` in
+// src/patch/ring.rs.
+vec3 across(Ring ring, uint j, vec3 e0, vec3 e, vec3 e1) {
+    float cosine = ring_cosine(ring);
+    precise vec3 first = 3.0 * e1 - (3.0 * cosine) * e;
+    precise vec3 last = (3.0 * cosine) * e - 3.0 * e0;
+    precise vec3 inside = 1.5 * (e1 - e0);
+    return !ring.open ? inside : j == 0u ? first : j == ring.faces ? last : inside;
 }
 
-// Rust twin: `RingValues::across` in src/patch/ring.rs.
-vec3 across(FramedRing at, uint j) {
-    float cosine = ring_cosine(at.ring);
-    precise vec3 x;
-    if (at.ring.open && j == 0u) {
-        vec3 here = framed_edge_point(at, j), next = framed_edge_point(at, j + 1u);
-        x = 3.0 * (next - at.p) - (3.0 * cosine) * (here - at.p);
-    } else if (at.ring.open && j == at.ring.faces) {
-        vec3 here = framed_edge_point(at, j), before = framed_edge_point(at, j - 1u);
-        x = (3.0 * cosine) * (here - at.p) - 3.0 * (before - at.p);
-    } else {
-        uint next_j = j + 1u == at.ring.edges ? 0u : j + 1u;
-        uint before_j = (j == 0u ? at.ring.edges : j) - 1u;
-        x = 1.5 * (framed_edge_point(at, next_j) - framed_edge_point(at, before_j));
-    }
-    return x;
+SharedEdge shared_edge(FramedRing at, uint j) {
+    Ring ring = at.ring;
+    bool first = ring.open && j == 0u, last = ring.open && j == ring.faces;
+    uint j0 = edge_before(ring, j), j1 = edge_after(ring, j);
+    vec3 before = edge_neighbour(ring, j0), here = edge_neighbour(ring, j), next = edge_neighbour(ring, j1);
+    vec3 e0 = edge_vector(ring, j0, at.centre, before, at.a, at.b);
+    vec3 e = edge_vector(ring, j, at.centre, here, at.a, at.b);
+    vec3 e1 = edge_vector(ring, j1, at.centre, next, at.a, at.b);
+    vec3 mean_before = face_centroid(ring_face(ring, j0), at.centre, before, here);
+    vec3 mean = face_centroid(ring_face(ring, last ? 0u : j), at.centre, here, next);
+    Beside beside = Beside(first, last, at.centre, before, here, next, mean_before, mean);
+    return SharedEdge(across(ring, j, e0, e, e1), scheme_transversal(ring, j, beside, at.a, at.b));
 }
 
 // The normal at the vertex of a ring; without a tangent plane, the mean normal of the faces around it.
@@ -79,43 +96,75 @@ vec3 ring_normal(FramedRing at) {
     return unit(sum);
 }
 
-// Writes what a corner of the patch shares; `own` is its ring, `corner` its number among all corners.
-void share_corner(uint corner, FramedRing own) {
+// What a corner of a patch shares; `corner` is its number among all corners, `own` its ring, with its plus and minus edge.
+SharedCorner share_corner(uint corner, FramedRing own, SharedEdge own_plus, SharedEdge own_minus) {
     uint first = SHARED_WORDS * corner;
-    uint speaker = shared_corners[first];
-    uint plus_ring = shared_corners[first + 1u];
     uint plus_edge = shared_corners[first + 2u];
-    uint minus_ring = shared_corners[first + 3u];
-    uint minus_edge = shared_corners[first + 4u];
-    shared_with[gl_InvocationID][4] = ring_normal(own);
-    // Other rings speak at creases only.
-    FramedRing at = own;
-    if (plus_ring != own.index) {
-        at = framed_ring(plus_ring);
-    }
-    shared_with[gl_InvocationID][0] = across(at, plus_edge & EDGE_MASK);
-    shared_with[gl_InvocationID][1] = scheme_transversal(at.ring, plus_edge & EDGE_MASK, at.centre, at.a, at.b);
-    if (minus_ring != at.index) {
-        at = framed_ring(minus_ring);
-    }
-    shared_with[gl_InvocationID][2] = across(at, minus_edge);
-    shared_with[gl_InvocationID][3] = scheme_transversal(at.ring, minus_edge, at.centre, at.a, at.b);
+    SharedEdge plus = own_plus, minus = own_minus;
+    FramedRing speaker = own;
+    if (HAS_SPEAKERS) {
+        uint of_corner = shared_corners[first];
+        uint of_plus = shared_corners[first + 1u];
+        uint of_minus = shared_corners[first + 3u];
+        if (of_plus != own.index) {
+            plus = shared_edge(framed_ring(of_plus), plus_edge & EDGE_MASK);
+        }
+        if (of_minus != own.index) {
+            minus = shared_edge(framed_ring(of_minus), shared_corners[first + 4u]);
+        }
 #ifdef DISPLACED
-    if (speaker != at.index) {
-        at = framed_ring(speaker);
+        if (of_corner != own.index) {
+            speaker = framed_ring(of_corner);
+        }
+#endif
     }
-    shared_with[gl_InvocationID][5] = ring_normal(at);
+    SharedCorner with;
+    with.bits = plus_edge & ~EDGE_MASK;
+    with.vectors[0] = plus.across;
+    with.vectors[1] = plus.transversal;
+    with.vectors[2] = minus.across;
+    with.vectors[3] = minus.transversal;
+    with.vectors[4] = ring_normal(own);
+#ifdef DISPLACED
+    with.vectors[5] = ring_normal(speaker);
+    // The level at which an edge here has as many texels as segments.
+    vec2 size = vec2(textureSize(displacement_map, 0));
+    precise float texels =
+        shared_texcoords[corner].scale.x * max(size.x, size.y) / vertex_factor(speaker.p, speaker.a, speaker.b);
+    with.lod = max(log2(texels), 0.0);
+#endif
+    return with;
+}
+
+#ifdef CONTROL_GLSL
+// The same, for constructions that have no ring at hand.
+SharedCorner share_corner(uint corner) {
+    uvec2 place = patch_corners[corner];
+    FramedRing own = framed_ring(place.x);
+    return share_corner(corner, own, shared_edge(own, place.y), shared_edge(own, edge_after(own.ring, place.y)));
+}
+
+layout(location = 16) out vec3 shared_with[][SHARED_VECTORS];
+layout(location = 22) out uint shared_bits[];
+#ifdef DISPLACED
+layout(location = 23) out vec2 shared_texcoord[][3];
+layout(location = 26) out float shared_lod[];
+#endif
+
+// Hands on what a corner of the patch shares.
+void write_shared(uint corner, SharedCorner with) {
+    for (int i = 0; i < SHARED_VECTORS; ++i) {
+        shared_with[gl_InvocationID][i] = with.vectors[i];
+    }
+    shared_bits[gl_InvocationID] = with.bits;
+#ifdef DISPLACED
     SharedTexcoord texcoord = shared_texcoords[corner];
     shared_texcoord[gl_InvocationID][0] = texcoord.plus;
     shared_texcoord[gl_InvocationID][1] = texcoord.minus;
     shared_texcoord[gl_InvocationID][2] = texcoord.corner;
-    // The level at which an edge here has as many texels as segments.
-    vec2 size = vec2(textureSize(displacement_map, 0));
-    precise float texels = texcoord.scale.x * max(size.x, size.y) 
-        / vertex_factor(at.p, at.a, at.b);
-    shared_lod[gl_InvocationID] = max(log2(texels), 0.0);
+    shared_lod[gl_InvocationID] = with.lod;
 #endif
-    shared_bits[gl_InvocationID] = plus_edge & ~EDGE_MASK;
 }
+#endif
 
 #endif

@@ -2,7 +2,6 @@
 #ifndef SHARED_BITS_GLSL
 #define SHARED_BITS_GLSL
 
-const uint REVERSED_BIT = 1u << 31;      // of an edge: evaluated from its far end
 const uint SHARP_EDGE_BIT = 1u << 30;    // the faces at it are lit with normals of their own
 
 // Across the plus edge and its transversal, across the minus edge and its transversal, the normal at the corner, and where

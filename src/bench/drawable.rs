@@ -1,9 +1,9 @@
 //! What every path is to the race: something that can be drawn.
 
-use super::{BenchError, Contestant, Path, Subject};
+use super::{BenchError, Contestant, Normals, Path, Subject};
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
-use crate::renderer::{Evaluation, TableBytes, View};
+use crate::renderer::{ModelOptions, TableBytes, View};
 use ash::vk;
 use std::time::Instant;
 
@@ -112,17 +112,27 @@ pub(super) struct Lane<'a> {
 impl Contestant {
     /// Makes everything that does not depend on the factor.
     pub(super) fn open(self, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
-        let (scheme, construction) = self.patches.unwrap_or_default();
-        let surface = |evaluation| super::surface::Surface::new(lane, scheme, construction, evaluation);
         Ok(match self.path {
-            Path::Tessellation => Box::new(surface(Evaluation::Tessellation)?),
-            Path::Compute => Box::new(surface(Evaluation::Compute)?),
-            Path::Instanced => Box::new(surface(Evaluation::Instanced)?),
-            Path::Geometry => Box::new(surface(Evaluation::Geometry)?),
-            Path::GeometryTwoPass => Box::new(surface(Evaluation::GeometryTwoPass)?),
             Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
             Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
+            _ => Box::new(super::surface::Surface::new(lane, self.model_options(lane), self.cull)?),
         })
+    }
+
+    /// For paths that are the renderer's own.
+    pub(super) fn model_options(self, lane: Lane) -> ModelOptions {
+        let evaluation = self.path.evaluation().unwrap_or_default();
+        let (scheme, construction) = self.patches.unwrap_or_default();
+        ModelOptions {
+            name: lane.subject.name.clone(),
+            scheme,
+            construction,
+            evaluation,
+            spacing: lane.spacing,
+            shared_normals: self.normals == Normals::Shared,
+            refine: lane.subject.refine,
+            ..ModelOptions::default()
+        }
     }
 }
 

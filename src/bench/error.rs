@@ -12,7 +12,9 @@ pub enum BenchError {
     Renderer(#[from] Error),
     #[error("{mesh}: it has no {subset} patches: choose others")]
     NoPatches { mesh: String, subset: &'static str },
-    #[error("{what} of BenchOptions is {given}: it must be at least {least}")]
+    #[error("the path {path} is not recorded by the renderer alone: measure tessellation or compute")]
+    NotRecorded { path: &'static str },
+    #[error("{what} is {given}: it must be at least {least}")]
     BadOption { what: &'static str, given: u32, least: u32 },
 }
 
@@ -37,7 +39,7 @@ impl From<MeshError> for BenchError {
 impl BenchError {
     /// Whether it is only one contestant that cannot do it: it has no patches for the mesh, or takes what the device has
     /// not.
-    pub(super) fn leaves_out(&self) -> bool {
+    pub fn leaves_out(&self) -> bool {
         use GpuError as Gpu;
         let Self::Renderer(error) = self else { return false };
         match error {

@@ -16,12 +16,14 @@
 //! * **set-up**: tables from the mesh, then buffers and copies to the device; pipelines are not in it, but in:
 //! * **first use**: making the pipelines, and the first frame with them, in which some drivers compile. Drivers keep what
 //!   they compiled on the disk: for a first use in truth, switch that off (Mesa: `MESA_SHADER_CACHE_DISABLE=1`).
+//! * **recording** ([`Bench::recording`]): what the host takes to record a frame of many models.
 
 mod drawable;
 mod error;
 mod floors;
 mod options;
 mod race;
+mod recording;
 mod row;
 mod scene;
 mod subject;
@@ -29,13 +31,14 @@ mod surface;
 
 pub use drawable::{Setup, Traffic};
 pub use error::BenchError;
-pub use options::BenchOptions;
+pub use options::{BenchOptions, Camera};
 pub use race::{Bench, Event};
+pub use recording::{Crowd, Recording};
 pub use row::{Row, Series};
 pub use subject::{Subject, Subset};
 
 use crate::patch::Scheme;
-use crate::renderer::{Construction, Evaluation};
+use crate::renderer::{Construction, Cull, Evaluation};
 
 /// A way to get the surface drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -96,6 +99,30 @@ impl Path {
     }
 }
 
+/// Where normals along edges and at corners come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Normals {
+    /// Each patch has its own.
+    #[default]
+    Own,
+    /// Those that patches share
+    /// ([`ModelOptions::shared_normals`](crate::renderer::ModelOptions::shared_normals)).
+    Shared,
+}
+
+impl Normals {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Own, Self::Shared];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::Shared => "shared",
+        }
+    }
+}
+
 /// One of those that are raced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Contestant {
@@ -103,20 +130,43 @@ pub struct Contestant {
     pub path: Path,
     /// From which patches, made how; `None` for a floor.
     pub patches: Option<(Scheme, Construction)>,
+    /// Where its normals come from.
+    pub normals: Normals,
+    /// Patches that it leaves out.
+    pub cull: Cull,
 }
 
 impl Contestant {
+    /// With normals of each patch's own, without culling.
+    pub const fn new(path: Path, patches: Option<(Scheme, Construction)>) -> Self {
+        Self { path, patches, normals: Normals::Own, cull: Cull::NONE }
+    }
+
+    /// The same with each of these normals and cullings that it can be combined with: the tessellation stages cull, and
+    /// share normals where the scheme is watertight. Floors stay as they are.
+    pub fn variants(self, normals: &[Normals], culls: &[Cull]) -> Vec<Self> {
+        if self.path.is_floor() {
+            return vec![self];
+        }
+        let tessellates = self.path == Path::Tessellation;
+        let shares = tessellates && self.patches.is_some_and(|(scheme, _)| scheme.is_watertight());
+        let normals = normals.iter().filter(|&&normals| normals == Normals::Own || shares);
+        let culls = culls.iter().filter(|&&cull| cull == Cull::NONE || tessellates);
+        let with = |&normals| culls.clone().map(move |&cull| Self { normals, cull, ..self });
+        normals.flat_map(with).collect()
+    }
+
     /// Each path with each scheme and construction that it can be combined with.
     ///
     /// The first that is no floor is what the others are compared with.
     pub fn all(paths: &[Path], schemes: &[Scheme], constructions: &[Construction]) -> Vec<Self> {
         let of_path = |&path: &Path| -> Vec<Self> {
             if path.is_floor() {
-                return vec![Self { path, patches: None }];
+                return vec![Self::new(path, None)];
             }
             let fits = |c: &&Construction| path.evaluation().is_some_and(|e| e.constructions().contains(c));
             let pairs = schemes.iter().flat_map(|&s| constructions.iter().filter(fits).map(move |&c| (s, c)));
-            pairs.map(|pair| Self { path, patches: Some(pair) }).collect()
+            pairs.map(|pair| Self::new(path, Some(pair))).collect()
         };
         paths.iter().flat_map(of_path).collect()
     }

@@ -2,6 +2,29 @@ use crate::gpu::Spacing;
 #[cfg(doc)]
 use crate::measure::statistics::FEWEST;
 
+/// Where the eye is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Camera {
+    /// So far that all is in the picture.
+    #[default]
+    Fit,
+    /// The middle of that, three times as large: the edges of the picture cut the rest off.
+    Clipped,
+}
+
+impl Camera {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Fit, Self::Clipped];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fit => "fit",
+            Self::Clipped => "clipped",
+        }
+    }
+}
+
 /// How to measure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BenchOptions {
@@ -11,6 +34,8 @@ pub struct BenchOptions {
     pub spacing: Spacing,
     /// Pixels of the picture.
     pub size: [u32; 2],
+    /// From where each contestant draws, in turns.
+    pub cameras: Vec<Camera>,
     /// Copies of the model that a frame draws, each with a transform of its own.
     pub instances: u32,
     /// Passes of a frame, each of which draws all instances again, as for depth, shadows and the picture.
@@ -22,12 +47,13 @@ pub struct BenchOptions {
 }
 
 impl Default for BenchOptions {
-    /// Factors 4, 8, 16 and 32, equal spacing, 1024 x 1024 pixels, one instance, one pass, 21 frames after 3.
+    /// Factors 4, 8, 16 and 32, equal spacing, 1024 x 1024 pixels with all in the picture, one instance, one pass, 21 frames after 3.
     fn default() -> Self {
         Self {
             factors: vec![4.0, 8.0, 16.0, 32.0],
             spacing: Spacing::Equal,
             size: [1024, 1024],
+            cameras: vec![Camera::Fit],
             instances: 1,
             passes: 1,
             frames: 21,

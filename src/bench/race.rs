@@ -16,7 +16,7 @@ pub enum Event {
     Frames(u64),
     /// A contestant does not run, at this factor or at all: why.
     LeftOut(Contestant, Option<f32>, BenchError),
-    /// All of one factor, in the order of the contestants.
+    /// All of one factor: for each camera the contestants, each in their order.
     Rows(Vec<Row>),
 }
 
@@ -43,9 +43,10 @@ impl<'h> Bench<'h> {
     /// [`BenchError::BadOption`]; sizes that the device does not have, no memory.
     pub fn new(headless: &'h Headless, options: BenchOptions) -> Result<Self, BenchError> {
         let least = [
-            ("frames", options.frames, FEWEST as u32),
-            ("instances", options.instances, 1),
-            ("passes", options.passes, 1),
+            ("BenchOptions::frames", options.frames, FEWEST as u32),
+            ("BenchOptions::instances", options.instances, 1),
+            ("BenchOptions::passes", options.passes, 1),
+            ("BenchOptions::cameras", options.cameras.len() as u32, 1),
         ];
         if let Some(&(what, given, least)) = least.iter().find(|(_, given, least)| given < least) {
             return Err(BenchError::BadOption { what, given, least });
@@ -75,7 +76,8 @@ impl<'h> Bench<'h> {
     /// How many frames a race of so many contestants draws.
     pub fn frames(&self, contestants: usize) -> u64 {
         let rounds = u64::from(self.options.frames + self.options.warm_up);
-        contestants as u64 * rounds * (1 + 2 * self.options.factors.len() as u64)
+        let drawn = self.options.cameras.len() as u64 * 2 * self.options.factors.len() as u64;
+        contestants as u64 * rounds * (1 + drawn)
     }
 
     /// Races on one mesh, factor by factor.
@@ -91,10 +93,10 @@ impl<'h> Bench<'h> {
     ) -> Result<(), BenchError> {
         let rounds = u64::from(self.options.frames + self.options.warm_up);
         let lane = self.lane(subject);
-        let scene = Scene::new(subject, &self.options);
+        let scenes = self.scenes(subject);
         let mut runners = Vec::new();
         for &contestant in contestants {
-            match self.runner(contestant, lane, &scene) {
+            match self.runner(contestant, lane, &scenes[0]) {
                 Err(error) if error.leaves_out() => {
                     tell(Event::LeftOut(contestant, None, error));
                     tell(Event::Frames(self.frames(1)));
@@ -102,45 +104,62 @@ impl<'h> Bench<'h> {
                 other => runners.push(other?),
             }
         }
-        self.construction(&mut runners, &scene, &mut tell)?;
+        self.construction(&mut runners, &scenes[..1], &mut tell)?;
         for &factor in &self.options.factors {
             let mut racing = Vec::new();
             for runner in &mut runners {
                 match runner.drawable.set_factor(factor) {
                     Err(error) if error.leaves_out() => {
                         tell(Event::LeftOut(runner.contestant, Some(factor), error));
-                        tell(Event::Frames(2 * rounds));
+                        tell(Event::Frames(scenes.len() as u64 * 2 * rounds));
                     }
                     Ok(()) => racing.push(runner),
                     Err(error) => return Err(error),
                 }
             }
-            let series = self.turns(&mut racing, &scene, factor, &Pass::ALL, &mut tell)?;
-            let rows =
-                racing.iter_mut().zip(series).map(|(runner, series)| self.row(runner, &scene, subject, factor, series));
-            tell(Event::Rows(rows.collect::<Result<_, _>>()?));
+            let series = self.turns(&mut racing, &scenes, factor, &Pass::ALL, &mut tell)?;
+            let mut rows = Vec::new();
+            for (scene, series) in scenes.iter().zip(series) {
+                for (runner, series) in racing.iter_mut().zip(series) {
+                    rows.push(self.row(runner, scene, subject, factor, series)?);
+                }
+            }
+            tell(Event::Rows(rows));
         }
         Ok(())
     }
 
-    /// What a contestant draws: rows from the top, four bytes sRGB and opacity a pixel.
+    /// What a contestant draws, as the first camera sees it: rows from the top, four bytes sRGB and opacity a pixel.
     ///
     /// # Errors
     /// As [`Bench::race`], but a contestant that would be left out is an error here.
     pub fn picture(&self, subject: &Subject, contestant: Contestant, factor: f32) -> Result<Vec<u8>, BenchError> {
         let target = &self.targets[0];
-        let scene = Scene::new(subject, &self.options);
+        let scenes = self.scenes(subject);
         let mut drawable = contestant.open(self.lane(subject))?;
         drawable.set_factor(factor)?;
         // SAFETY: the command buffer is being recorded, outside rendering; each submission is waited for.
         self.headless.try_submit(|cmd| unsafe { drawable.cmd_prepare(cmd) })?;
         target.draw(self.headless, [0.0; 4], |cmd| {
             // SAFETY: inside rendering that fits the target, after the frame was prepared.
-            unsafe { drawable.cmd_draw(cmd, &scene.frame(factor, Pass::Pixels)) }
+            unsafe { drawable.cmd_draw(cmd, &scenes[0].frame(factor, Pass::Pixels)) }
         })
     }
 
-    fn lane<'a>(&'a self, subject: &'a Subject) -> Lane<'a> {
+    fn scenes(&self, subject: &Subject) -> Vec<Scene> {
+        self.options.cameras.iter().map(|&camera| Scene::new(subject, &self.options, camera)).collect()
+    }
+
+    pub(super) fn headless(&self) -> &'h Headless {
+        self.headless
+    }
+
+    /// Of no size to speak of.
+    pub(super) fn geometry_target(&self) -> &Offscreen {
+        &self.targets[1]
+    }
+
+    pub(super) fn lane<'a>(&'a self, subject: &'a Subject) -> Lane<'a> {
         let BenchOptions { spacing, passes, .. } = self.options;
         Lane { headless: self.headless, target: self.targets[0].desc(), subject, spacing, passes }
     }
@@ -159,11 +178,11 @@ impl<'h> Bench<'h> {
     fn construction(
         &self,
         runners: &mut [Runner],
-        scene: &Scene,
+        scenes: &[Scene],
         tell: &mut impl FnMut(Event),
     ) -> Result<(), BenchError> {
         let mut all: Vec<&mut Runner> = runners.iter_mut().collect();
-        let series = self.turns(&mut all, scene, 1.0, &[Pass::Geometry], tell)?;
+        let series = self.turns(&mut all, scenes, 1.0, &[Pass::Geometry], tell)?.swap_remove(0);
         let floor = runners.iter().position(|runner| runner.contestant.path == super::Path::Bilinear);
         let Some(floor) = floor.map(|index| series[index][0].device.clone()) else { return Ok(()) };
         for (runner, series) in runners.iter_mut().zip(series).filter(|(runner, _)| !runner.contestant.path.is_floor())
@@ -173,26 +192,28 @@ impl<'h> Bench<'h> {
         Ok(())
     }
 
-    /// Warms up, and draws in turns: for each runner a series for each pass.
+    /// Warms up, and draws in turns: for each scene and runner a series for each pass.
     fn turns(
         &self,
         runners: &mut [&mut Runner],
-        scene: &Scene,
+        scenes: &[Scene],
         factor: f32,
         passes: &[Pass],
         tell: &mut impl FnMut(Event),
-    ) -> Result<Vec<Vec<Series>>, BenchError> {
-        let mut all = vec![vec![Series::default(); passes.len()]; runners.len()];
+    ) -> Result<Vec<Vec<Vec<Series>>>, BenchError> {
+        let mut all = vec![vec![vec![Series::default(); passes.len()]; runners.len()]; scenes.len()];
         for round in 0..self.options.warm_up + self.options.frames {
-            for (runner, series) in runners.iter_mut().zip(&mut all) {
-                for (&pass, series) in passes.iter().zip(series) {
-                    let [device, host] = self.frame(&mut *runner.drawable, &scene.frame(factor, pass))?;
-                    if round >= self.options.warm_up {
-                        series.device.push(milliseconds(device));
-                        series.host.push(milliseconds(host));
+            for (index, runner) in runners.iter_mut().enumerate() {
+                for (scene, series) in scenes.iter().zip(&mut all) {
+                    for (&pass, series) in passes.iter().zip(&mut series[index]) {
+                        let [device, host] = self.frame(&mut *runner.drawable, &scene.frame(factor, pass))?;
+                        if round >= self.options.warm_up {
+                            series.device.push(milliseconds(device));
+                            series.host.push(milliseconds(host));
+                        }
                     }
+                    tell(Event::Frames(passes.len() as u64));
                 }
-                tell(Event::Frames(passes.len() as u64));
             }
         }
         Ok(all)
@@ -257,11 +278,13 @@ impl<'h> Bench<'h> {
         let [gpu, geometry] = <[Series; 2]>::try_from(series).unwrap_or_default();
         Ok(Row {
             contestant: runner.contestant,
+            camera: scene.camera,
             factor,
             patches: times * subject.patches(),
             evaluations,
             computed: count(|s| s.compute_invocations),
             triangles: count(|s| s.clipping_invocations),
+            visible: count(|s| s.clipping_primitives),
             gpu,
             geometry,
             construction: runner.construction,

@@ -1,6 +1,6 @@
 //! What comes out.
 
-use super::{Contestant, Setup, Traffic};
+use super::{Camera, Contestant, Setup, Traffic};
 use crate::measure::statistics::Estimate;
 use crate::renderer::TableBytes;
 
@@ -18,6 +18,8 @@ pub struct Series {
 pub struct Row {
     /// Who.
     pub contestant: Contestant,
+    /// From where.
+    pub camera: Camera,
     /// The factor.
     pub factor: f32,
     /// Patches that a frame draws, in all instances and passes.
@@ -28,6 +30,8 @@ pub struct Row {
     pub computed: Option<u64>,
     /// Triangles in a frame, before clipping.
     pub triangles: Option<u64>,
+    /// Those that clipping left.
+    pub visible: Option<u64>,
     /// Frames with pixels.
     pub gpu: Series,
     /// Frames without rasterization.

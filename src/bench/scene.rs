@@ -1,19 +1,20 @@
 //! What is in the picture.
 
 use super::drawable::{Frame, Pass};
-use super::{BenchOptions, Subject};
+use super::{BenchOptions, Camera, Subject};
 use crate::renderer::View;
-use glam::{DVec3, Mat4};
+use glam::{DVec3, Mat4, Vec3};
 
 /// Where the instances stand, and who looks at them.
 pub(super) struct Scene {
+    pub(super) camera: Camera,
     view: View,
     instances: Vec<[[f32; 4]; 4]>,
 }
 
 impl Scene {
-    /// All of them in the picture, side by side.
-    pub(super) fn new(subject: &Subject, options: &BenchOptions) -> Self {
+    /// Side by side.
+    pub(super) fn new(subject: &Subject, options: &BenchOptions, camera: Camera) -> Self {
         const APART: f64 = 1.1;
         let [low, high] = subject.mesh.bounds();
         let step = (high - low) * APART;
@@ -22,10 +23,14 @@ impl Scene {
         let place = |i: u32| DVec3::new(f64::from(i % columns), f64::from(i / columns), 0.0) * step;
         let offsets: Vec<DVec3> = (0..options.instances).map(place).collect();
         let far = DVec3::new(f64::from(columns - 1), f64::from(rows - 1), 0.0) * step;
-        let aspect = options.size[0] as f32 / options.size[1] as f32;
-        let view = View::framing([low, high + far], [-0.5, 0.3, 1.0], aspect);
+        let [width, height] = options.size;
+        let mut view = View::framing([low, high + far], [-0.5, 0.3, 1.0], width as f32 / height as f32);
+        if camera == Camera::Clipped {
+            let nearer = Mat4::from_scale(Vec3::new(3.0, 3.0, 1.0));
+            view.view_projection = (nearer * Mat4::from_cols_array_2d(&view.view_projection)).to_cols_array_2d();
+        }
         let instances = offsets.iter().map(|offset| Mat4::from_translation(offset.as_vec3()).to_cols_array_2d());
-        Self { view, instances: instances.collect() }
+        Self { camera, view: view.sized(width, height), instances: instances.collect() }
     }
 
     pub(super) fn frame(&self, factor: f32, pass: Pass) -> Frame<'_> {

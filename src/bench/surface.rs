@@ -3,10 +3,8 @@
 use super::BenchError;
 use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
 use crate::measure::statistics::Summary;
-use crate::patch::Scheme;
 use crate::renderer::{
-    Construction, DrawItem, Error, Evaluation, ModelId, ModelOptions, ModelTables, Options, Renderer, Style,
-    TableBytes, Target,
+    Cull, DrawItem, Error, Evaluation, ModelId, ModelOptions, ModelTables, Options, Renderer, Style, TableBytes, Target,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -22,20 +20,13 @@ pub(super) struct Surface {
     bytes: Vec<TableBytes>,
     control_point_bytes: u64,
     evaluation: Evaluation,
+    cull: Cull,
 }
 
 impl Surface {
-    pub(super) fn new(
-        lane: Lane,
-        scheme: Scheme,
-        construction: Construction,
-        evaluation: Evaluation,
-    ) -> Result<Self, BenchError> {
-        let Lane { headless, target, subject, spacing, passes } = lane;
-        let name = subject.name.clone();
-        let refine = subject.refine;
-        let model_options =
-            ModelOptions { name, scheme, construction, evaluation, spacing, refine, ..ModelOptions::default() };
+    pub(super) fn new(lane: Lane, model_options: ModelOptions, cull: Cull) -> Result<Self, BenchError> {
+        let Lane { headless, target, subject, passes, .. } = lane;
+        let ModelOptions { scheme, evaluation, .. } = model_options;
         let (tables, tables_ms) = build_tables(lane, &model_options)?;
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
@@ -64,7 +55,7 @@ impl Surface {
             Ok::<_, Error>(model)
         })?;
         let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
-        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation })
+        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation, cull })
     }
 }
 
@@ -96,8 +87,8 @@ impl Drawable for Surface {
     }
 
     unsafe fn cmd_draw(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
-        let item =
-            DrawItem { style: usize::from(frame.pass == Pass::Geometry), ..DrawItem::new(self.model, frame.factor) };
+        let style = usize::from(frame.pass == Pass::Geometry);
+        let item = DrawItem { style, cull: self.cull, ..DrawItem::new(self.model, frame.factor) };
         let items: Vec<_> = frame.instances.iter().map(|&transform| DrawItem { transform, ..item }).collect();
         // SAFETY: as the caller promises.
         unsafe { self.renderer.cmd_draw(cmd, 0, frame.view, &items)? };

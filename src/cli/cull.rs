@@ -12,7 +12,7 @@ pub(super) struct CullArgs {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum CullArg {
+pub(super) enum CullArg {
     Back,
     Frustum,
     Small,
@@ -20,7 +20,19 @@ enum CullArg {
 
 impl CullArgs {
     pub(super) fn cull(&self) -> Cull {
-        let has = |which| self.cull.contains(&which);
-        Cull { frustum: has(CullArg::Frustum), back: has(CullArg::Back), small: has(CullArg::Small) }
+        cull(&self.cull)
     }
+}
+
+/// These together.
+pub(super) fn cull(which: &[CullArg]) -> Cull {
+    let has = |one| which.contains(&one);
+    Cull { frustum: has(CullArg::Frustum), back: has(CullArg::Back), small: has(CullArg::Small) }
+}
+
+/// As the argument is given, with `+` between; `none` for none.
+pub(super) fn name(cull: Cull) -> String {
+    let named = [(cull.back, "back"), (cull.frustum, "frustum"), (cull.small, "small")];
+    let names: Vec<&str> = named.into_iter().filter(|(on, _)| *on).map(|(_, name)| name).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join("+") }
 }

@@ -54,11 +54,6 @@ impl Table {
         self.rows.push(cells.map(|cell| cell.to_string()).into());
     }
 
-    /// Whether there is nothing below the head.
-    pub(super) fn is_empty(&self) -> bool {
-        self.rows.len() <= 1
-    }
-
     /// Writes the rows to standard output.
     pub(super) fn print(&self) -> Result<(), CliError> {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);

@@ -1,6 +1,6 @@
 //! Values of options.
 
-use ash_subdiv::bench::{Path, Subset};
+use ash_subdiv::bench::{Camera, Normals, Path, Subset};
 use ash_subdiv::renderer::Evaluation;
 use ash_subdiv::{Construction, Fallback, Scheme, Spacing};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -49,6 +49,16 @@ pub(super) const LIMIT: &str = "limit";
 /// A way to draw by its name.
 pub(super) fn path() -> impl TypedValueParser<Value = Path> {
     named(Path::ALL.map(|path| (path.name(), path)))
+}
+
+/// Where normals come from, by its name.
+pub(super) fn normals() -> impl TypedValueParser<Value = Normals> {
+    named(Normals::ALL.map(|normals| (normals.name(), normals)))
+}
+
+/// A camera of the bench by its name.
+pub(super) fn camera() -> impl TypedValueParser<Value = Camera> {
+    named(Camera::ALL.map(|camera| (camera.name(), camera)))
 }
 
 /// Some of the patches by their name.

@@ -202,10 +202,15 @@ pub(super) fn run(args: &WatertightArgs, json: bool) -> Result<(), CliError> {
     } else {
         print(&out)?;
     }
-    match (first, out.leaked_pixels) {
-        (Some(mismatch), _) => Err(CliError::Work(tell(&mismatch))),
-        (None, Some(pixels)) if pixels > 0 => Err(CliError::Work(format!("{pixels} pixels leak"))),
-        _ => Ok(()),
+    wrong(first, out.leaked_pixels).map_or(Ok(()), |message| Err(CliError::Work(message)))
+}
+
+/// What is not watertight.
+fn wrong(first: Option<Mismatch>, leaked_pixels: Option<u64>) -> Option<String> {
+    match (first, leaked_pixels) {
+        (Some(mismatch), _) => Some(tell(&mismatch)),
+        (None, Some(pixels)) if pixels > 0 => Some(format!("{pixels} pixels leak")),
+        _ => None,
     }
 }
 
@@ -318,4 +323,31 @@ fn tell(mismatch: &Mismatch) -> String {
         "{place}: faces {left} and {right} differ: positions {:?} and {:?}, normals {:?} and {:?}",
         x.position, y.position, x.normal, y.normal
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ash_subdiv::capture::CapturedVertex;
+
+    #[test]
+    fn what_is_not_watertight_is_told() {
+        let vertex = |x: f32| CapturedVertex {
+            coordinate: [0.0, 0.5, 0.0],
+            patch: 0,
+            position: [x, 2.0, 3.0],
+            normal: [0.0, 0.0, 1.0],
+        };
+        let mismatch = |vertices, captured| Mismatch { vertices, at: 0.25, faces: [4, 9], captured };
+        let differ = mismatch([7, 8], [vertex(1.0), vertex(1.5)]);
+        assert_eq!(
+            wrong(Some(differ), Some(3)).unwrap(),
+            "edge 7-8, at 0.25 of it: faces 4 and 9 differ: positions [1.0, 2.0, 3.0] and [1.5, 2.0, 3.0], \
+             normals [0.0, 0.0, 1.0] and [0.0, 0.0, 1.0]"
+        );
+        let alone = mismatch([7, 7], [vertex(1.0), vertex(1.0)]);
+        assert_eq!(wrong(Some(alone), None).unwrap(), "vertex 7: only face 4 has a vertex there");
+        assert_eq!(wrong(None, Some(3)).unwrap(), "3 pixels leak");
+        assert_eq!([wrong(None, Some(0)), wrong(None, None)], [None, None]);
+    }
 }

@@ -156,6 +156,21 @@ impl Headless {
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<R, E>,
     ) -> Result<R, E> {
+        let (_pool, cmd, recorded) = self.commands(record)?;
+        self.run(cmd)?;
+        Ok(recorded)
+    }
+
+    /// Records commands that are never run: to time the recording alone.
+    pub fn record<R, E: From<GpuError>>(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<R, E>) -> Result<R, E> {
+        self.commands(record).map(|(_, _, recorded)| recorded)
+    }
+
+    /// A command buffer with commands, and the pool it goes with.
+    fn commands<R, E: From<GpuError>>(
+        &self,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<R, E>,
+    ) -> Result<(Owned<vk::CommandPool>, vk::CommandBuffer, R), E> {
         let device = self.device();
         let info = vk::CommandPoolCreateInfo::default()
             .flags(vk::CommandPoolCreateFlags::TRANSIENT)
@@ -180,8 +195,7 @@ impl Headless {
             let barriers = [to_host];
             device.cmd_pipeline_barrier2(commands[0], &vk::DependencyInfo::default().memory_barriers(&barriers));
             device.end_command_buffer(commands[0]).of("vkEndCommandBuffer", "submission")?;
-            self.run(commands[0])?;
-            Ok(recorded)
+            Ok((pool, commands[0], recorded))
         }
     }
 

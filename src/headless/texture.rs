@@ -117,9 +117,8 @@ impl Texture {
         // SAFETY: the physical device is of the instance.
         let known =
             unsafe { headless.instance().get_physical_device_format_properties(headless.physical_device(), format) };
-        let needed = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR | vk::FormatFeatureFlags::TRANSFER_DST;
-        if !known.optimal_tiling_features.contains(needed) {
-            return Err(unsupported(format!("{} does not filter images of {format:?}", headless.properties().name)));
+        if !can_be_filtered(known) {
+            return Err(unfiltered(name, &headless.properties().name, format));
         }
         let mut levels = vec![texels.clone()];
         while let Some(last) = levels.last().filter(|level| level.width.max(level.height) > 1) {
@@ -217,6 +216,16 @@ fn upload(headless: &Headless, image: &Image, levels: &[Texels]) -> Result<(), G
     })
 }
 
+/// Whether a texture can be made of images with these properties.
+fn can_be_filtered(known: vk::FormatProperties) -> bool {
+    let needed = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR | vk::FormatFeatureFlags::TRANSFER_DST;
+    known.optimal_tiling_features.contains(needed)
+}
+
+fn unfiltered(name: &str, device: &str, format: vk::Format) -> GpuError {
+    GpuError::Unsupported { object: name.to_owned(), why: format!("{device} does not filter images of {format:?}") }
+}
+
 #[cfg(all(test, feature = "exr"))]
 mod tests {
     use super::*;
@@ -248,6 +257,22 @@ mod tests {
         assert_eq!((vectors.channels, &vectors.values), (4, &values));
         assert_eq!(vectors.range(), [-2.5, 7.0]);
         assert!(Texels::decode(b"no picture", false).is_err());
+    }
+
+    #[test]
+    fn what_cannot_be_a_map_is_told() {
+        let float = image::Rgba32FImage::from_raw(1, 2, vec![0.0, 1.0, 2.0, 1.0, f32::NAN, 1.0, 2.0, 1.0]).unwrap();
+        let bytes = encoded(&float.into(), ImageFormat::OpenExr);
+        for vectors in [false, true] {
+            let error = Texels::decode(&bytes, vectors).unwrap_err();
+            assert_eq!(error, "it has values that are no finite numbers");
+        }
+        use vk::FormatFeatureFlags as Can;
+        let with = |optimal_tiling_features| vk::FormatProperties { optimal_tiling_features, ..Default::default() };
+        assert!(can_be_filtered(with(Can::SAMPLED_IMAGE | Can::SAMPLED_IMAGE_FILTER_LINEAR | Can::TRANSFER_DST)));
+        assert!(!can_be_filtered(with(Can::SAMPLED_IMAGE | Can::TRANSFER_DST)));
+        let error = unfiltered("a map", "a device", vk::Format::R32_SFLOAT).to_string();
+        assert_eq!(error, "a map: a device does not filter images of R32_SFLOAT");
     }
 
     #[test]

@@ -20,7 +20,7 @@ pub(super) fn corner_limit(topology: &Topology, half_edge: u32) -> LimitSample {
     } else if ring.kind == RingKind::Crease && ring.faces >= 3 {
         frame.b = cross_tangent(&values);
     }
-    let tangent = |j| 3.0 * (values.edge_point(&frame, j) - frame.p);
+    let tangent = |j| 3.0 * values.edge_vector(&frame, j);
     let (du, dv) = (tangent(j), tangent(j + 1));
     let normal = match (ring.kind, ring.faces) {
         // The tangents need not span the plane: at a smooth boundary around one face they are parallel.

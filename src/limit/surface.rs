@@ -286,6 +286,8 @@ fn evaluate_regular(points: &[DVec3; 16], u: f64, v: f64) -> LimitSample {
         let row = |i: usize| (0..4).map(|j| bv[j] * points[4 * i + j]).sum::<DVec3>();
         (0..4).map(|i| bu[i] * row(i)).sum::<DVec3>()
     };
-    let (du, dv) = (sum(&bu.derivative, &bv.value), sum(&bu.value, &bv.derivative));
+    // Of the points to the derivative.
+    let slope = |[a, b, c]: [f64; 3]| [-a, a - b, b - c, c].map(|x| 3.0 * x);
+    let (du, dv) = (sum(&slope(bu.slope), &bv.value), sum(&bu.value, &slope(bv.slope)));
     LimitSample { position: sum(&bu.value, &bv.value), du, dv, normal: du.cross(dv).normalize_or_zero() }
 }

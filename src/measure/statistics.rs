@@ -129,6 +129,31 @@ pub fn growth(points: &[(f64, f64)]) -> Option<f64> {
     (square > 0.0).then(|| both / square)
 }
 
+/// As [`growth`], with its interval: the median of the growth of each round, where round `i` has `y[i]` of every point.
+///
+/// `None` where one of the rounds has no growth, or there are fewer than [`FEWEST`].
+pub fn growth_by_rounds(points: &[(f64, &[f64])]) -> Option<Estimate> {
+    let rounds = points.iter().map(|(_, y)| y.len()).min()?;
+    let of_round = |i: usize| growth(&points.iter().map(|&(x, y)| (x, y[i])).collect::<Vec<_>>());
+    median(&(0..rounds).map(of_round).collect::<Option<Vec<_>>>()?)
+}
+
+/// From which `x` on a difference is below zero, and the interval of that: the first of [`Estimate`]'s three values, and
+/// where its lower and upper ends are.
+///
+/// Each is found on the straight lines between points with rising `x`: the last place where they go below zero, or the
+/// first `x` if they always are; `None` if they are not at the last.
+pub fn below_zero_from(points: &[(f64, Estimate)]) -> [Option<f64>; 3] {
+    let from = |of: fn(&Estimate) -> f64| {
+        let y = |i: usize| of(&points[i].1);
+        let below = (0..points.len()).rev().take_while(|&i| y(i) < 0.0).last()?;
+        let Some(above) = below.checked_sub(1) else { return Some(points[below].0) };
+        let (before, after) = (points[above].0, points[below].0);
+        Some(before + (after - before) * y(above) / (y(above) - y(below)))
+    };
+    [from(|y| y.value), from(|y| y.low), from(|y| y.high)]
+}
+
 /// The sum of `t^3 - t` over groups of `t` equal values.
 fn tie_correction(old: &[f64], new: &[f64]) -> Option<f64> {
     let all = sorted([old, new].concat())?;
@@ -212,6 +237,33 @@ mod tests {
         }
         assert_eq!(growth(&[(2.0, 1.0), (2.0, 3.0)]), None);
         assert_eq!(growth(&[(2.0, 1.0), (3.0, 0.0)]), None);
+    }
+
+    #[test]
+    fn growth_has_an_interval() {
+        // Each round its own power, from 0.9 to 1.1.
+        let of = |x: f64| (0..9).map(|i| x.powf(0.9 + f64::from(i) / 40.0)).collect::<Vec<f64>>();
+        let (few, many) = (of(10.0), of(1000.0));
+        let growth = growth_by_rounds(&[(10.0, &few), (1000.0, &many)]).unwrap();
+        assert!((growth.value - 1.0).abs() < 1e-9 && growth.low < 0.95 && growth.high > 1.05, "{growth:?}");
+        assert_eq!(growth_by_rounds(&[(10.0, &few[..5]), (1000.0, &many)]), None);
+        assert_eq!(growth_by_rounds(&[(10.0, &few), (10.0, &many)]), None);
+        assert_eq!(growth_by_rounds(&[]), None);
+    }
+
+    #[test]
+    fn differences_go_below_zero() {
+        let estimate = |value: f64| Estimate { value, low: value - 1.0, high: value + 1.0 };
+        let points = |values: &[f64]| (1..).map(f64::from).zip(values.iter().map(|&y| estimate(y))).collect::<Vec<_>>();
+        let of = |values: &[f64]| below_zero_from(&points(values));
+        // The middle crosses between 2 and 3, the lower end at 2, the upper between 3 and 4.
+        assert_eq!(of(&[2.0, 1.0, -1.0, -2.0]), [Some(2.5), Some(2.0), Some(3.0)]);
+        assert_eq!(of(&[-2.0, -3.0]), [Some(1.0); 3]);
+        assert_eq!(of(&[3.0, 2.0]), [None; 3]);
+        assert_eq!(of(&[1.5, -0.5]), [Some(1.75), Some(1.25), None]);
+        // What comes back does not count.
+        assert_eq!(of(&[-4.0, 4.0, -4.0])[0], Some(2.5));
+        assert_eq!(below_zero_from(&[]), [None; 3]);
     }
 
     #[test]

@@ -80,14 +80,8 @@ impl Seams {
         edges.of_corners.iter().for_each(|&edge| patches[edge as usize] += 1);
         let mut smooth = vec![true; edges.vertices.len()];
         let half_edges = plan.corners(&topology);
-        let one_ring = |h: u32| {
-            topology.twin(h).is_none_or(|twin| {
-                topology.place(h).ring == topology.place(topology.next(twin)).ring
-                    && topology.place(twin).ring == topology.place(topology.next(h)).ring
-            })
-        };
         for (&h, &edge) in half_edges.iter().zip(&edges.of_corners) {
-            smooth[edge as usize] = one_ring(h);
+            smooth[edge as usize] = topology.is_within_rings(h);
         }
         let corner = |&h: &u32| {
             let (vertex, next) = (topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h)));

@@ -1,9 +1,9 @@
 //! What the two patches at an edge share: its curve and one normal along it, from data of the edge alone
 //! (patch_maths B, "One normal an edge").
 //!
-//! Both patches evaluate an edge in one direction, from the lower vertex to the higher, so that they get the same bits.
+//! From either end the sums are the same to the bit, but for the sign of those that point along the edge or across it.
 
-use super::bicubic::{Basis, cubic};
+use super::bicubic::{Basis, cubic, edge_slope};
 use super::point::{scalar, unit_normal};
 use super::{Blend, Frame, Point, RingValues, Scheme};
 
@@ -46,22 +46,19 @@ impl<P: Point + Blend> Edge<P> {
 }
 
 /// The point at `t` along an edge.
-///
-/// GLSL twin: `edge_position` in `glsl/lib/edges.glsl`.
 pub fn edge_position<P: Point>(edge: &Edge<P>, t: P::Scalar) -> P {
     cubic(&Basis::new::<P>(t), &edge.curve)
 }
 
-/// The unit normal at `t` along an edge, of both its faces. Where curve and transversal are parallel it is along `fallback`.
+/// The unit normal at `t` along an edge, of both its faces. Where curve and transversal are parallel it is along `facing`.
 ///
-/// GLSL twin: `edge_normal` in `glsl/lib/edges.glsl`.
-pub fn edge_normal<P: Point>(edge: &Edge<P>, t: P::Scalar, fallback: P) -> P {
+/// GLSL twins: `edge_slope` in `glsl/lib/patch.glsl` and `edge_across` in `glsl/lib/edges.glsl`.
+pub fn edge_normal<P: Point>(edge: &Edge<P>, t: P::Scalar, facing: P) -> P {
     let [p0, e0, e1, p1] = edge.curve;
-    let s = scalar::<P>(1.0) - t;
-    let (ss, st, tt) = (s * s, scalar::<P>(2.0) * (s * t), t * t);
-    let along = (e0 - p0) * ss + (e1 - e0) * st + (p1 - e1) * tt;
-    let three = scalar::<P>(3.0);
+    let along = edge_slope(&Basis::new::<P>(t).slope, e0 - p0, e1 - e0, e1 - p1);
+    let (s, three) = (scalar::<P>(1.0) - t, scalar::<P>(3.0));
+    let (ss, tt) = (s * s, t * t);
     let across = (edge.across[0] * (ss * s) - edge.across[1] * (tt * t))
         + (edge.transversals[0] * (three * ss * t) - edge.transversals[1] * (three * tt * s));
-    unit_normal(along, across, fallback)
+    unit_normal(along, across, facing)
 }

@@ -7,7 +7,7 @@
 
 use super::point::{scalar, unit_normal};
 use super::{Blend, Frame, Point, RingValues, Sample};
-use crate::patch::bicubic::{Basis, cubic, evaluate_tensor};
+use crate::patch::bicubic::{Basis, TensorCorner, cubic, evaluate_tensor};
 
 /// What a corner of a patch takes from its one-ring.
 #[derive(Debug)]
@@ -80,19 +80,19 @@ pub fn evaluate_gregory_quad<P: Point>(points: &[P; 20], u: P::Scalar, v: P::Sca
     let one = scalar::<P>(1.0);
     let [p, e, f] = [&points[0..4], &points[4..12], &points[12..20]];
     let (s, t) = (one - u, one - v);
-    let [f0, f1, f2, f3] =
-        [blend(f[0], u, f[1], v), blend(f[2], v, f[3], s), blend(f[4], s, f[5], t), blend(f[6], t, f[7], u)];
-    evaluate_tensor(
-        &[[p[0], e[1], e[6], p[3]], [e[0], f0, f3, e[7]], [e[3], f1, f2, e[4]], [p[1], e[2], e[5], p[2]]],
-        u,
-        v,
-    )
+    let beside = [[u, v], [v, s], [s, t], [t, u]];
+    let corner = |k: usize| {
+        let seen = |x: P| x - p[k];
+        let inner = blend(seen(f[2 * k]), beside[k][0], seen(f[2 * k + 1]), beside[k][1]);
+        TensorCorner { p: p[k], plus: seen(e[2 * k]), minus: seen(e[2 * k + 1]), inner }
+    };
+    evaluate_tensor(&std::array::from_fn(corner), u, v)
 }
 
 /// The face point `(a f+ + b f-) / (a + b)`; at a corner, where both weights vanish, it does not matter.
 fn blend<P: Point>(plus: P, a: P::Scalar, minus: P, b: P::Scalar) -> P {
-    let sum = a + b;
-    if sum > scalar::<P>(0.0) { (plus * a + minus * b) * (scalar::<P>(1.0) / sum) } else { plus }
+    use num_traits::Float;
+    plus + (minus - plus) * (b / (a + b).max(scalar::<P>(1e-30)))
 }
 
 /// A triangle patch at barycentric (u, v, 1 - u - v), with the derivative as in [`evaluate_gregory_quad`].

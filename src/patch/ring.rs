@@ -233,11 +233,18 @@ impl<T: Blend> RingValues<T> {
     ///
     /// Around a corner each edge goes straight at its neighbour: there is no common tangent plane to keep.
     pub fn edge_point(&self, frame: &Frame<T>, j: usize) -> T {
+        T::sum([(1.0, &frame.p), (1.0, &self.edge_vector(frame, j))])
+    }
+
+    /// [`RingValues::edge_point`] as seen from the limit point.
+    ///
+    /// GLSL twin: `edge_vector` in `glsl/lib/rings.glsl`.
+    pub fn edge_vector(&self, frame: &Frame<T>, j: usize) -> T {
         if self.shape.has_frame() {
             let [cos, sin] = self.shape.edge_direction(j);
-            T::sum([(1.0, &frame.p), (cos, &frame.a), (sin, &frame.b)])
+            T::sum([(cos, &frame.a), (sin, &frame.b)])
         } else {
-            T::sum([(2.0 / 3.0, &self.centre), (1.0 / 3.0, self.edge(j))])
+            T::sum([(1.0 / 3.0, self.edge(j)), (-1.0 / 3.0, &self.centre)])
         }
     }
 
@@ -246,12 +253,12 @@ impl<T: Blend> RingValues<T> {
     pub fn across(&self, frame: &Frame<T>, j: usize) -> T {
         let edges = self.edges.len();
         let j = j % edges;
-        let edge = |j: usize| self.edge_point(frame, j % edges);
+        let edge = |j: usize| self.edge_vector(frame, j % edges);
         let cosine = self.shape.cosine();
         if self.shape.open && j == 0 {
-            T::sum([(3.0, &edge(1)), (-3.0 * cosine, &edge(0)), (3.0 * cosine - 3.0, &frame.p)])
+            T::sum([(3.0, &edge(1)), (-3.0 * cosine, &edge(0))])
         } else if self.shape.open && j == edges - 1 {
-            T::sum([(-3.0, &edge(j - 1)), (3.0 * cosine, &edge(j)), (3.0 - 3.0 * cosine, &frame.p)])
+            T::sum([(-3.0, &edge(j - 1)), (3.0 * cosine, &edge(j))])
         } else {
             T::sum([(1.5, &edge(j + 1)), (-1.5, &edge(j + edges - 1))])
         }

@@ -144,6 +144,8 @@ impl Scheme {
     /// Whether the first three control points that a corner of a patch owns are the limit point of its [`Scheme::frame`] and
     /// the edge points at its plus and its minus edge ([`RingValues::edge_point`]): the boundary is then the same
     /// on both sides of an edge.
+    ///
+    /// The shaders keep all that the corner owns after the limit point as seen from there.
     pub fn shares_frame(self, kind: PatchKind) -> bool {
         kind == PatchKind::Regular || matches!(self, Self::Gregory | Self::GregoryFitted)
     }

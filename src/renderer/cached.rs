@@ -1,7 +1,8 @@
 //! What a frame makes before its draws: the control points of the cached construction, by compute, and what follows from them.
 
+use super::Renderer;
+use super::model::Model;
 use super::stages::PatchStages;
-use super::{ModelId, Renderer};
 use crate::gpu::{
     ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout, shaders,
 };
@@ -68,12 +69,11 @@ impl CachedPipelines {
         }
         let [owned, stride] = key;
         let name = format!("COMPUTE_CONTROL_POINTS_COMP_OWNED_{owned}");
-        let missing = || GpuError::BadPipeline { object: name.clone(), message: "there is no such shader".to_owned() };
         let stride = [Specialization::uint(3, stride)];
         let desc = ComputePipelineDesc {
             name: &format!("subdiv control points, {owned} a corner"),
             layout: self.layout.raw(),
-            shader: Shader::compute(shaders::find(&name).ok_or_else(missing)?).specialized(&stride),
+            shader: Shader::compute(shaders::named(&name)?).specialized(&stride),
             cache: self.cache,
         };
         // SAFETY: the shader is ours and matches the layout.
@@ -119,31 +119,28 @@ impl Renderer {
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after the copies and the barrier that follows them. That and the one
     /// before the copies have the computation wait for what read the points before.
-    pub(super) unsafe fn cmd_compute(&mut self, cmd: vk::CommandBuffer, models: &[ModelId]) {
-        if models.is_empty() {
+    pub(super) unsafe fn cmd_compute(&mut self, cmd: vk::CommandBuffer) {
+        let readers = self.shader_readers();
+        let Self { models, pipelines, context, .. } = self;
+        if !models.values().any(Model::is_stale) {
             return;
         }
-        for id in models {
-            if let Some(model) = self.models.get_mut(id) {
-                // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
-                unsafe { model.cmd_construct(&self.pipelines, cmd) };
-            }
+        for model in models.values_mut().filter(|model| model.is_stale()) {
+            // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
+            unsafe { model.cmd_construct(pipelines, cmd) };
         }
         use vk::PipelineStageFlags as Stage;
-        let readers = self.shader_readers();
         let makers = readers & (Stage::COMPUTE_SHADER | Stage::GEOMETRY_SHADER);
         let written = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
             .dst_access_mask(vk::AccessFlags::SHADER_READ)];
         let none = vk::DependencyFlags::empty();
-        let device = self.context.device();
+        let device = context.device();
         // SAFETY: as the caller promises.
         unsafe { device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]) };
-        for id in models {
-            if let Some(model) = self.models.get(id) {
-                // SAFETY: as above, after the control points.
-                unsafe { model.cmd_evaluate(&self.pipelines.lattice, cmd) };
-            }
+        for model in models.values_mut().filter(|model| model.is_stale()) {
+            // SAFETY: as above, after the control points.
+            unsafe { model.cmd_evaluate(&pipelines.lattice, cmd) };
         }
         let evaluated = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
@@ -156,7 +153,7 @@ impl Renderer {
 
     /// Has a model's control points and vertices made anew in the next frame: the bench times them.
     #[cfg(all(feature = "measure", feature = "headless"))]
-    pub(crate) fn forget_control_points(&mut self, id: ModelId) -> Result<(), super::Error> {
+    pub(crate) fn forget_control_points(&mut self, id: super::ModelId) -> Result<(), super::Error> {
         self.models.get_mut(&id).ok_or(super::Error::NoSuchModel { id })?.forget_points();
         Ok(())
     }

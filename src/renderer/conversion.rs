@@ -58,11 +58,10 @@ impl Conversion {
         }
         let [owned, stride] = key;
         let name = format!("CONSTRUCT_CONVERT_GEOM_OWNED_{owned}");
-        let missing = || GpuError::BadPipeline { object: name.clone(), message: "there is no such shader".to_owned() };
         let stride = [Specialization::uint(3, stride)];
         let shaders = [
             Shader::vertex(shaders::CONSTRUCT_CONVERT_VERT),
-            Shader::geometry(shaders::find(&name).ok_or_else(missing)?).specialized(&stride),
+            Shader::geometry(shaders::named(&name)?).specialized(&stride),
         ];
         let target = RenderTarget::RenderPass { render_pass: self.pass.raw(), subpass: 0, color_attachments: 0 };
         let desc = GraphicsPipelineDesc {

@@ -1,7 +1,7 @@
 //! Recording the draws of a view.
 
 use super::evaluated::Drawn;
-use super::factor::{Cull, Factor};
+use super::factor::{Cull, Cut, Factor};
 use super::gpu_data::DrawConstants;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
@@ -90,8 +90,25 @@ impl Renderer {
         unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 0, &[self.view_set], &[offset as u32]) };
         let mut bound = Bound::default();
         for item in items {
+            self.make_pipelines(item.model, item.factor, item.cull)?;
             // SAFETY: as the caller promises.
             unsafe { self.cmd_draw_item(cmd, view, item, &mut bound)? };
+        }
+        Ok(())
+    }
+
+    /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor. Those
+    /// for [`Factor::Uniform`] with [`Cull::NONE`] are there when the model is added; others are made by the first draw that
+    /// needs them, unless this was called before.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`]; failed Vulkan calls.
+    pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
+        let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
+        let cut = Cut::new(factor, cull);
+        if model.made & cut.bit() == 0 {
+            self.pipelines.make(&model.stages, cut)?;
+            model.made |= cut.bit();
         }
         Ok(())
     }
@@ -119,7 +136,8 @@ impl Renderer {
             factor => factor.value(),
         };
         let mut constants = DrawConstants::new(&item.transform, [value, scale, bias]);
-        constants.flags = item.factor.flags() | item.cull.flags() | model.displacement_flags(item.displacement);
+        constants.flags = model.displacement_flags(item.displacement);
+        let cut = Cut::new(item.factor, item.cull);
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
             if bound.set != model.set {
@@ -152,7 +170,7 @@ impl Renderer {
                 Drawn::Tiles { segments } => constants.set_factor(segments as f32),
             }
             for (number, (&stages, group)) in model.stages.iter().zip(model.tables.plan().groups()).enumerate() {
-                self.bind(cmd, PipelineKey { style: item.style, geometry: stages.geometry() }, bound);
+                self.bind(cmd, PipelineKey { style: item.style, geometry: stages.geometry(cut) }, bound);
                 constants.colour = item.colors[stages.kind as usize];
                 constants.first_corner = group.first_corner as u32;
                 constants.first_patch = group.patches.start as u32;
@@ -233,7 +251,7 @@ impl Renderer {
     }
 
     unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {
-        // Every pipeline of a model's kinds was made when it was added.
+        // Every pipeline of the model was made before.
         if let Some(pipeline) = self.pipelines.get(key)
             && bound.pipeline != pipeline
         {

@@ -1,7 +1,5 @@
 //! How finely patches are cut, and which are left out.
 
-use super::gpu_data::{CULL_BACK_FLAG, CULL_FRUSTUM_FLAG, CULL_SMALL_FLAG, METRIC_SHIFT};
-
 /// Where the tessellation factors of a draw come from.
 ///
 /// The factor of an edge depends on the edge alone, so both its patches have the same; the inside of a patch takes the larger
@@ -48,21 +46,20 @@ impl Factor {
         matches!(self, Self::Pixels(_) | Self::Curvature(_))
     }
 
-    pub(super) fn flags(self) -> u32 {
-        let metric = match self {
+    fn metric(self) -> u32 {
+        match self {
             Self::Uniform(_) => 0,
             Self::Pixels(_) => 1,
             Self::Curvature(_) => 2,
             Self::Edges(_) => 3,
-        };
-        metric << METRIC_SHIFT
+        }
     }
 }
 
 /// Which patches the control shader leaves out. No choice changes the factors of the patches that stay.
 ///
 /// Pm- and c-patches are never left out, triangles only by the frustum and as small.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Cull {
     /// Those beyond a plane of the view frustum; their hull grows by what displacement can move them.
     pub frustum: bool,
@@ -79,9 +76,29 @@ impl Cull {
     pub const NONE: Self = Self { frustum: false, back: false, small: false };
     /// All of them.
     pub const ALL: Self = Self { frustum: true, back: true, small: true };
+}
 
+/// What the control shader does to cut a patch or to leave it out: each has pipelines of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(super) struct Cut {
+    metric: u32,
+    cull: Cull,
+}
+
+impl Cut {
+    pub(super) fn new(factor: Factor, cull: Cull) -> Self {
+        Self { metric: factor.metric(), cull }
+    }
+
+    /// GLSL twin: `DRAW_FLAGS` in `glsl/lib/factors.glsl`.
     pub(super) fn flags(self) -> u32 {
-        let flag = |on: bool, flag: u32| if on { flag } else { 0 };
-        flag(self.frustum, CULL_FRUSTUM_FLAG) | flag(self.back, CULL_BACK_FLAG) | flag(self.small, CULL_SMALL_FLAG)
+        let Cull { frustum, back, small } = self.cull;
+        // Five bits: see `Cut::bit`.
+        self.metric | u32::from(frustum) << 2 | u32::from(back) << 3 | u32::from(small) << 4
+    }
+
+    /// A bit of its own among 32.
+    pub(super) fn bit(self) -> u32 {
+        1 << self.flags()
     }
 }

@@ -33,12 +33,8 @@ pub(crate) struct DrawConstants {
     pub flags: u32,
 }
 
-/// Bits of [`DrawConstants::flags`]. GLSL twins: `glsl/lib/displace.glsl` and `glsl/lib/factors.glsl`.
+/// Bits of [`DrawConstants::flags`]. GLSL twins: `glsl/lib/displace.glsl` and `reach` in `glsl/lib/culling.glsl`.
 pub(super) const VECTOR_FLAG: u32 = 1;
-pub(super) const CULL_FRUSTUM_FLAG: u32 = 1 << 1;
-pub(super) const CULL_BACK_FLAG: u32 = 1 << 2;
-pub(super) const CULL_SMALL_FLAG: u32 = 1 << 3;
-pub(super) const METRIC_SHIFT: u32 = 8;
 /// How far displacement reaches, as a half-precision number.
 pub(super) const REACH_SHIFT: u32 = 16;
 

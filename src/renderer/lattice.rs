@@ -69,12 +69,11 @@ impl LatticePipelines {
             return Ok(());
         }
         let name = stages.evaluation(Capture::Off, self.texcoords);
-        let missing = || GpuError::BadPipeline { object: name.clone(), message: "there is no such shader".to_owned() };
         let stride = [Specialization::uint(3, stages.stride)];
         let desc = ComputePipelineDesc {
             name: &format!("subdiv {name}"),
             layout: self.layout.raw(),
-            shader: Shader::compute(shaders::find(&name).ok_or_else(missing)?).specialized(&stride),
+            shader: Shader::compute(shaders::named(&name)?).specialized(&stride),
             cache: self.cache,
         };
         // SAFETY: the shader is ours and matches the layout.

@@ -231,9 +231,10 @@ impl Renderer {
         let map = self.displacements.get(options.displacement)?;
         let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
         let model = Model::new(from, id, &options, tables, positions, map)?;
-        self.pipelines.make(&model.stages)?;
         self.next_id += 1;
         self.models.insert(id, model);
+        let made = self.make_pipelines(id, Factor::Uniform(1.0), Cull::NONE);
+        made.inspect_err(|_| drop(self.models.remove(&id)))?;
         Ok(id)
     }
 
@@ -331,8 +332,7 @@ impl Renderer {
         unsafe {
             // The frame before may still read what is overwritten here.
             device.cmd_pipeline_barrier(cmd, readers | transfer, transfer, none, &after_writes, &[], &[]);
-            let computing: Vec<ModelId> =
-                self.models.iter().filter(|(_, model)| model.needs_points(frame_index)).map(|(&id, _)| id).collect();
+            self.models.values_mut().for_each(|model| model.mark_stale(frame_index));
             for model in self.models.values_mut().filter(|model| model.needs_copies(frame_index)) {
                 for staging in model.cmd_copy(device, cmd, frame_index) {
                     let mut frames = vec![false; self.options.frames_in_flight as usize];
@@ -341,7 +341,7 @@ impl Renderer {
                 }
             }
             device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
-            self.cmd_compute(cmd, &computing);
+            self.cmd_compute(cmd);
         }
         Ok(())
     }

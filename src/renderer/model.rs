@@ -22,6 +22,8 @@ pub(super) struct Model {
     pub tables: ModelTables,
     /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
+    /// What there are pipelines for, by [`Cut::bit`](super::factor::Cut::bit).
+    pub made: u32,
     pub set: vk::DescriptorSet,
     _pool: Owned<vk::DescriptorPool>,
     /// All tables of the construction and the texture coordinates, one after the other.
@@ -155,14 +157,15 @@ impl Model {
         buffers.push(control_points.as_ref().map_or(positions.descriptor(), Buffer::descriptor));
         write_set(context, set, &buffers, map);
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
-        let (sharing, stride) = (tables.sharing(), tables.cached_stride());
+        let (sharing, stride, has_speakers) = (tables.sharing(), tables.cached_stride(), tables.has_speakers());
         let stages = |group: &PatchGroup| {
             let PatchGroup { scheme, kind, .. } = *group;
-            PatchStages { scheme, kind, construction, evaluation, spacing, sharing, stride }
+            PatchStages { scheme, kind, construction, evaluation, spacing, sharing, has_speakers, stride }
         };
         Ok(Self {
             id,
             stages: tables.plan.groups().iter().map(stages).collect(),
+            made: 0,
             tables,
             set,
             _pool: pool,
@@ -244,11 +247,22 @@ impl Model {
         self.lattice.replace(lattice)
     }
 
-    /// Records the evaluation of the lattice, if there is one.
+    /// Has what follows from the copies of this frame computed after them; before they are recorded.
+    pub(super) fn mark_stale(&mut self, frame: u32) {
+        self.stale = self.needs_points(frame);
+    }
+
+    /// Whether control points, and vertices, are to be computed now.
+    pub(super) fn is_stale(&self) -> bool {
+        self.stale
+    }
+
+    /// Records the evaluation of the lattice, if there is one, which is the last of what was out of date.
     ///
     /// # Safety
     /// As [`Lattice::cmd_evaluate`].
-    pub(super) unsafe fn cmd_evaluate(&self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
+    pub(super) unsafe fn cmd_evaluate(&mut self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
+        self.stale = false;
         if let Some(lattice) = &self.lattice {
             // SAFETY: as the caller promises.
             unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set, &self.stages, &self.tables.plan) };
@@ -259,8 +273,7 @@ impl Model {
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after the copies; `pipelines` have those of the model's kinds.
-    pub(super) unsafe fn cmd_construct(&mut self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
-        self.stale = false;
+    pub(super) unsafe fn cmd_construct(&self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
         let (set, stages, plan) = (self.set, &self.stages, &self.tables.plan);
         // SAFETY: as the caller promises.
         unsafe {

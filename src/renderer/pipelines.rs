@@ -2,6 +2,7 @@
 
 use super::cached::CachedPipelines;
 use super::conversion::Conversion;
+use super::factor::Cut;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
@@ -39,7 +40,8 @@ pub(super) struct PipelineKey {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum GeometryKey {
-    Patches(PatchStages),
+    /// Of draws with these flags ([`Cut`]), if they are of the tessellation stages.
+    Patches(PatchStages, Cut),
     /// Patches of all kinds that were evaluated before.
     Evaluated,
     Control,
@@ -126,8 +128,8 @@ impl Pipelines {
         self.made.get(&key).map(Owned::raw)
     }
 
-    /// Makes what these patches need in every style.
-    pub(super) fn make(&mut self, patches: &[PatchStages]) -> Result<(), GpuError> {
+    /// Makes what draws of these patches need in every style.
+    pub(super) fn make(&mut self, patches: &[PatchStages], cut: Cut) -> Result<(), GpuError> {
         for &stages in patches {
             match (stages.construction, stages.evaluation) {
                 (Construction::Cached, Evaluation::GeometryTwoPass) => self.conversion()?.make(stages)?,
@@ -144,7 +146,7 @@ impl Pipelines {
                 continue;
             }
             for stages in patches {
-                self.make_one(PipelineKey { style, geometry: stages.geometry() })?;
+                self.make_one(PipelineKey { style, geometry: stages.geometry(cut) })?;
             }
         }
         Ok(())
@@ -182,20 +184,23 @@ impl Pipelines {
                 let stages = [Shader::vertex(vertex), fragment(style, Sharing::Positions, &encode)];
                 self.create(&name, key, &stages, 0)?
             }
-            GeometryKey::Patches(patch) => {
+            GeometryKey::Patches(patch, cut) => {
                 let name = format!("subdiv style {} {patch:?}", key.style);
                 let fragment = fragment(style, patch.sharing, &encode);
                 let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
-                let stride = [Specialization::uint(3, patch.stride)];
+                let most = self.context.properties().max_tessellation_level as f32;
+                let constants = patch.specialization(cut.flags(), most);
                 match patch.evaluation {
-                    Evaluation::Tessellation => self.create_tessellating(&name, key, patch, evaluation, fragment)?,
+                    Evaluation::Tessellation => {
+                        self.create_tessellating(&name, key, patch, &constants, evaluation, fragment)?
+                    }
                     Evaluation::Geometry => {
                         let tile = Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT);
-                        let evaluation = Shader::geometry(evaluation).specialized(&stride);
+                        let evaluation = Shader::geometry(evaluation).specialized(&constants);
                         self.create(&name, key, &[tile, evaluation, fragment], 0)?
                     }
                     _ => {
-                        let evaluation = Shader::vertex(evaluation).specialized(&stride);
+                        let evaluation = Shader::vertex(evaluation).specialized(&constants);
                         self.create(&name, key, &[evaluation, fragment], 0)?
                     }
                 }
@@ -210,21 +215,19 @@ impl Pipelines {
         name: &str,
         key: PipelineKey,
         patch: PatchStages,
+        constants: &[Specialization],
         evaluation: &[u32],
         fragment: Shader,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
-        let corners = [Specialization::uint(0, patch.kind.corners() as u32)];
-        let vertex = match patch.construction {
-            Construction::TwoStage => Shader::vertex(shaders::CONSTRUCT_TWO_STAGE_VERT).specialized(&corners),
-            Construction::Stencil | Construction::Cached => Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
-        };
+        let vertex = self.find(&patch.vertex(self.capture))?;
         let control = self.find(&patch.control(self.capture, self.texcoords))?;
         let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
         let evaluation = spaced(evaluation, spacing);
-        let most = self.context.properties().max_tessellation_level as f32;
-        let limits = [Specialization::float(2, most), Specialization::uint(3, patch.stride)];
-        let mut stages =
-            vec![vertex, Shader::tess_control(control).specialized(&limits), Shader::tess_evaluation(&evaluation)];
+        let mut stages = vec![
+            Shader::vertex(vertex).specialized(constants),
+            Shader::tess_control(control).specialized(constants),
+            Shader::tess_evaluation(&evaluation),
+        ];
         if self.capture == Capture::Triangles {
             stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
         }
@@ -234,8 +237,7 @@ impl Pipelines {
 
     /// A shader by its name: the caller's own, or ours.
     fn find(&self, name: &str) -> Result<&[u32], GpuError> {
-        let missing = || GpuError::BadPipeline { object: name.to_owned(), message: "there is no such shader".into() };
-        self.replaced.get(name).map(Vec::as_slice).or_else(|| shaders::find(name)).ok_or_else(missing)
+        self.replaced.get(name).map_or_else(|| shaders::named(name), |code| Ok(code))
     }
 
     fn create(
@@ -257,7 +259,7 @@ impl Pipelines {
         };
         let stages = if style.rasterizer_discard { &stages[..stages.len() - 1] } else { stages };
         let topology = match key.geometry {
-            GeometryKey::Patches(PatchStages { evaluation: Evaluation::Geometry, .. }) => {
+            GeometryKey::Patches(PatchStages { evaluation: Evaluation::Geometry, .. }, _) => {
                 vk::PrimitiveTopology::POINT_LIST
             }
             _ if style.geometry == Geometry::ControlEdges => vk::PrimitiveTopology::LINE_LIST,

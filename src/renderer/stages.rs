@@ -1,8 +1,9 @@
 //! Which shaders a patch is drawn with: found by name, so that a scheme adds files and its arm in [`files`].
 
+use super::factor::Cut;
 use super::pipelines::GeometryKey;
-use super::{Capture, Construction, Evaluation};
-use crate::gpu::Spacing;
+use super::{Capture, Construction, Cull, Evaluation, Factor};
+use crate::gpu::{Spacing, Specialization};
 use crate::patch::Scheme;
 use crate::topology::PatchKind;
 
@@ -15,6 +16,8 @@ pub(super) struct PatchStages {
     pub evaluation: Evaluation,
     pub spacing: Spacing,
     pub sharing: Sharing,
+    /// Whether any corner has another ring than its own speak for what it shares.
+    pub has_speakers: bool,
     /// Control points that a corner has room for where they are cached, else 0.
     pub stride: u32,
 }
@@ -65,16 +68,44 @@ impl PatchStages {
     }
 
     /// What tells their pipelines apart in one style.
-    pub(super) fn geometry(self) -> GeometryKey {
+    pub(super) fn geometry(self, cut: Cut) -> GeometryKey {
         match self.evaluation {
             Evaluation::Compute => GeometryKey::Evaluated,
-            _ => GeometryKey::Patches(self),
+            Evaluation::Tessellation => GeometryKey::Patches(self, cut),
+            // Neither adaptive nor culled.
+            _ => GeometryKey::Patches(self, Cut::new(Factor::Uniform(1.0), Cull::NONE)),
         }
     }
 
     /// What tells apart the pipelines that make cached control points: those that a corner owns, and those it has room for.
     pub(super) fn cached_key(self) -> [u32; 2] {
         [self.scheme.owned(self.kind) as u32, self.stride]
+    }
+
+    /// The name of the vertex shader.
+    pub(super) fn vertex(self, capture: Capture) -> String {
+        if self.input_points() == 1 {
+            return "CONSTRUCT_STENCIL_VERT".to_owned();
+        }
+        let inner = match files(self.scheme, self.kind)[0] {
+            "REGULAR" => String::new(),
+            scheme => format!("_{scheme}"),
+        };
+        format!("CONSTRUCT_TWO_STAGE_VERT{inner}{}", self.sharing.suffix(capture))
+    }
+
+    /// What the vertex and the control shader of draws with these flags are specialized to. `most` is the largest factor of
+    /// the device.
+    pub(super) fn specialization(self, flags: u32, most: f32) -> [Specialization; 7] {
+        [
+            Specialization::uint(0, self.kind.corners() as u32),
+            Specialization::float(2, most),
+            Specialization::uint(3, self.stride),
+            Specialization::uint(4, flags),
+            Specialization::bool(5, self.scheme == Scheme::GregoryFitted),
+            Specialization::bool(6, self.scheme.has_pentagons()),
+            Specialization::bool(7, self.has_speakers),
+        ]
     }
 
     /// The name of the control shader.
@@ -171,16 +202,25 @@ mod tests {
                     continue;
                 }
                 let spacing = Spacing::Equal;
-                let stages = PatchStages { scheme, kind, construction, evaluation, spacing, sharing, stride: 8 };
+                let stages = PatchStages {
+                    scheme,
+                    kind,
+                    construction,
+                    evaluation,
+                    spacing,
+                    sharing,
+                    has_speakers: true,
+                    stride: 8,
+                };
                 for (capture, texcoords) in modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]) {
-                    let control = tessellates.then(|| stages.control(capture, texcoords));
+                    let made = [stages.vertex(capture), stages.control(capture, texcoords)];
                     let watched = match evaluation {
                         Evaluation::Tessellation => true,
                         Evaluation::Compute => capture == Capture::Off,
                         _ => matches!(capture, Capture::Off | Capture::Vertices),
                     };
                     let evaluation = watched.then(|| stages.evaluation(capture, texcoords));
-                    for name in control.into_iter().chain(evaluation) {
+                    for name in made.into_iter().filter(|_| tessellates).chain(evaluation) {
                         assert!(shaders::find(&name).is_some(), "{name}");
                     }
                 }

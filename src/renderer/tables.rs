@@ -5,7 +5,8 @@ use super::{Construction, ModelOptions};
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
 use crate::table::{
-    FaceOrigin, Notice, PatchPlan, RingTable, SharedTable, StencilTable, TableError, bytes, prepare_patches,
+    FaceOrigin, Notice, PatchPlan, RingTable, SharedCorner, SharedTable, StencilTable, TableError, bytes,
+    prepare_patches,
 };
 use crate::topology::{PatchKind, Topology};
 use glam::Vec3;
@@ -111,6 +112,15 @@ impl ModelTables {
             patch_vertices: prepared.mesh.vertex_count(),
             steps: prepared.steps,
         })
+    }
+
+    /// Whether any corner has another ring than its own speak for what it shares.
+    pub(super) fn has_speakers(&self) -> bool {
+        let (Some(shared), Some(rings)) = (&self.shared, &self.rings) else { return false };
+        let own = |(shared, &[own, _]): (&SharedCorner, &[u32; 2])| {
+            [shared.ring, shared.plus_ring, shared.minus_ring] == [own; 3]
+        };
+        !shared.corners.iter().zip(&rings.corners).all(own)
     }
 
     /// What a user will want to know about how the mesh is drawn.

@@ -1,6 +1,6 @@
 //! The connectivity of the two-stage construction: every one-ring in order, and what its weights are.
 
-use super::{PatchPlan, bytes};
+use super::PatchPlan;
 use crate::patch::{RingShape, RingValues, Row, Scheme};
 use crate::topology::{Ring, RingKind, Topology};
 use rayon::prelude::*;
@@ -61,11 +61,6 @@ impl RingTable {
         let mut entries = ring_entries(topology, &pentagons, entries as usize);
         entries.extend(&pentagons.vertices);
         Self { entries, headers, types: types.words, type_count: types.count, corners: corners.collect() }
-    }
-
-    /// Bytes of all arrays together.
-    pub fn bytes(&self) -> u64 {
-        bytes(&self.headers) + bytes(&self.entries) + bytes(&self.types) + bytes(&self.corners)
     }
 }
 

@@ -1,12 +1,10 @@
 //! What patches share: which ring speaks for each edge and each vertex.
 
-use super::{PatchPlan, bytes};
+use super::PatchPlan;
 use crate::mesh::NO_TWIN;
 use crate::topology::Topology;
 use rayon::prelude::*;
 
-/// Bit of [`SharedCorner::plus_edge`]: the plus edge leads to a lower vertex. Edges are evaluated from the lower one on.
-pub const REVERSED_BIT: u32 = 1 << 31;
 /// Bit of [`SharedCorner::plus_edge`]: the faces at the plus edge are lit with normals of their own.
 pub const SHARP_EDGE_BIT: u32 = 1 << 30;
 
@@ -22,7 +20,7 @@ pub struct SharedCorner {
     pub ring: u32,
     /// The ring at this vertex that speaks for the plus edge.
     pub plus_ring: u32,
-    /// The number of the plus edge in that ring, and bits.
+    /// The number of the plus edge in that ring, and a bit.
     pub plus_edge: u32,
     /// The ring at this vertex that speaks for the minus edge.
     pub minus_ring: u32,
@@ -72,11 +70,6 @@ impl SharedTable {
             corners: corners.par_iter().map(|&h| speakers.corner(h)).collect(),
             texcoords: corners.par_iter().map(|&h| speakers.texcoord(h, at)).collect(),
         })
-    }
-
-    /// Bytes of the arrays.
-    pub fn bytes(&self) -> u64 {
-        bytes(&self.corners) + bytes(&self.texcoords)
     }
 }
 
@@ -136,16 +129,11 @@ impl<'t, 'm> Speakers<'t, 'm> {
         let topology = self.topology;
         let (plus_ring, plus_edge) = self.at_start(h);
         let (minus_ring, minus_edge) = self.at_end(topology.prev(h));
-        let twin = topology.mesh().twins()[h as usize];
-        // At a dart the edge is sharp, and both faces are in one ring all the same.
-        let one_ring = twin == NO_TWIN
-            || (topology.place(h).ring == topology.place(topology.next(twin)).ring
-                && topology.place(twin).ring == topology.place(topology.next(h)).ring);
-        let bit = |on: bool, bit: u32| if on { bit } else { 0 };
+        let sharp = !topology.is_within_rings(h);
         SharedCorner {
             ring: self.first_rings[topology.mesh_vertex(h) as usize],
             plus_ring,
-            plus_edge: plus_edge | bit(self.is_reversed(h), REVERSED_BIT) | bit(!one_ring, SHARP_EDGE_BIT),
+            plus_edge: plus_edge | if sharp { SHARP_EDGE_BIT } else { 0 },
             minus_ring,
             minus_edge,
         }

@@ -1,8 +1,8 @@
 //! The weights of the stencil construction, one set for each type of connectivity around a patch.
 
-use super::{PatchPlan, bytes};
+use super::PatchPlan;
 use crate::mesh::MeshError;
-use crate::patch::{FallbackRings, RingShape, RingValues, Row, Scheme};
+use crate::patch::{Blend, FallbackRings, RingShape, RingValues, Row, Scheme};
 use crate::table::Patch;
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -105,16 +105,11 @@ impl StencilTable {
         Ok(table)
     }
 
-    /// Bytes of all arrays together.
-    pub fn bytes(&self) -> u64 {
-        bytes(&self.patches) + bytes(&self.vertices) + bytes(&self.types)
-    }
-
     /// Appends the weights for patches connected like `ring`'s. Gives where they start.
     fn push_type(&mut self, topology: &Topology, shared: &mut SharedRows, ring: &PatchRing) -> u32 {
         let local: HashMap<u32, u32> = ring.vertices.iter().zip(0..).map(|(&vertex, i)| (vertex, i)).collect();
         let Patch { kind, scheme, .. } = ring.patch;
-        let rows = ring.patch.control_points(topology, shared.fallback, |vertex| Row::unit(local[&vertex]));
+        let mut rows = ring.patch.control_points(topology, shared.fallback, |vertex| Row::unit(local[&vertex]));
         let start = self.types.len();
         self.types.resize(start + HEAD_WORDS * kind.corners(), 0);
         for (k, h) in ring.patch.corners(topology).enumerate() {
@@ -122,6 +117,13 @@ impl StencilTable {
             let first = self.types.len();
             let ring_of_corner = CornerRing::of(topology, shared.fallback, h);
             let of_frame = if scheme.shares_frame(kind) { shared.of(&ring_of_corner) } else { &[] };
+            if scheme.shares_frame(kind) {
+                // As seen from the corner.
+                let corner = rows[owned[0]].clone();
+                for &slot in &owned[1..] {
+                    rows[slot].add_scaled(-1.0, &corner);
+                }
+            }
             // The other control points take each vertex once, wherever it is met first.
             let mut pending = vec![true; ring.vertices.len()];
             let around = ring_of_corner.entries.iter().map(|&(vertex, entry)| (local[&vertex], Some(entry)));
@@ -209,7 +211,7 @@ impl CornerRing {
     }
 }
 
-/// The limit point of a corner and its edge points at the plus and the minus edge: what patches share.
+/// The limit point of a corner and, as seen from there, its edge points at the plus and the minus edge: what patches share.
 ///
 /// All faces around a vertex get weights with the same bits: each row is made with the ring turned in a way that does not
 /// depend on the face that asks.
@@ -233,7 +235,7 @@ impl SharedRows<'_> {
 fn open_rows(scheme: Scheme, shape: &RingShape, plus: usize) -> [Row; 3] {
     let ring = RingValues::unknowns(shape.clone());
     let frame = scheme.frame(&ring);
-    [frame.p.clone(), ring.edge_point(&frame, plus), ring.edge_point(&frame, plus + 1)]
+    [frame.p.clone(), ring.edge_vector(&frame, plus), ring.edge_vector(&frame, plus + 1)]
 }
 
 fn closed_rows(scheme: Scheme, shape: &RingShape) -> [Row; 3] {
@@ -250,7 +252,7 @@ fn closed_rows(scheme: Scheme, shape: &RingShape) -> [Row; 3] {
     };
     let edge = |j: usize| {
         let ring = RingValues::unknowns(turned(j));
-        back(&ring.edge_point(&scheme.frame(&ring), 0), j)
+        back(&ring.edge_vector(&scheme.frame(&ring), 0), j)
     };
     // The limit point from the least of all turned shapes; turns that do not change it must not change the weights.
     let least = (0..faces).min_by_key(|&by| turned(by).triangles).unwrap_or(0);

@@ -141,6 +141,14 @@ impl<'m> Topology<'m> {
         self.sharp.get(half_edge as usize).copied().unwrap_or(false)
     }
 
+    /// Whether the faces on both sides of an edge are neighbours in the one-rings of both its ends, as they are along smooth
+    /// edges; at a dart the edge is sharp, and both faces are in one ring all the same. True for boundaries.
+    pub fn is_within_rings(&self, half_edge: u32) -> bool {
+        let ring = |h: u32| self.place(h).ring;
+        self.twin(half_edge)
+            .is_none_or(|twin| ring(half_edge) == ring(self.next(twin)) && ring(twin) == ring(self.next(half_edge)))
+    }
+
     /// All one-rings.
     pub fn rings(&self) -> &[Ring] {
         &self.rings

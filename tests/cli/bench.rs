@@ -20,7 +20,10 @@ fn measured(folder: &Path, arguments: &str) -> (PathBuf, Value) {
 fn bench_measures_every_path_on_every_kind_of_patch() {
     let results =
         json(&format!("bench {SMALL} --shape torus,tetrahedron --factors 3,1 --spacing odd,even --validation"));
-    assert_eq!(keys(&results), ["command", "device", "left_out", "measured", "meshes", "options", "program", "rows"]);
+    assert_eq!(
+        keys(&results),
+        ["command", "device", "growth", "left_out", "measured", "meshes", "options", "program", "rows"]
+    );
     assert!(results["command"].as_str().unwrap().starts_with("subdiv bench --size 32x32"), "{results}");
     assert_eq!(results["options"]["frames"], 6);
     // A torus in 5 schemes and 3 constructions, a tetrahedron in 3; each in 2 floors, 2 spacings and 2 factors.
@@ -35,6 +38,7 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
                 "bytes",
                 "construction",
                 "construction_ms",
+                "cull",
                 "factor",
                 "fence_ms",
                 "first_frame_ms",
@@ -44,6 +48,8 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
                 "gpu_ms",
                 "gpu_ratio",
                 "mesh",
+                "normals",
+                "passes",
                 "patches",
                 "path",
                 "pipelines_ms",
@@ -55,6 +61,8 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
                 "traffic_bytes",
                 "triangles",
                 "upload_ms",
+                "view",
+                "visible_triangles",
             ]
         );
         for times in [&row["gpu_ms"], &row["geometry_ms"]] {
@@ -86,10 +94,150 @@ fn bench_writes_tables_and_csv() {
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
     assert_eq!((lines.len(), lines[0][..3].join(" ")), (7, "mesh scheme construction".into()));
-    assert_eq!((lines[4][0], lines[4][6]), ("cube x4", "24"));
+    assert_eq!((lines[4][0], lines[4][10]), ("cube x4", "24"));
     let text = run(&format!("bench {SMALL} {few} --replicate 1,4"));
     let text = String::from_utf8(text.stdout).unwrap();
-    assert_eq!(text.split("\ntime grows as patches^").nth(1).map(|grown| grown.lines().count()), Some(4), "{text}");
+    assert_eq!(
+        text.split("\ntime grows as patches^").nth(1).map(|grown| grown.trim_end().lines().count()),
+        Some(4),
+        "{text}"
+    );
+}
+
+#[test]
+fn bench_measures_normals_culling_and_views_beside_each_other() {
+    let results = json(&format!(
+        "bench {SMALL} --shape creature --factors 2 --schemes gregory --constructions two-stage --paths \
+         tessellation,bilinear --normals own,shared --cull frustum,back --view fit,clipped"
+    ));
+    let rows = results["rows"].as_array().unwrap();
+    let named = |row: &Value| ["view", "path", "normals", "cull"].map(|key| row[key].as_str().unwrap().to_owned());
+    let of_view = |view: &str| {
+        [
+            ["tessellation", "own", "none"],
+            ["tessellation", "own", "back+frustum"],
+            ["tessellation", "shared", "none"],
+            ["tessellation", "shared", "back+frustum"],
+            ["bilinear", "own", "none"],
+        ]
+        .map(|[path, normals, cull]| [view, path, normals, cull].map(str::to_owned))
+    };
+    let expected: Vec<_> = ["fit", "clipped"].into_iter().flat_map(of_view).collect();
+    assert_eq!(rows.iter().map(named).collect::<Vec<_>>(), expected);
+    for rows in rows.chunks(5) {
+        assert_eq!(rows[0]["gpu_ratio"]["value"], 1.0);
+    }
+    let views = results["views"].as_array().unwrap();
+    assert_eq!(views.iter().map(named).collect::<Vec<_>>(), expected[5..]);
+    let (view, of) = (&views[0], |row: &Value| row["visible_triangles"].as_f64().unwrap());
+    let frames =
+        |row: &Value| row["frames_ms"]["gpu"].as_array().unwrap().iter().map(|ms| ms.as_f64().unwrap()).collect();
+    let (near, far): (Vec<f64>, Vec<f64>) = (frames(&rows[5]), frames(&rows[0]));
+    let mut ratios: Vec<f64> = near.iter().zip(&far).map(|(near, far)| near / far).collect();
+    ratios.sort_unstable_by(f64::total_cmp);
+    let expected = (ratios[2] + ratios[3]) / 2.0 * of(&rows[0]) / of(&rows[5]);
+    assert!((view["gpu"]["value"].as_f64().unwrap() - expected).abs() < 1e-9, "{view}");
+}
+
+/// What `bench` finds in rows with these times.
+fn found(name: &str, arguments: &str, times: impl Fn(&Value) -> f64) -> (Value, String) {
+    let folder = folder(name);
+    let (path, mut results) = measured(&folder, arguments);
+    for row in results["rows"].as_array_mut().unwrap() {
+        let ms = times(row);
+        let frames: Vec<f64> = (0..9).map(|i| ms * (1.0 + f64::from(i) / 1000.0)).collect();
+        row["frames_ms"] = json!({ "gpu": frames, "geometry": frames });
+    }
+    fs::write(&path, results.to_string()).unwrap();
+    let report = folder.join("report");
+    let output = run(&format!("bench --results {} --report {}", path.display(), report.display()));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let page = fs::read_to_string(report.join("index.html")).unwrap();
+    for title in ["time grows as patches^", "compute wins from so many passes on"] {
+        assert_eq!(text.contains(title), page.contains(title), "{title}");
+    }
+    (json(&format!("bench --results {}", path.display())), text)
+}
+
+#[test]
+fn bench_finds_from_how_many_passes_on_compute_wins() {
+    let few = "--shape cube --factors 2,3,4 --schemes gregory --constructions two-stage,cached --passes 1,2,4 --paths";
+    // Compute costs 5 and 1 a pass; tessellation 3 a pass, so that they meet at 2.5, but at factor 3 much less and at
+    // factor 4 much more.
+    let times = |row: &Value| {
+        let passes = row["passes"].as_f64().unwrap();
+        let a_pass = [3.0, 0.5, 9.0][row["factor"].as_f64().unwrap() as usize - 2];
+        if row["path"] == "compute" { 5.0 + passes } else { a_pass * passes }
+    };
+    let (results, text) = found("bench-passes", &format!("{few} tessellation,compute"), times);
+    let found = results["break_even"].as_array().unwrap();
+    let line = |factor: f64, construction: &str| {
+        found.iter().find(|f| f["factor"] == factor && f["construction"] == construction).unwrap()
+    };
+    assert_eq!(found.len(), 6);
+    for construction in ["two-stage", "cached"] {
+        let [even, never, always] = [2.0, 3.0, 4.0].map(|factor| &line(factor, construction)["geometry"]);
+        assert!((even["value"].as_f64().unwrap() - 2.5).abs() < 0.02, "{even}");
+        assert!(even["low"].as_f64() < even["value"].as_f64() && even["value"].as_f64() < even["high"].as_f64());
+        assert_eq!(*never, json!({ "value": null, "low": null, "high": null }));
+        assert_eq!(*always, json!({ "value": 1.0, "low": 1.0, "high": 1.0 }));
+    }
+    assert!(text.contains("\ncompute wins from so many passes on ") && text.contains("more (more to more)"), "{text}");
+    assert_eq!(results["options"]["passes"], json!([1, 2, 4]));
+    // One count says nothing of others.
+    let one = json(&format!("bench {SMALL} --shape cube --factors 1 --schemes gregory --paths tessellation,compute"));
+    assert_eq!(one.get("break_even"), None);
+}
+
+#[test]
+fn bench_finds_how_time_and_bytes_grow() {
+    let few =
+        "--shape cube --factors 1 --schemes gregory --constructions two-stage --paths tessellation --replicate 1,2,4";
+    let (results, text) = found("bench-growth", few, |row| row["patches"].as_f64().unwrap().powf(1.25));
+    let found = results["growth"].as_array().unwrap();
+    assert_eq!((found.len(), &found[0]["mesh"]), (1, &json!("cube x4")));
+    assert!((found[0]["gpu"]["value"].as_f64().unwrap() - 1.25).abs() < 1e-9, "{}", found[0]);
+    let bytes = found[0]["bytes"].as_f64().unwrap();
+    assert!(bytes > 0.5 && bytes < 1.05, "{bytes}");
+    assert!(text.contains("  1.25 (1.25 to 1.25)  "), "{text}");
+}
+
+#[test]
+fn bench_records_crowds() {
+    let few = "--shape tetrahedron --recording 4 --schemes gregory,acc --constructions two-stage,cached";
+    let results = json(&format!("bench {SMALL} {few}"));
+    // Gregory in three ways, three crowds each; ACC has no triangles, and floors are not recorded.
+    let recording = results["recording"].as_array().unwrap();
+    assert_eq!((recording.len(), length(&results["left_out"]), length(&results["rows"])), (9, 3, 0));
+    assert_eq!(
+        keys(&recording[0]),
+        [
+            "construction",
+            "crowd",
+            "cull",
+            "draw_ms",
+            "frame_ms",
+            "mesh",
+            "models",
+            "normals",
+            "path",
+            "prepare_ms",
+            "scheme"
+        ]
+    );
+    let crowds: Vec<_> = recording.iter().take(3).map(|r| r["crowd"].as_str().unwrap()).collect();
+    assert_eq!((crowds, &recording[0]["models"]), (vec!["instances", "models", "moving"], &json!(4)));
+    let [frame, draw] = ["frame_ms", "draw_ms"].map(|key| recording[2][key]["max"].as_f64().unwrap());
+    assert!(frame >= draw && draw > 0.0);
+    let report = folder("bench-recording");
+    let text = run(&format!("bench {SMALL} {few} --paths tessellation --report {}", report.display()));
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(text.starts_with("recorded ") && text.lines().count() == 7, "{text}");
+    let page = fs::read_to_string(report.join("index.html")).unwrap();
+    assert!(page.contains("What the host takes to record a frame"));
+    fails("bench --recording 0", 2, "invalid value '0' for '--recording <MODELS>': 0 is not in 1..=100000");
+    fails("bench --recording 1 --csv", 2, "the argument '--recording <MODELS>' cannot be used with '--csv'");
 }
 
 #[test]
@@ -196,8 +344,10 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths compute,geometry --constructions two-stage",
         2,
-        "no path of --paths goes with --constructions: compute goes with cached, geometry goes with stencil and cached",
+        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached, geometry goes with stencil and cached; shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)",
     );
+    fails("bench --view far", 2, "invalid value 'far' for '--view <WHERE>' [possible values: fit, clipped]");
+    fails("bench --passes 1,0", 2, "invalid value '0' for '--passes <N>': 0 is not in 1..=64");
     fails("bench --compare no.json", 1, "no.json: No such file or directory (os error 2)");
     let results = folder("bench-bad").join("bad.json");
     fs::write(&results, "{}").unwrap();

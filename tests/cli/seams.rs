@@ -61,6 +61,21 @@ fn pictures_are_displaced_and_cut_as_asked() {
 
     let cases = [
         ("--shape creature --displacement missing.png", 1, "--displacement missing.png: No such file or directory"),
+        (
+            "--shape creature --displacement scales --displacement-scale much",
+            2,
+            "invalid value 'much' for '--displacement-scale <PART>': invalid float literal",
+        ),
+        (
+            "--shape creature --displacement scales --displacement-scale nan",
+            2,
+            "--displacement-scale NaN: give a number",
+        ),
+        (
+            "--shape creature --displacement scales --displacement-bias=-inf",
+            2,
+            "--displacement-bias -inf: give a number",
+        ),
         ("--shape cube --displacement scales", 1, "the mesh has no texture coordinates"),
         ("--shape creature --scheme acc --displacement scales", 1, "choose gregory"),
         ("--shape creature --pixels 3 --factor 4", 2, "cannot be used with"),

@@ -1,18 +1,17 @@
 //! Results of two days side by side.
 
 use super::super::error::CliError;
-use super::results::{GEOMETRY, GPU, Interval, Results, Row};
+use super::results::{GEOMETRY, GPU, Interval, Results, Row, Setting, Who};
 use ash_subdiv::measure::statistics::{CONFIDENCE, change};
 use serde::{Deserialize, Serialize};
 
 /// How a row changed, with pixels or without.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Change {
-    pub mesh: String,
-    pub scheme: String,
-    pub construction: String,
-    pub path: String,
-    pub spacing: String,
+    #[serde(flatten)]
+    pub setting: Setting,
+    #[serde(flatten)]
+    pub who: Who,
     pub factor: f32,
     /// `gpu` or `geometry`.
     pub what: String,
@@ -40,7 +39,7 @@ impl Change {
 pub(super) fn changes(old: &Results, new: &Results) -> Result<Vec<Change>, CliError> {
     let mut changes = Vec::new();
     for row in &new.rows {
-        let before = old.rows.iter().find(|before| before.key() == row.key());
+        let before = old.rows.iter().find(|before| before.is_beside(row) && before.who == row.who);
         changes.extend(
             before.into_iter().flat_map(|before| [GPU, GEOMETRY].map(|what| of_row(before, row, what))).flatten(),
         );
@@ -53,14 +52,11 @@ pub(super) fn changes(old: &Results, new: &Results) -> Result<Vec<Change>, CliEr
 }
 
 fn of_row(old: &Row, new: &Row, what: &str) -> Option<Change> {
-    let of = change(old.frames_ms.get(what)?, new.frames_ms.get(what)?)?;
+    let of = change(old.frames(what), new.frames(what))?;
     let median = |row: &Row| if what == GPU { row.gpu_ms.median } else { row.geometry_ms.median };
     Some(Change {
-        mesh: new.mesh.clone(),
-        scheme: new.scheme.clone(),
-        construction: new.construction.clone(),
-        path: new.path.clone(),
-        spacing: new.spacing.clone(),
+        setting: new.setting.clone(),
+        who: new.who.clone(),
         factor: new.factor,
         what: what.to_owned(),
         old_ms: median(old),

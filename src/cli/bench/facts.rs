@@ -1,7 +1,6 @@
 //! What goes with the rows: the device, the options, the meshes, who did not run, and the command.
 
-use super::super::parse;
-use ash_subdiv::Spacing;
+use super::results::{Setting, Who};
 use ash_subdiv::bench::{BenchError, BenchOptions, Contestant, Subject, Subset};
 use ash_subdiv::gpu::DeviceProperties;
 use ash_subdiv::topology::PatchKind;
@@ -25,7 +24,7 @@ pub(super) struct DeviceOut {
 pub(super) struct OptionsOut {
     pub size: [u32; 2],
     pub instances: u32,
-    pub passes: u32,
+    pub passes: Vec<u32>,
     pub frames: u32,
     pub warm_up: u32,
     pub patches: String,
@@ -48,20 +47,19 @@ pub(super) struct MeshOut {
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct LeftOut {
-    pub mesh: String,
-    pub scheme: String,
-    pub construction: String,
-    pub path: String,
-    pub spacing: String,
+    #[serde(flatten)]
+    pub setting: Setting,
+    #[serde(flatten)]
+    pub who: Who,
     /// All if none.
     pub factor: Option<f32>,
     pub why: String,
 }
 
 impl OptionsOut {
-    pub(super) fn new(options: &BenchOptions, patches: Subset) -> Self {
-        let &BenchOptions { size, instances, passes, frames, warm_up, .. } = options;
-        Self { size, instances, passes, frames, warm_up, patches: patches.name().to_owned() }
+    pub(super) fn new(options: &BenchOptions, passes: &[u32], patches: Subset) -> Self {
+        let &BenchOptions { size, instances, frames, warm_up, .. } = options;
+        Self { size, instances, passes: passes.to_vec(), frames, warm_up, patches: patches.name().to_owned() }
     }
 }
 
@@ -97,17 +95,15 @@ impl MeshOut {
 impl LeftOut {
     pub(super) fn new(
         subject: &Subject,
+        options: &BenchOptions,
         contestant: Contestant,
-        spacing: Spacing,
         factor: Option<f32>,
         why: &BenchError,
     ) -> Self {
         Self {
-            mesh: subject.name.clone(),
-            scheme: contestant.scheme_name().to_owned(),
-            construction: contestant.construction_name().to_owned(),
-            path: contestant.path.name().to_owned(),
-            spacing: parse::spacing_name(spacing).to_owned(),
+            // In this view as in the others.
+            setting: Setting::new(subject, options, options.cameras[0]),
+            who: Who::new(contestant),
             factor,
             why: why.to_string(),
         }
@@ -116,8 +112,8 @@ impl LeftOut {
 
 impl fmt::Display for LeftOut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mesh, scheme, construction, path, factor, why, .. } = self;
-        write!(f, "{mesh}: {scheme} {construction} {path}")?;
+        let Self { setting, who, factor, why } = self;
+        write!(f, "{}: {}", setting.mesh, who.label())?;
         if let Some(factor) = factor {
             write!(f, " at factor {factor}")?;
         }

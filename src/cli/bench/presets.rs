@@ -1,7 +1,7 @@
 //! What papers measured: the same measurement, and their figures.
 
-use super::results::Row;
-use ash_subdiv::bench::Subset;
+use super::results::{Row, Who};
+use ash_subdiv::bench::{Contestant, Path, Subset};
 use ash_subdiv::{Construction, Scheme};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::{Deserialize, Serialize};
@@ -192,8 +192,8 @@ impl Preset {
     pub(super) fn beside(&self, rows: &[Row]) -> Vec<Beside> {
         let mut lines = Vec::new();
         for figures in self.published.chunk_by(|a, b| a.0 == b.0) {
-            for rows in rows.chunk_by(|a, b| a.mesh == b.mesh) {
-                let mesh = &rows[0].mesh;
+            for rows in rows.chunk_by(|a, b| a.setting.mesh == b.setting.mesh) {
+                let mesh = &rows[0].setting.mesh;
                 let known = self.published.iter().find(|published| mesh.contains(published.0));
                 if known.is_none_or(|known| known.0 == figures[0].0) {
                     lines.extend(self.lines(figures, rows));
@@ -207,8 +207,8 @@ impl Preset {
         let row = |published: &Published| {
             let Published(_, scheme, construction, factor, _) = published;
             let wanted = |row: &&Row| {
-                let of_patches = (&*row.scheme, &*row.construction) == (scheme.name(), construction.name());
-                of_patches && row.path == "tessellation" && row.factor == *factor
+                let drawn = Contestant::new(Path::Tessellation, Some((*scheme, *construction)));
+                row.who == Who::new(drawn) && row.factor == *factor
             };
             let row = rows.iter().find(wanted)?;
             Some((row, if self.geometry { row.geometry_ms.median } else { row.gpu_ms.median }))
@@ -219,13 +219,13 @@ impl Preset {
             let (row, ms) = row(published)?;
             Some(Beside {
                 published_mesh: published.0.to_owned(),
-                scheme: row.scheme.clone(),
-                construction: row.construction.clone(),
+                scheme: row.who.scheme.clone(),
+                construction: row.who.construction.clone(),
                 factor: row.factor,
                 figure: published.4,
                 unit: self.unit.name().to_owned(),
                 published_ratio: self.unit.milliseconds(published.4) / published_base,
-                mesh: row.mesh.clone(),
+                mesh: row.setting.mesh.clone(),
                 ms,
                 ratio: ms / base,
             })

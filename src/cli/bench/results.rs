@@ -1,12 +1,14 @@
 //! What was measured, as it is written to JSON and CSV and read again.
 
+use super::super::cull;
 use super::super::error::CliError;
 use super::super::parse;
 use super::compare::Change;
 use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line};
+use super::findings::Findings;
 use super::presets::Beside;
-use ash_subdiv::Spacing;
-use ash_subdiv::bench::{self, BenchOptions, Series, Subject, Subset};
+use super::recorded::Recorded;
+use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -27,6 +29,10 @@ pub(super) struct Results {
     pub rows: Vec<Row>,
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
+    #[serde(flatten)]
+    pub findings: Findings,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub recording: Vec<Recorded>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Beside>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -49,22 +55,42 @@ pub(super) struct Interval {
     pub high: f64,
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Row {
+/// In what those of one table are raced, but for the factor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Setting {
     pub mesh: String,
+    pub spacing: String,
+    pub view: String,
+    pub passes: u32,
+}
+
+/// Who is raced.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Who {
     pub scheme: String,
     pub construction: String,
     pub path: String,
-    pub spacing: String,
+    pub normals: String,
+    pub cull: String,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Row {
+    #[serde(flatten)]
+    pub setting: Setting,
+    #[serde(flatten)]
+    pub who: Who,
     pub factor: f32,
     pub patches: u64,
     pub tes_invocations: Option<u64>,
     pub triangles: Option<u64>,
+    /// What clipping left of them.
+    pub visible_triangles: Option<u64>,
     pub gpu_ms: Times,
     pub geometry_ms: Times,
     pub setup_ms: f64,
     pub bytes: BTreeMap<String, u64>,
-    /// To the first row of the mesh and factor, frame by frame.
+    /// To the first row of the setting and factor, frame by frame.
     pub gpu_ratio: Option<Interval>,
     pub geometry_ratio: Option<Interval>,
     pub construction_ms: Option<Interval>,
@@ -83,16 +109,18 @@ pub(super) const GPU: &str = "gpu";
 pub(super) const GEOMETRY: &str = "geometry";
 
 impl Results {
-    pub(super) fn new(device: DeviceOut, options: &BenchOptions, patches: Subset) -> Self {
+    pub(super) fn new(device: DeviceOut, options: OptionsOut) -> Self {
         Self {
             program: format!("subdiv {}", env!("CARGO_PKG_VERSION")),
             command: command_line(std::env::args()),
             measured: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
             device,
-            options: OptionsOut::new(options, patches),
+            options,
             meshes: Vec::new(),
             rows: Vec::new(),
             left_out: Vec::new(),
+            findings: Findings::default(),
+            recording: Vec::new(),
             published: Vec::new(),
             changes: None,
         }
@@ -112,11 +140,16 @@ impl Results {
             "scheme",
             "construction",
             "path",
+            "normals",
+            "cull",
             "spacing",
+            "view",
+            "passes",
             "factor",
             "patches",
             "tes_invocations",
             "triangles",
+            "visible_triangles",
             "gpu_ms_median",
             "gpu_ms_min",
             "gpu_ms_max",
@@ -134,9 +167,17 @@ impl Results {
         for row in &self.rows {
             let count = |count: Option<u64>| count.map(|n| n.to_string()).unwrap_or_default();
             let value = |interval: Option<Interval>| interval.map(|i| i.value.to_string()).unwrap_or_default();
-            let names = [&row.mesh, &row.scheme, &row.construction, &row.path, &row.spacing].map(Clone::clone);
-            let numbers =
-                [row.factor.to_string(), row.patches.to_string(), count(row.tes_invocations), count(row.triangles)];
+            let (Setting { mesh, spacing, view, passes }, who) = (&row.setting, &row.who);
+            let Who { scheme, construction, path, normals, cull } = who;
+            let names = [mesh, scheme, construction, path, normals, cull, spacing, view].map(Clone::clone);
+            let numbers = [
+                passes.to_string(),
+                row.factor.to_string(),
+                row.patches.to_string(),
+                count(row.tes_invocations),
+                count(row.triangles),
+                count(row.visible_triangles),
+            ];
             let times = [row.gpu_ms, row.geometry_ms].map(|t| [t.median, t.min, t.max].map(|t| t.to_string()));
             csv.write_record(names.into_iter().chain(numbers).chain(times.into_iter().flatten()).chain([
                 row.setup_ms.to_string(),
@@ -152,18 +193,76 @@ impl Results {
     }
 }
 
+/// What a name says where there is nothing to name.
+pub(super) const NONE: &str = "none";
 /// The key of a map's sum.
 const TOTAL: &str = "total";
 
+impl Setting {
+    pub(super) fn new(subject: &Subject, options: &BenchOptions, camera: Camera) -> Self {
+        Self {
+            mesh: subject.name.clone(),
+            spacing: parse::spacing_name(options.spacing).to_owned(),
+            view: camera.name().to_owned(),
+            passes: options.passes,
+        }
+    }
+
+    /// What is not as always, after the spacing.
+    pub(super) fn title(&self) -> String {
+        let mut title = format!("{} spacing", self.spacing);
+        if self.view != Camera::Fit.name() {
+            title += &format!(", {} view", self.view);
+        }
+        if self.passes > 1 {
+            title += &format!(", {} passes", self.passes);
+        }
+        title
+    }
+}
+
+impl Who {
+    pub(super) fn new(contestant: Contestant) -> Self {
+        Self {
+            scheme: contestant.scheme_name().to_owned(),
+            construction: contestant.construction_name().to_owned(),
+            path: contestant.path.name().to_owned(),
+            normals: contestant.normals.name().to_owned(),
+            cull: cull::name(contestant.cull),
+        }
+    }
+
+    /// In a few words.
+    pub(super) fn label(&self) -> String {
+        let Self { scheme, construction, path, .. } = self;
+        let named = [scheme, construction, path].into_iter().filter(|s| *s != NONE).map(String::as_str);
+        named.chain(self.drawn()).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The path, and what is not as always with it.
+    pub(super) fn path_label(&self) -> String {
+        [self.path.as_str()].into_iter().chain(self.drawn()).collect::<Vec<_>>().join(", ")
+    }
+
+    fn drawn(&self) -> impl Iterator<Item = &str> {
+        let normals = (self.normals != Normals::Own.name()).then_some("shared normals");
+        let cull = (self.cull != NONE).then_some(self.cull.as_str());
+        normals.into_iter().chain(cull)
+    }
+}
+
 impl Row {
-    /// The rows of one mesh and factor.
-    pub(super) fn all(subject: &Subject, spacing: Spacing, rows: Vec<bench::Row>) -> Vec<Self> {
-        let base = rows.iter().find(|row| !row.contestant.path.is_floor()).or(rows.first()).cloned();
-        rows.into_iter().filter_map(|row| Self::new(subject, spacing, row, base.as_ref()?)).collect()
+    /// The rows of one factor, each view with its base.
+    pub(super) fn all(subject: &Subject, options: &BenchOptions, rows: &[bench::Row]) -> Vec<Self> {
+        let of_view = |rows: &[bench::Row]| {
+            let base = rows.iter().find(|row| !row.contestant.path.is_floor()).unwrap_or(&rows[0]);
+            rows.iter().filter_map(|row| Self::new(subject, options, row, base)).collect::<Vec<_>>()
+        };
+        rows.chunk_by(|a, b| a.camera == b.camera).flat_map(of_view).collect()
     }
 
     /// `None` if no frame counts.
-    fn new(subject: &Subject, spacing: Spacing, row: bench::Row, base: &bench::Row) -> Option<Self> {
+    fn new(subject: &Subject, options: &BenchOptions, row: &bench::Row, base: &bench::Row) -> Option<Self> {
         let interval = |estimate: Option<Estimate>| estimate.map(Interval::from);
         let traffic = [
             ("tables", row.traffic.tables),
@@ -171,16 +270,15 @@ impl Row {
             ("vertices", row.traffic.vertices),
         ];
         let fence = |series: &Series| Times::of(&series.host);
+        let frames = |series: &Series| series.device.clone();
         Some(Self {
-            mesh: subject.name.clone(),
-            scheme: row.contestant.scheme_name().to_owned(),
-            construction: row.contestant.construction_name().to_owned(),
-            path: row.contestant.path.name().to_owned(),
-            spacing: parse::spacing_name(spacing).to_owned(),
+            setting: Setting::new(subject, options, row.camera),
+            who: Who::new(row.contestant),
             factor: row.factor,
             patches: row.patches,
             tes_invocations: row.evaluations,
             triangles: row.triangles,
+            visible_triangles: row.visible,
             gpu_ms: Times::of(&row.gpu.device)?,
             geometry_ms: Times::of(&row.geometry.device)?,
             setup_ms: row.setup.per_model(),
@@ -194,7 +292,7 @@ impl Row {
             first_frame_ms: row.setup.first_frame,
             traffic_bytes: with_total(&traffic),
             fence_ms: [(GPU.to_owned(), fence(&row.gpu)?), (GEOMETRY.to_owned(), fence(&row.geometry)?)].into(),
-            frames_ms: [(GPU.to_owned(), row.gpu.device), (GEOMETRY.to_owned(), row.geometry.device)].into(),
+            frames_ms: [(GPU.to_owned(), frames(&row.gpu)), (GEOMETRY.to_owned(), frames(&row.geometry))].into(),
         })
     }
 
@@ -210,20 +308,14 @@ impl Row {
         self.pipelines_ms + self.first_frame_ms
     }
 
-    /// What it is, without mesh and factor.
-    pub(super) fn label(&self) -> String {
-        [&self.scheme, &self.construction, &self.path]
-            .into_iter()
-            .filter(|s| *s != "none")
-            .map(String::as_str)
-            .collect::<Vec<_>>()
-            .join(" ")
+    /// Frame by frame: [`GPU`] or [`GEOMETRY`].
+    pub(super) fn frames(&self, what: &str) -> &[f64] {
+        self.frames_ms.get(what).map_or(&[], Vec::as_slice)
     }
 
-    /// What two runs have in common.
-    pub(super) fn key(&self) -> [String; 6] {
-        let Self { mesh, scheme, construction, path, spacing, factor, .. } = self.clone();
-        [mesh, scheme, construction, path, spacing, factor.to_string()]
+    /// Whether both are of one table.
+    pub(super) fn is_beside(&self, other: &Self) -> bool {
+        (&self.setting, self.factor) == (&other.setting, other.factor)
     }
 }
 
@@ -233,7 +325,7 @@ fn with_total(bytes: &[(&str, u64)]) -> BTreeMap<String, u64> {
 }
 
 impl Times {
-    fn of(values: &[f64]) -> Option<Self> {
+    pub(super) fn of(values: &[f64]) -> Option<Self> {
         let Summary { median, min, max, mad } = Summary::of(values)?;
         Some(Self { median, min, max, mad })
     }

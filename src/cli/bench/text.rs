@@ -3,15 +3,17 @@
 use super::super::error::CliError;
 use super::super::output::{Table, with_stdout};
 use super::compare::Change;
+use super::findings::{Finding, Findings};
 use super::presets::{Beside, Preset};
-use super::results::{Interval, Row, Times};
-use ash_subdiv::measure::statistics::growth;
+use super::recorded::Recorded;
+use super::results::{Interval, Row, Times, Who};
 
 /// The rows of one mesh and factor after another.
 pub(super) fn rows(rows: &[Row]) -> Result<(), CliError> {
-    for group in rows.chunk_by(|a, b| (&a.mesh, &a.spacing, a.factor) == (&b.mesh, &b.spacing, b.factor)) {
-        let Row { mesh, spacing, factor, patches, .. } = &group[0];
-        with_stdout(|out| Ok(writeln!(out, "{mesh}: {patches} patches, factor {factor}, {spacing} spacing")?))?;
+    for group in rows.chunk_by(Row::is_beside) {
+        let Row { setting, factor, patches, .. } = &group[0];
+        let (mesh, title) = (&setting.mesh, setting.title());
+        with_stdout(|out| Ok(writeln!(out, "{mesh}: {patches} patches, factor {factor}, {title}")?))?;
         let mut table = Table::new(&[3, 4, 5, 6, 7, 8, 9]);
         table.row([
             &"scheme",
@@ -27,9 +29,9 @@ pub(super) fn rows(rows: &[Row]) -> Result<(), CliError> {
         ]);
         for row in group {
             table.row([
-                &row.scheme,
-                &row.construction,
-                &row.path,
+                &row.who.scheme,
+                &row.who.construction,
+                &row.who.path_label(),
                 &time(row.gpu_ms),
                 &ratio(row.gpu_ratio),
                 &time(row.geometry_ms),
@@ -53,25 +55,53 @@ fn ratio(interval: Option<Interval>) -> String {
     interval.map_or("-".into(), |Interval { value, low, high }| format!("{value:.3} ({low:.2} to {high:.2})"))
 }
 
-/// How time grows with patches, for each that was measured on meshes of several sizes.
-pub(super) fn grown(rows: &[Row]) -> Result<(), CliError> {
-    let mut table = Table::new(&[4, 5, 6]);
-    table.row([&"time grows as patches^", &"scheme", &"construction", &"path", &"factor", &"geometry", &"gpu"]);
-    let mut seen = Vec::new();
-    for row in rows {
-        let key = |row: &Row| (row.label(), row.spacing.clone(), row.factor.to_string());
-        if seen.contains(&key(row)) {
-            continue;
-        }
-        seen.push(key(row));
-        let same = rows.iter().filter(|other| key(other) == key(row));
-        let points = |ms: fn(&Row) -> f64| same.clone().map(|row| (row.patches as f64, ms(row))).collect::<Vec<_>>();
-        let power = |ms| growth(&points(ms)).map(|power| format!("{power:.2}"));
-        if let (Some(geometry), Some(gpu)) = (power(|row| row.geometry_ms.median), power(|row| row.gpu_ms.median)) {
-            table.row([&row.spacing, &row.scheme, &row.construction, &row.path, &row.factor, &geometry, &gpu]);
-        }
+/// What the host takes.
+pub(super) fn recording(recording: &[Recorded]) -> Result<(), CliError> {
+    if recording.is_empty() {
+        return Ok(());
     }
-    if table.is_empty() { Ok(()) } else { table.print() }
+    let mut table = Table::new(&[5, 6, 7, 8]);
+    table.row([
+        &"recorded",
+        &"scheme",
+        &"construction",
+        &"path",
+        &"crowd",
+        &"models",
+        &"prepare ms",
+        &"draw ms",
+        &"frame ms",
+    ]);
+    for Recorded { mesh, who, crowd, models, prepare_ms, draw_ms, frame_ms } in recording {
+        let Who { scheme, construction, .. } = who;
+        let [prepare, draw, frame] = [prepare_ms, draw_ms, frame_ms].map(|&times| time(times));
+        table.row([mesh, scheme, construction, &who.path_label(), crowd, models, &prepare, &draw, &frame]);
+    }
+    table.print()
+}
+
+/// What rows say together.
+pub(super) fn findings(findings: &Findings) -> Result<(), CliError> {
+    for (title, list) in findings.lists().into_iter().filter(|(_, list)| !list.is_empty()) {
+        let mut table = Table::new(&[4, 5, 6, 7]);
+        let bytes = if list[0].bytes.is_some() { "bytes" } else { "" };
+        table.row([&title, &"scheme", &"construction", &"path", &"factor", &"geometry", &"gpu", &bytes]);
+        for Finding { setting, who, factor, geometry, gpu, bytes } in list {
+            table.row([
+                &format!("{}, {}", setting.mesh, setting.title()),
+                &who.scheme,
+                &who.construction,
+                &who.path_label(),
+                factor,
+                geometry,
+                gpu,
+                &bytes.map_or(String::new(), |power| format!("{power:.2}")),
+            ]);
+        }
+        table.print()?;
+        with_stdout(|out| Ok(writeln!(out)?))?;
+    }
+    Ok(())
 }
 
 /// What a paper published beside what was measured.
@@ -117,10 +147,10 @@ pub(super) fn changes(changes: &[Change]) -> Result<(), CliError> {
     ]);
     for change in changes {
         table.row([
-            &change.mesh,
-            &change.scheme,
-            &change.construction,
-            &change.path,
+            &format!("{}, {}", change.setting.mesh, change.setting.title()),
+            &change.who.scheme,
+            &change.who.construction,
+            &change.who.path_label(),
             &change.factor,
             &change.what,
             &format!("{:.2}", change.old_ms),

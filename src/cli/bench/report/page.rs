@@ -2,9 +2,12 @@
 
 use super::super::super::error::CliError;
 use super::super::facts::MeshOut;
-use super::super::results::{GPU, Interval, Results, Row, Times};
+use super::super::findings::Findings;
+use super::super::recorded::Recorded;
+use super::super::results::{GPU, Interval, NONE, Results, Row, Setting, Times, Who};
+use super::super::unique;
 use super::plots::{COLOURS, FLOOR, Line, LineStyle, MARKS, plot};
-use ash_subdiv::bench::Path;
+use ash_subdiv::bench::{Normals, Path};
 use ash_subdiv::measure::statistics::growth;
 use ash_subdiv::{Construction, Scheme};
 use base64::Engine;
@@ -33,6 +36,8 @@ pub(super) fn page(results: &Results, csv: &[u8], json: &str) -> Result<String, 
                 h2 { "Meshes" }
                 div.meshes { @for mesh in &results.meshes { (picture(mesh)) } }
                 (plots(results)?)
+                (findings(&results.findings))
+                (recording(&results.recording))
                 (changes(results))
                 (published(results))
                 h2 { "Rows" }
@@ -71,7 +76,6 @@ fn facts(results: &Results) -> Markup {
                 (options.frames) " of each row, after " (options.warm_up) " that do not count; "
                 (width) " x " (height) " pixels"
                 @if options.instances > 1 { "; " (options.instances) " instances" }
-                @if options.passes > 1 { "; " (options.passes) " passes a frame" }
                 @if options.patches != "all" { "; " (options.patches) " patches only" }
             }
             dt { "Command" } dd { code { (results.command) } }
@@ -94,34 +98,30 @@ fn picture(mesh: &MeshOut) -> Markup {
     }
 }
 
-/// What there is, each once, in the order in which they first appear.
-fn unique<'r, T: PartialEq>(rows: &'r [Row], of: impl Fn(&'r Row) -> T) -> Vec<T> {
-    let mut all = Vec::new();
-    rows.iter().map(of).for_each(|one| {
-        if !all.contains(&one) {
-            all.push(one);
-        }
-    });
-    all
-}
-
-/// The same for a contestant in all plots: colours tell schemes apart, marks constructions or floors.
-fn style(row: &Row) -> LineStyle {
-    let scheme = Scheme::ALL.iter().position(|scheme| scheme.name() == row.scheme);
+/// The same for a contestant in all plots: colours tell schemes apart, marks constructions or floors, widths those with
+/// shared normals (wide) and culling (thin).
+fn style(who: &Who) -> LineStyle {
+    let scheme = Scheme::ALL.iter().position(|scheme| scheme.name() == who.scheme);
     let colour = scheme.map_or(FLOOR, |index| COLOURS[index % COLOURS.len()]);
-    let construction = Construction::ALL.iter().position(|construction| construction.name() == row.construction);
-    let path = Path::ALL.iter().position(|path| path.name() == row.path);
-    LineStyle { colour, mark: MARKS[construction.or(path).unwrap_or(0) % MARKS.len()] }
+    let construction = Construction::ALL.iter().position(|construction| construction.name() == who.construction);
+    let path = Path::ALL.iter().position(|path| path.name() == who.path);
+    let width = match (who.normals == Normals::Own.name(), who.cull == NONE) {
+        (true, true) => 2,
+        (true, false) => 1,
+        (false, true) => 4,
+        (false, false) => 3,
+    };
+    LineStyle { colour, mark: MARKS[construction.or(path).unwrap_or(0) % MARKS.len()], width }
 }
 
 /// A line for each contestant among these rows.
 fn lines<'r>(rows: &[&'r Row], point: impl Fn(&'r Row) -> Option<(f64, f64)>) -> Vec<Line> {
-    let mut lines: Vec<(String, Line)> = Vec::new();
+    let mut lines: Vec<(&Who, Line)> = Vec::new();
     for &row in rows {
         let Some(at) = point(row) else { continue };
-        match lines.iter_mut().find(|(label, _)| *label == row.label()) {
+        match lines.iter_mut().find(|(who, _)| **who == row.who) {
             Some((_, line)) => line.points.push(at),
-            None => lines.push((row.label(), Line { style: style(row), points: vec![at] })),
+            None => lines.push((&row.who, Line { style: style(&row.who), points: vec![at] })),
         }
     }
     for (_, line) in &mut lines {
@@ -141,11 +141,12 @@ fn plots(results: &Results) -> Result<Markup, CliError> {
         Ok(())
     };
     let (geometry, gpu) = ("ms a frame, geometry alone", "ms a frame, with pixels");
-    for (mesh, spacing) in unique(rows, |row| (&row.mesh, &row.spacing)) {
-        let of: Vec<&Row> = rows.iter().filter(|row| (&row.mesh, &row.spacing) == (mesh, spacing)).collect();
+    for setting in unique(rows, |row| &row.setting) {
+        let Setting { mesh, .. } = setting;
+        let of: Vec<&Row> = rows.iter().filter(|row| row.setting == *setting).collect();
         if factors.len() > 1 {
             let x = |row: &Row| f64::from(row.factor);
-            let title = format!("{mesh}, {spacing} spacing");
+            let title = format!("{mesh}, {}", setting.title());
             add(
                 format!("{title}: geometry"),
                 FACTOR,
@@ -157,7 +158,8 @@ fn plots(results: &Results) -> Result<Markup, CliError> {
         let errors = results.meshes.iter().find(|m| m.name == *mesh).map(|m| &m.normal_error);
         if let Some(errors) = errors.filter(|errors| errors.values().any(|&e| e > 0.0)) {
             // The front of what is worth choosing: the fewer milliseconds and the smaller the error, the better.
-            let error = |row: &Row| errors.get(&row.scheme).copied().filter(|&e| e > 0.0);
+            let own = |row: &Row| row.who.normals == Normals::Own.name();
+            let error = |row: &Row| errors.get(&row.who.scheme).copied().filter(|&e| e > 0.0 && own(row));
             let factor = factors[factors.len() / 2];
             let of: Vec<&Row> = of.into_iter().filter(|row| row.factor == factor).collect();
             let points = lines(&of, |row| Some((row.geometry_ms.median, error(row)?)));
@@ -169,23 +171,26 @@ fn plots(results: &Results) -> Result<Markup, CliError> {
             )?;
         }
     }
-    if unique(rows, |row| row.patches).len() > 1 {
+    let like_the_first = |row: &&Row| {
+        let first = &rows[0].setting;
+        row.setting == Setting { mesh: row.setting.mesh.clone(), ..first.clone() }
+    };
+    let of_sizes: Vec<&Row> = rows.iter().filter(like_the_first).collect();
+    if of_sizes.iter().any(|row| row.patches != of_sizes[0].patches) {
         for factor in factors {
-            let of: Vec<&Row> =
-                rows.iter().filter(|row| row.factor == factor && row.spacing == rows[0].spacing).collect();
+            let of: Vec<&Row> = of_sizes.iter().copied().filter(|row| row.factor == factor).collect();
             let points = lines(&of, |row| Some((row.patches as f64, row.geometry_ms.median)));
             let power = points.first().and_then(|line| growth(&line.points));
-            let power = power.map_or_else(String::new, |power| format!(": {} as patches^{power:.2}", of[0].label()));
+            let power =
+                power.map_or_else(String::new, |power| format!(": {} as patches^{power:.2}", of[0].who.label()));
             add(format!("Growth at factor {factor}{power}"), "patches", geometry, points)?;
         }
     }
-    let legend = unique(rows, Row::label);
+    let legend = unique(rows, |row| &row.who);
     Ok(html! {
         h2 { "Plots" }
         ul.legend {
-            @for label in &legend {
-                @if let Some(row) = rows.iter().find(|row| row.label() == *label) { li { (swatch(style(row))) " " (label) } }
-            }
+            @for who in legend { li { (swatch(style(who))) " " (who.label()) } }
         }
         div.plots {
             @for (title, svg) in &figures { figure.plot { figcaption { (title) } (PreEscaped(svg)) } }
@@ -193,12 +198,12 @@ fn plots(results: &Results) -> Result<Markup, CliError> {
     })
 }
 
-fn swatch(LineStyle { colour, mark }: LineStyle) -> Markup {
+fn swatch(LineStyle { colour, mark, width }: LineStyle) -> Markup {
     let colour = format!("#{:02x}{:02x}{:02x}", colour.0, colour.1, colour.2);
     let dash = mark.dash.map(|[dash, gap]| format!("{dash} {gap}"));
     html! {
         svg width="34" height="12" aria-hidden="true" {
-            line x1="0" y1="6" x2="34" y2="6" stroke=(colour) stroke-width="2" stroke-dasharray=[dash] {}
+            line x1="0" y1="6" x2="34" y2="6" stroke=(colour) stroke-width=(width) stroke-dasharray=[dash] {}
             circle cx="17" cy="6" r=(mark.radius) stroke=(colour) stroke-width="2" fill=(if mark.filled { &colour } else { "none" }) {}
         }
     }
@@ -219,10 +224,9 @@ fn ratio(interval: Option<Interval>) -> Markup {
 
 fn rows(results: &Results) -> Markup {
     let milliseconds = |ms: f64| html! { td { (format!("{ms:.2}")) } };
-    let same = |a: &Row, b: &Row| (&a.mesh, &a.spacing, a.factor) == (&b.mesh, &b.spacing, b.factor);
     html! {
-        @for group in results.rows.chunk_by(same) {
-            h3 { (group[0].mesh) ", factor " (group[0].factor) ", " (group[0].spacing) " spacing" }
+        @for group in results.rows.chunk_by(Row::is_beside) {
+            h3 { (group[0].setting.mesh) ", factor " (group[0].factor) ", " (group[0].setting.title()) }
             div.wide { table {
                 thead { tr {
                     @for head in [
@@ -231,7 +235,7 @@ fn rows(results: &Results) -> Markup {
                     ] { th scope="col" { (head) } }
                 } }
                 tbody { @for row in group { tr {
-                    th scope="row" { (row.label()) }
+                    th scope="row" { (row.who.label()) }
                     (time(row.gpu_ms)) (ratio(row.gpu_ratio))
                     (time(row.geometry_ms)) (ratio(row.geometry_ratio))
                     @if let Some(&fence) = row.fence_ms.get(GPU) { (time(fence)) } @else { td {} }
@@ -247,6 +251,40 @@ fn rows(results: &Results) -> Markup {
     }
 }
 
+fn findings(findings: &Findings) -> Markup {
+    html! {
+        @for (title, list) in findings.lists().into_iter().filter(|(_, list)| !list.is_empty()) {
+            h3 { (title) }
+            div.wide { table {
+                thead { tr { @for head in ["", "", "factor", "geometry", "gpu", "bytes"] { th scope="col" { (head) } } } }
+                tbody { @for f in list { tr {
+                    th scope="row" { (f.setting.mesh) ", " (f.setting.title()) }
+                    td { (f.who.label()) } td { (f.factor) } td { (f.geometry) } td { (f.gpu) }
+                    td { (f.bytes.map_or_else(String::new, |power| format!("{power:.2}"))) }
+                } } }
+            } }
+        }
+    }
+}
+
+fn recording(recording: &[Recorded]) -> Markup {
+    html! {
+        @if !recording.is_empty() {
+            h2 { "What the host takes to record a frame" }
+            div.wide { table {
+                thead { tr {
+                    @for head in ["", "", "crowd", "models", "prepare ms", "draw ms", "frame ms"] { th scope="col" { (head) } }
+                } }
+                tbody { @for r in recording { tr {
+                    th scope="row" { (r.mesh) }
+                    td { (r.who.label()) } td { (r.crowd) } td { (r.models) }
+                    (time(r.prepare_ms)) (time(r.draw_ms)) (time(r.frame_ms))
+                } } }
+            } }
+        }
+    }
+}
+
 fn changes(results: &Results) -> Markup {
     let Some(changes) = &results.changes else { return html! {} };
     html! {
@@ -254,7 +292,7 @@ fn changes(results: &Results) -> Markup {
         div.wide { table {
             thead { tr { @for head in ["", "factor", "", "old ms", "new ms", "new / old", "sure", ""] { th scope="col" { (head) } } } }
             tbody { @for c in changes { tr class=(c.verdict().replace(' ', "-")) {
-                th scope="row" { (c.mesh) ": " (c.scheme) " " (c.construction) " " (c.path) }
+                th scope="row" { (c.setting.mesh) ": " (c.who.label()) }
                 td { (c.factor) } td { (c.what) }
                 td { (format!("{:.2}", c.old_ms)) } td { (format!("{:.2}", c.new_ms)) }
                 (ratio(Some(c.ratio)))
@@ -298,6 +336,9 @@ at 95 %. Rows of a table draw in turns, so that a machine that becomes slower do
 <li><b>tables</b>, <b>upload</b>: what each model needs before its first frame. <b>first use</b>: pipelines, and the first
 frame with them; drivers may find them compiled on the disk.</li>
 <li><b>KiB</b>: everything that drawing reads. <b>traffic</b>: what a frame moves, counted as if there were no caches.</li>
+<li><b>views</b>: of each, the time of a triangle that clipping leaves, over that in the first. <b>passes</b>: where the
+times of evaluating once by compute and of tessellating in every pass cross. <b>growth</b>: the power of patches. Each with
+the interval that holds it at 95 %; <b>more</b> is more than what was measured can tell.</li>
 <li>Floors: <b>bilinear</b> passes the corners of faces through the tessellation stages at the same factors;
 <b>vertex-buffer</b> draws triangles that were evaluated before. With pixels they are no floors in the strict sense: the
 bilinear one draws the control mesh, which is larger than the surface.</li>

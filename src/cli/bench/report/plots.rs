@@ -19,6 +19,8 @@ pub(super) struct Line {
 pub(super) struct LineStyle {
     pub colour: RGBColor,
     pub mark: Mark,
+    /// Of the line, in pixels.
+    pub width: u32,
 }
 
 /// What tells lines of one colour apart.
@@ -81,8 +83,8 @@ pub(super) fn plot(x: &str, marks: &[f64], y: &str, lines: &[Line]) -> Result<St
         .y_label_formatter(&|y| number(*y))
         .draw()
         .map_err(|e| failed(&e))?;
-    for Line { style: LineStyle { colour, mark }, points } in lines {
-        let stroke = colour.stroke_width(2);
+    for Line { style: LineStyle { colour, mark, width }, points } in lines {
+        let stroke = colour.stroke_width(*width);
         let points = points.iter().copied();
         let drawn = match mark.dash {
             Some([dash, gap]) => chart.draw_series(DashedLineSeries::new(points.clone(), dash, gap, stroke)).map(drop),
@@ -143,7 +145,7 @@ mod tests {
     #[test]
     fn every_point_is_in_the_plot() {
         let line = |mark, points: &[(f64, f64)]| Line {
-            style: LineStyle { colour: COLOURS[0], mark: MARKS[mark] },
+            style: LineStyle { colour: COLOURS[0], mark: MARKS[mark], width: 2 },
             points: points.to_vec(),
         };
         let svg =

@@ -1,0 +1,127 @@
+//! What the host does to record a frame of many models.
+
+use super::drawable::timed;
+use super::scene::Scene;
+use super::{Bench, BenchError, Camera, Contestant, Path, Subject};
+use crate::renderer::{DrawItem, Evaluation, ModelId, ModelTables, Options, Renderer, Style, Target};
+
+/// What the models of a frame are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Crowd {
+    /// One model, drawn so many times.
+    Instances,
+    /// So many models with tables and buffers of their own, at rest.
+    Models,
+    /// The same, and the vertices of each moved.
+    Moving,
+}
+
+impl Crowd {
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Instances => "instances",
+            Self::Models => "models",
+            Self::Moving => "moving",
+        }
+    }
+}
+
+/// What recording one frame of a crowd took on the host's clock, frame by frame, in milliseconds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Of what.
+    pub crowd: Crowd,
+    /// [`Renderer::cmd_prepare`].
+    pub prepare: Vec<f64>,
+    /// [`Renderer::cmd_draw`].
+    pub draw: Vec<f64>,
+}
+
+impl Bench<'_> {
+    /// Records frames of `models` models, of which but the first are never run. At factor 1 and without rasterization: how
+    /// finely they are drawn makes no difference to the host.
+    ///
+    /// # Errors
+    /// [`BenchError::NotRecorded`] for paths that the renderer does not draw; [`BenchError::BadOption`] without models; what
+    /// else keeps models from being made and drawn.
+    pub fn recording(
+        &self,
+        subject: &Subject,
+        contestant: Contestant,
+        models: u32,
+    ) -> Result<Vec<Recording>, BenchError> {
+        if models == 0 {
+            return Err(BenchError::BadOption { what: "models", given: models, least: 1 });
+        }
+        if !matches!(contestant.path, Path::Tessellation | Path::Compute) {
+            return Err(BenchError::NotRecorded { path: contestant.path.name() });
+        }
+        let lane = self.lane(subject);
+        let model_options = contestant.model_options(lane);
+        let target = self.geometry_target().desc();
+        let target = Target::dynamic(target.color, target.depth, target.samples);
+        let styles = vec![Style { rasterizer_discard: true, ..Style::default() }];
+        let options = Options { frames_in_flight: 1, views_per_frame: 1, styles, ..Options::default() };
+        // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
+        let mut renderer = unsafe { Renderer::new(lane.headless.context(), &target, &options)? };
+        let tables = ModelTables::new(&subject.mesh, &model_options)?;
+        let positions = subject.mesh.positions_f32();
+        let add = |renderer: &mut Renderer| -> Result<ModelId, BenchError> {
+            let id = renderer.add_tables(tables.clone(), &positions, &model_options)?;
+            if model_options.evaluation == Evaluation::Compute {
+                renderer.set_segments(id, 1)?;
+            }
+            Ok(id)
+        };
+        let item = |model| DrawItem { cull: contestant.cull, ..DrawItem::new(model, 1.0) };
+        let first = add(&mut renderer)?;
+        let mut items = vec![item(first); models as usize];
+        let mut recordings = vec![self.record_frames(&mut renderer, subject, &items, Crowd::Instances)?];
+        for other in &mut items[1..] {
+            *other = item(add(&mut renderer)?);
+        }
+        for crowd in [Crowd::Models, Crowd::Moving] {
+            recordings.push(self.record_frames(&mut renderer, subject, &items, crowd)?);
+        }
+        Ok(recordings)
+    }
+
+    fn record_frames(
+        &self,
+        renderer: &mut Renderer,
+        subject: &Subject,
+        items: &[DrawItem],
+        crowd: Crowd,
+    ) -> Result<Recording, BenchError> {
+        let scene = Scene::new(subject, self.options(), Camera::Fit);
+        let frame = scene.frame(1.0, super::drawable::Pass::Geometry);
+        let positions = subject.mesh.positions_f32();
+        let target = self.geometry_target();
+        let mut recording = Recording { crowd, prepare: Vec::new(), draw: Vec::new() };
+        // Tables are copied.
+        // SAFETY: recorded outside rendering; the submission is waited for.
+        self.headless().try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+        let before = self.options().warm_up;
+        for round in 0..before + self.options().frames {
+            if crowd == Crowd::Moving {
+                for item in items {
+                    renderer.set_positions(item.model, 0, &positions)?;
+                }
+            }
+            // SAFETY: recorded outside rendering, then inside of rendering that fits.
+            self.headless().record(|cmd| unsafe {
+                let ((), prepare) = timed(|| renderer.cmd_prepare(cmd, 0))?;
+                target.cmd_begin(cmd, [0.0; 4]);
+                let ((), draw) = timed(|| renderer.cmd_draw(cmd, 0, frame.view, items))?;
+                target.cmd_end(cmd);
+                if round >= before {
+                    recording.prepare.push(prepare);
+                    recording.draw.push(draw);
+                }
+                Ok::<_, BenchError>(())
+            })?;
+        }
+        Ok(recording)
+    }
+}

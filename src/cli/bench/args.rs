@@ -1,0 +1,218 @@
+//! What is asked for.
+
+use super::super::cull::{CullArg, cull};
+use super::super::error::CliError;
+use super::super::parse;
+use super::super::source::DeviceArgs;
+use super::presets::{self, Preset};
+use ash_subdiv::bench::{Camera, Contestant, Normals, Path, Subject, Subset};
+use ash_subdiv::mesh::{ReadOptions, read, replicate, shape};
+use ash_subdiv::renderer::Cull;
+use ash_subdiv::{Construction, ControlMesh, Scheme, Spacing};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+#[command(after_help = NOTES)]
+pub(in super::super) struct BenchArgs {
+    /// Control meshes: files ending in .obj, .gltf or .glb.
+    mesh: Vec<PathBuf>,
+    /// A built-in shape, see `subdiv shapes`; several with commas. The creature if no mesh is given.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    shape: Vec<String>,
+    /// Schemes, with commas; all if not given.
+    #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::scheme())]
+    schemes: Vec<Scheme>,
+    /// Constructions, with commas; all if not given.
+    #[arg(long, value_name = "HOW", value_delimiter = ',', value_parser = parse::construction())]
+    constructions: Vec<Construction>,
+    /// Ways to draw, with commas; all if not given.
+    #[arg(long, value_name = "PATH", value_delimiter = ',', value_parser = parse::path())]
+    pub(super) paths: Vec<Path>,
+    /// Where normals come from, with commas: those that patches share cost time. For watertight schemes.
+    #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::normals())]
+    normals: Vec<Normals>,
+    /// Measure each row of the tessellation stages again with patches left out that are not seen: `back` those that face
+    /// away, `frustum` those out of the picture, `small` those between pixels.
+    #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
+    cull: Vec<CullArg>,
+    /// Tessellation factors, with commas; 4,8,16,32 if not given.
+    #[arg(long, value_name = "FACTOR", value_delimiter = ',', value_parser = parse::factor)]
+    factors: Vec<f32>,
+    /// Where the tessellator puts its vertices along an edge; several with commas.
+    #[arg(long, value_delimiter = ',', default_value = "equal", value_parser = parse::spacing())]
+    pub(super) spacing: Vec<Spacing>,
+    /// Which patches are drawn: all if not given.
+    #[arg(long, value_name = "WHICH", value_parser = parse::subset())]
+    pub(super) patches: Option<Subset>,
+    /// Draw the model this many times, side by side, with a transform each.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(super) instances: Option<u32>,
+    /// Draw all again in this many passes of a frame, as for depth and shadows; cached control points are made once.
+    /// Several counts with commas, to see from how many on it pays to evaluate once, by compute.
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(super) passes: Vec<u32>,
+    /// Where the eye is, with commas: `clipped` shows the middle three times as large, and cuts off what is around.
+    #[arg(long, value_name = "WHERE", value_delimiter = ',', default_value = "fit", value_parser = parse::camera())]
+    pub(super) view: Vec<Camera>,
+    /// Make one large mesh of this many copies; several counts with commas, to see how time grows.
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    replicate: Vec<u32>,
+    /// Steps of Catmull-Clark refinement before patches are made.
+    #[arg(long, value_name = "STEPS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
+    refine: u32,
+    /// Width and height in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = parse::size)]
+    pub(super) size: [u32; 2],
+    /// Frames of each row that count; at least 6.
+    #[arg(long, value_name = "N", default_value_t = 21, value_parser = frames)]
+    pub(super) frames: u32,
+    /// Frames of each row that go before.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(super) warm_up: u32,
+    /// Measure instead how long the host takes to record a frame of so many models: of one model drawn so many times, of so
+    /// many models, and of as many whose vertices move.
+    #[arg(long, value_name = "MODELS", conflicts_with_all = ["csv", "preset", "compare", "results"], value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(super) recording: Option<u32>,
+    /// Measure what a paper measured, and set its figures beside.
+    #[arg(long, value_name = "NAME", value_parser = presets::parser())]
+    pub(super) preset: Option<&'static Preset>,
+    /// Write comma-separated values instead of tables.
+    #[arg(long, conflicts_with = "json")]
+    pub(super) csv: bool,
+    /// Also write index.html, results.json and results.csv to this folder.
+    #[arg(long, value_name = "DIR")]
+    pub(super) report: Option<PathBuf>,
+    /// Tell what became faster or slower since; what --json wrote.
+    #[arg(long, value_name = "OLD.json")]
+    pub(super) compare: Option<PathBuf>,
+    /// Do not measure: take what --json wrote.
+    #[arg(
+        long, value_name = "FILE.json",
+        conflicts_with_all = ["mesh", "shape", "schemes", "constructions", "paths", "normals", "cull", "factors", "patches", "instances", "passes", "view", "replicate", "spacing"]
+    )]
+    pub(super) results: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Device")]
+    pub(super) device: DeviceArgs,
+}
+
+const NOTES: &str = "\
+gpu:          milliseconds of a frame on the device, with pixels: median, and median distance from it.
+geometry:     the same without rasterization.
+x base:       the median of ratios to the first row, frame by frame, with the interval that holds it at 95 %.
+construction: control points alone: factor 1 less the bilinear floor at factor 1, without rasterization.
+set-up:       tables and upload, without pipelines.
+Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
+`compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one lattice for all patches, an
+instance for each, which the vertex shader evaluates; in `geometry` the geometry shader evaluates, in `geometry-two-pass` it
+makes control points for `instanced`. They go with the construction `cached`, `geometry` also with `stencil`.
+Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of several counts of passes,
+`compute wins from` says where its time and that of tessellating in every pass cross. Of meshes of several sizes, `grows`
+says by which power of patches. `more` is more than what was measured can tell.
+Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
+
+JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
+instances, passes[], frames, warm_up, patches}, meshes[{name, vertices, faces, patches{kind}}], left_out[{setting, who,
+factor, why}], rows[{setting, who, factor, patches, tes_invocations, triangles, visible_triangles, gpu_ms{median, min, max,
+mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low, high}, geometry_ratio{..}, construction_ms{..},
+tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name}, fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[],
+geometry[]}}], growth[{setting, who, factor, geometry{value, low, high}, gpu{..}, bytes}], break_even[{..}], views[{..}],
+published[], changes[], recording[{mesh, who, crowd, models, prepare_ms{median, min, max, mad}, draw_ms{..}, frame_ms{..}}];
+setting: mesh, spacing, view, passes; who: scheme, construction, path, normals, cull.
+
+Examples:
+  subdiv bench --shape creature --factors 8,16
+  subdiv bench model.obj --schemes gregory,acc --constructions two-stage --patches irregular
+  subdiv bench --replicate 1,8,64,512 --factors 2 --paths tessellation --report growth
+  subdiv bench --paths tessellation,compute --passes 1,2,3,4
+  subdiv bench --paths tessellation,bilinear --normals own,shared --cull frustum --view fit,clipped
+  subdiv bench --recording 1000
+  subdiv bench --preset loop2009-table1
+  subdiv bench model.obj --json > today.json; subdiv bench model.obj --compare today.json";
+
+fn frames(text: &str) -> Result<u32, String> {
+    let fits = |n: &u32| (6..=100_000).contains(n);
+    text.parse().ok().filter(fits).ok_or_else(|| {
+        "it must be a whole number from 6 to 100000: with fewer there is no interval that holds the median".into()
+    })
+}
+
+impl BenchArgs {
+    /// What is asked for, else what the preset says, else everything.
+    pub(super) fn contestants(&self) -> Vec<Contestant> {
+        fn pick<T: Copy + PartialEq>(given: &[T], preset: Option<&[T]>, all: &[T]) -> Vec<T> {
+            let chosen = if given.is_empty() { preset.unwrap_or(all) } else { given };
+            // Each once, in the order of the registry: the first row is what the others are compared with.
+            all.iter().copied().filter(|one| chosen.contains(one)).collect()
+        }
+        let all = Contestant::all(
+            &pick(&self.paths, None, &Path::ALL),
+            &pick(&self.schemes, self.preset.map(|p| p.schemes), &Scheme::ALL),
+            &pick(&self.constructions, self.preset.map(|p| p.constructions), &Construction::ALL),
+        );
+        let normals = pick(&self.normals, None, &Normals::ALL);
+        let mut culls = vec![Cull::NONE, cull(&self.cull)];
+        culls.dedup();
+        all.into_iter().flat_map(|contestant| contestant.variants(&normals, &culls)).collect()
+    }
+
+    pub(super) fn factors(&self) -> Vec<f32> {
+        let given = if self.factors.is_empty() {
+            self.preset.map_or(&[4.0, 8.0, 16.0, 32.0][..], |p| p.factors)
+        } else {
+            &self.factors
+        };
+        let mut factors = given.to_vec();
+        factors.sort_unstable_by(f32::total_cmp);
+        factors.dedup();
+        factors
+    }
+
+    pub(super) fn subjects(&self, patches: Subset) -> Result<Vec<Subject>, CliError> {
+        let mut meshes: Vec<(String, ControlMesh)> = Vec::new();
+        for path in &self.mesh {
+            // Without its folder, where that is enough.
+            let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
+            let alone = self.mesh.iter().filter(|other| name(other) == name(path)).count() == 1;
+            let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
+            meshes.push((name, read(path, &ReadOptions::default())?));
+        }
+        let creature = ["creature".to_owned()];
+        for name in if self.mesh.is_empty() && self.shape.is_empty() { &creature } else { &self.shape[..] } {
+            meshes.push((name.clone(), shape(name)?));
+        }
+        let mut subjects = Vec::new();
+        for (name, mesh) in meshes {
+            for &copies in &self.replicate {
+                let (name, mesh) = match copies {
+                    1 => (name.clone(), mesh.clone()),
+                    _ => (format!("{name} x{copies}"), replicate(&mesh, lattice(copies), 1.25)?),
+                };
+                subjects.push(Subject::new(&name, mesh, self.refine, patches)?);
+            }
+        }
+        Ok(subjects)
+    }
+}
+
+/// So many copies as a block that is as near to a cube as the count allows.
+fn lattice(copies: u32) -> [u32; 3] {
+    let divisor = |n: u32, root: f64| (1..=root.round() as u32).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
+    let x = divisor(copies, f64::from(copies).cbrt());
+    let rest = copies / x;
+    let y = divisor(rest, f64::from(rest).sqrt());
+    [rest / y, y, x]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn copies_are_as_many_as_asked_for() {
+        for (copies, block) in [(1, [1, 1, 1]), (8, [2, 2, 2]), (9, [3, 3, 1]), (64, [4, 4, 4]), (7, [7, 1, 1])] {
+            assert_eq!(lattice(copies), block);
+        }
+        assert!((1..500).all(|n| lattice(n).iter().product::<u32>() == n));
+    }
+}
