@@ -1,4 +1,4 @@
-//! What the tessellation stages computed, written to a buffer by the shaders themselves and read back: control points,
+//! What the stages before rasterization computed, written to a buffer by the shaders themselves and read back: control points,
 //! samples on a grid, every evaluated vertex, and the triangles between them. For tests, `subdiv patches`, `subdiv sample` and
 //! `subdiv screen`.
 
@@ -10,8 +10,9 @@ use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::mesh::ControlMesh;
 use crate::renderer::{
     Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Evaluation, Factor, ModelOptions, ModelTables,
-    Options, Renderer, Style, Target, View,
+    Options, Renderer, STAGES, Style, Target, View,
 };
+use crate::table::{MAX_SEGMENTS, lattice_vertices};
 use crate::topology::PatchKind;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -104,7 +105,8 @@ impl CaptureDraw {
     }
 }
 
-/// A model whose tessellation stages can be watched.
+/// A model whose stages before rasterization can be watched: those of tessellation, but for [`Captured::vertices`] also those
+/// of other evaluations ([`ModelOptions::evaluation`]) that have them.
 pub struct Captured<'h> {
     headless: &'h Headless,
     options: ModelOptions,
@@ -238,7 +240,8 @@ impl<'h> Captured<'h> {
         Ok(grids)
     }
 
-    /// Every vertex that the tessellator made with this factor and the model's spacing, in no order.
+    /// Every vertex that the tessellator made with this factor and the model's spacing, or the vertices of the lattice that the
+    /// model is evaluated on, in no order.
     ///
     /// A device may evaluate a vertex more than once; then it is there more than once.
     ///
@@ -255,15 +258,21 @@ impl<'h> Captured<'h> {
     pub fn vertices_of(&self, draw: &CaptureDraw, which: Which) -> Result<Vec<CapturedVertex>, Error> {
         let max = self.headless.properties().max_tessellation_level;
         let most = self.largest_factor(draw)?;
+        let tessellated = self.evaluation(Capture::Vertices) == Evaluation::Tessellation;
+        let segments = match tessellated {
+            true => self.options.spacing.segments(most, max),
+            false => (most.ceil() as u32).min(MAX_SEGMENTS),
+        };
         let bytes = |kind: PatchKind| {
             let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
             let vertices = match which {
-                Which::All => tessellated_vertices(domain, self.options.spacing, most, max),
-                Which::OnEdges => 4 * (self.options.spacing.segments(most, max) + 1),
+                Which::All if !tessellated => lattice_vertices(kind, segments),
+                Which::All => tessellated_vertices(domain, self.options.spacing, most, max).into(),
+                Which::OnEdges => 4 * (u64::from(segments) + 1),
             };
             // At worst a device shares nothing between the triangles of a patch.
-            let shared = if self.headless.properties().patch_batch == crate::gpu::PatchBatch::LAVAPIPE { 1 } else { 6 };
-            shared * u64::from(vertices) * RECORD_BYTES
+            let shares = tessellated && self.headless.properties().patch_batch == crate::gpu::PatchBatch::LAVAPIPE;
+            if shares { vertices * RECORD_BYTES } else { 6 * vertices * RECORD_BYTES }
         };
         let mut vertices = Vec::new();
         let captured = self.capture(Capture::Vertices, draw, bytes, |patches| Head {
@@ -313,6 +322,14 @@ impl<'h> Captured<'h> {
         self.capture_each(Capture::Triangles, draw, |_| bytes, head, |_, words| see(bytemuck::cast_slice(&words)))
     }
 
+    /// The evaluation that is watched.
+    fn evaluation(&self, mode: Capture) -> Evaluation {
+        match self.options.evaluation {
+            evaluation if mode == Capture::Vertices && evaluation != Evaluation::Compute => evaluation,
+            _ => Evaluation::Tessellation,
+        }
+    }
+
     /// The largest that an edge asks for.
     fn largest_factor(&self, draw: &CaptureDraw) -> Result<f32, Error> {
         match draw.factor {
@@ -349,11 +366,7 @@ impl<'h> Captured<'h> {
     ) -> Result<(), Error> {
         let headless = self.headless;
         let context = headless.context();
-        let stages = match self.options.evaluation {
-            Evaluation::Subdivision => vk::ShaderStageFlags::GEOMETRY,
-            _ => vk::ShaderStageFlags::TESSELLATION_CONTROL | vk::ShaderStageFlags::TESSELLATION_EVALUATION,
-        };
-        let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, stages)];
+        let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, STAGES)];
         // Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
         let mut idle = None;
         if mode == Capture::Triangles {
@@ -380,7 +393,11 @@ impl<'h> Captured<'h> {
             // SAFETY: as the caller of `displaced` promises.
             unsafe { renderer.add_displacement(map) };
         }
-        let model = renderer.add_tables(self.tables.clone(), &self.positions, &self.options)?;
+        let model_options = ModelOptions { evaluation: self.evaluation(mode), ..self.options.clone() };
+        let model = renderer.add_tables(self.tables.clone(), &self.positions, &model_options)?;
+        if model_options.evaluation.needs_segments() {
+            renderer.set_segments(model, draw.factor.value().ceil() as u32)?;
+        }
         if let Factor::Edges(_) = draw.factor {
             renderer.set_edge_factors(model, 0, &draw.edge_factors)?;
         }

@@ -295,7 +295,7 @@ fn wrong_displacement_is_told() {
     let options = ModelOptions { displacement, evaluation, construction, ..ModelOptions::default() };
     assert_eq!(
         first.add_model(&mesh, &options).unwrap_err().to_string(),
-        "model 0: evaluation by compute does not go with displacement: do without, or choose Evaluation::Tessellation"
+        "model 0: Evaluation::Compute does not go with displacement: do without, or choose Evaluation::Tessellation"
     );
     drop((first, second, texture));
     headless.finish_silent();

@@ -91,15 +91,24 @@ fn a_race_counts_what_was_drawn() {
         let tessellated = matches!(contestant.path, Path::Tessellation | Path::Bilinear);
         let evaluations = if tessellated { 36 * (n + 1) * (n + 1) } else { 0 };
         assert_eq!(row.evaluations, Some(evaluations));
-        let strips = contestant.path == Path::Subdivision;
-        assert_eq!(row.traffic.vertices, 40 * 36 * (n + 1) * if strips { 2 * n } else { n + 1 });
+        let vertices = match contestant.path {
+            Path::Geometry | Path::Subdivision => 36 * 2 * n * n,
+            // And a point for each corner, once.
+            Path::GeometryTwoPass => 36 * (n + 1) * (n + 1) + 24,
+            _ => 36 * (n + 1) * (n + 1),
+        };
+        assert_eq!(row.traffic.vertices, 40 * vertices);
         let points = contestant.patches.map(|(scheme, _)| scheme.owned(ash_subdiv::topology::PatchKind::IrregularQuad));
         let points = if tessellated { points.unwrap_or(1) as u64 } else { 0 };
         let vertices = row.bytes.iter().find(|(name, _)| *name == "vertices").map(|(_, bytes)| *bytes);
-        if contestant.path == Path::Compute {
+        let indices = 4 * 6 * n * n;
+        let kept = match contestant.path {
             // Six patches once, with their indices.
-            assert_eq!(vertices, Some(6 * 24 * (n + 1) * (n + 1) + 6 * 4 * 6 * n * n));
-        }
+            Path::Compute => Some(6 * (24 * (n + 1) * (n + 1) + indices)),
+            Path::Instanced | Path::GeometryTwoPass => Some(indices),
+            _ => None,
+        };
+        assert!(kept.is_none() || vertices == kept, "{vertices:?}");
         assert_eq!(row.traffic.control_points, 12 * 4 * points * 36);
         assert_eq!(row.construction.is_some(), !contestant.path.is_floor());
         for series in [&row.gpu, &row.geometry] {

@@ -1,24 +1,17 @@
-//! Evaluation by compute: the vertices are those of the tessellation stages, and what it says when it is used wrongly.
+//! Evaluation by compute: when it happens, and what evaluations say when they are used wrongly.
 #![cfg(feature = "headless")]
 
 mod common;
 
-use ash::vk;
-use ash_subdiv::capture::{Captured, CapturedVertex};
-use ash_subdiv::gpu::{Buffer, BufferDesc, MemoryLocation};
-use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
+use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError};
 use ash_subdiv::renderer::{Evaluation, Factor};
-use ash_subdiv::table::grid_parameters;
 use ash_subdiv::topology::Topology;
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Error, Fallback, ModelId, ModelOptions, Options, Renderer, Scheme, Spacing,
-    Style, Target, View, shape,
+    Construction, DeviceContext, DrawItem, Error, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style,
+    Target, View, requirements, shape,
 };
-use common::edges::{bits, corner_parameters, edge_parameters, shared_edges};
-use glam::Vec3;
-use std::collections::HashMap;
-
-type Vertex = [f32; 6];
+use common::stage::{Stage, read_vertices};
+use std::sync::Arc;
 
 fn compute(scheme: Scheme) -> ModelOptions {
     ModelOptions {
@@ -28,182 +21,6 @@ fn compute(scheme: Scheme) -> ModelOptions {
         evaluation: Evaluation::Compute,
         ..ModelOptions::default()
     }
-}
-
-/// A picture, and a renderer for it.
-struct Stage {
-    target: Offscreen,
-    headless: Headless,
-}
-
-impl Stage {
-    fn new() -> Self {
-        let headless = common::headless();
-        Self { target: Offscreen::new(&headless, &OffscreenDesc::new(96, 96)).expect("an image"), headless }
-    }
-
-    fn renderer(&self, options: &Options) -> Renderer {
-        let desc = self.target.desc();
-        let target = Target::dynamic(desc.color, desc.depth, desc.samples);
-        // SAFETY: every submission is waited for, and the renderer is dropped before the stage.
-        unsafe { Renderer::new(self.headless.context(), &target, options) }.expect("a renderer")
-    }
-
-    fn prepare(&self, renderer: &mut Renderer, frame: u32) {
-        // SAFETY: the command buffer is being recorded, and all frames before are done.
-        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("a frame");
-    }
-
-    fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Vec<u8>, Error> {
-        let view = View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [-0.6, 0.5, 1.0], 1.0);
-        let record = |cmd| {
-            // SAFETY: as above, inside rendering.
-            unsafe { renderer.cmd_draw(cmd, frame, &view, items) }
-        };
-        self.target.draw(&self.headless, [0.0; 4], record)
-    }
-
-    fn finish(self) {
-        drop(self.target);
-        self.headless.finish_silent();
-    }
-}
-
-/// The vertices of a model that was prepared, as words.
-fn read_vertices(headless: &Headless, renderer: &Renderer, model: ModelId) -> Vec<f32> {
-    let vertices = renderer.evaluated_vertices(model).expect("a model").expect("segments");
-    let (name, size) = ("vertices to read", vertices.size);
-    let usage = vk::BufferUsageFlags::TRANSFER_DST;
-    let desc = BufferDesc { name, size, usage, location: MemoryLocation::Readback };
-    let buffer = Buffer::new(headless.context(), &desc).expect("a buffer");
-    let region = vk::BufferCopy { size, ..vk::BufferCopy::default() };
-    let device = headless.device();
-    // SAFETY: both buffers hold the range; what wrote it was waited for.
-    let copy = |cmd| unsafe { device.cmd_copy_buffer(cmd, vertices.buffer, buffer.raw(), &[region]) };
-    headless.submit(copy).expect("a copy");
-    buffer.read(0, size as usize / 4).expect("as many words")
-}
-
-/// Each patch on a lattice, as the compute shader evaluates it.
-fn lattices(stage: &Stage, mesh: &ControlMesh, options: &ModelOptions, segments: u32) -> Vec<Vec<Vertex>> {
-    let mut renderer = stage.renderer(&Options::default());
-    let model = renderer.add_model(mesh, options).expect("a model");
-    renderer.set_segments(model, segments).expect("segments");
-    stage.prepare(&mut renderer, 0);
-    let words = read_vertices(&stage.headless, &renderer, model);
-    let mut vertices = words.chunks_exact(6).map(|v| [v[0], v[1], v[2], v[3], v[4], v[5]]);
-    let patches = renderer.tables(model).unwrap().plan().patches();
-    let lattices: Vec<Vec<Vertex>> = patches
-        .iter()
-        .map(|patch| vertices.by_ref().take(grid_parameters(patch.kind, segments + 1).len()).collect())
-        .collect();
-    assert!(vertices.next().is_none() && lattices.len() == patches.len());
-    lattices
-}
-
-fn position(vertex: &Vertex) -> Vec3 {
-    Vec3::new(vertex[0], vertex[1], vertex[2])
-}
-
-fn normal(vertex: &Vertex) -> Vec3 {
-    Vec3::new(vertex[3], vertex[4], vertex[5])
-}
-
-/// Where a vertex lies, by numbers of segments: the tessellator's parameters are rounded.
-fn place(patch: u32, [u, v]: [f64; 2], segments: u32) -> (u32, [u32; 2]) {
-    (patch, [u, v].map(|x| (x * f64::from(segments)).round() as u32))
-}
-
-/// On an edge of a triangle.
-fn on_edge(vertex: &CapturedVertex) -> bool {
-    vertex.coordinate.contains(&0.0)
-}
-
-#[test]
-fn vertices_are_those_of_the_tessellation_stages() {
-    let stage = Stage::new();
-    let shapes = [
-        ("creature-mixed", &Scheme::ALL[..]),
-        ("cube", &Scheme::ALL[..]),
-        ("cloth", &[Scheme::Gregory]),
-        ("pentagons", &[Scheme::Pm]),
-    ];
-    for (name, schemes) in shapes {
-        let mesh = if name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
-        for &scheme in schemes {
-            for segments in [1, 6, 13, 31] {
-                let options = compute(scheme);
-                let lattices = lattices(&stage, &mesh, &options, segments);
-                let captured = Captured::new(&stage.headless, &mesh, &options).expect("a model");
-                let patches = captured.tables().plan().patches();
-                let what = || format!("{name} {scheme:?} {segments}");
-                let tessellated = captured.vertices(segments as f32).expect("a capture");
-                let at: HashMap<_, &CapturedVertex> = tessellated
-                    .iter()
-                    .filter(|v| patches[v.patch as usize].kind.is_triangular() <= on_edge(v))
-                    .map(|v| (place(v.patch, [v.coordinate[0], v.coordinate[1]].map(f64::from), segments), v))
-                    .collect();
-                for (i, (patch, lattice)) in patches.iter().zip(&lattices).enumerate() {
-                    let n = segments as f64;
-                    for (uv, vertex) in grid_parameters(patch.kind, segments + 1).into_iter().zip(lattice) {
-                        let w = 1.0 - uv[0] - uv[1];
-                        let edge = uv[0] == 0.0 || uv[1] == 0.0 || w.abs() < 0.5 / n;
-                        // Within triangles the tessellator has vertices elsewhere.
-                        if patch.kind.is_triangular() && !edge {
-                            continue;
-                        }
-                        let other = at[&place(i as u32, uv, segments)];
-                        assert_eq!(bits(position(vertex)), bits(other.position), "{} {uv:?} {other:?}", what());
-                        let turn = (normal(vertex) - Vec3::from(other.normal)).length();
-                        assert!(turn < 1e-5, "{} {uv:?}: {turn}", what());
-                    }
-                }
-                for (lattice, grid) in lattices.iter().zip(captured.grid(segments + 1).expect("a capture")) {
-                    for (vertex, sample) in lattice.iter().zip(&grid) {
-                        let off = (position(vertex) - Vec3::from(sample.position)).length();
-                        let turn = (normal(vertex) - Vec3::from(sample.normal)).length();
-                        // The grid's parameters are not rounded to 16 bits.
-                        assert!(off < 5e-5 && turn < 1e-3, "{}: {off} {turn} {sample:?}", what());
-                    }
-                }
-            }
-        }
-    }
-    stage.finish();
-}
-
-#[test]
-fn patches_meet_to_the_bit() {
-    let stage = Stage::new();
-    for name in ["creature-mixed", "machine-part", "cloth", "valences"] {
-        let mesh = shape(name).expect("built in");
-        let topology = Topology::new(&mesh);
-        for segments in [2, 7, 19] {
-            let options = compute(Scheme::Gregory);
-            let lattices = lattices(&stage, &mesh, &options, segments);
-            let mut renderer = stage.renderer(&Options::default());
-            let model = renderer.add_model(&mesh, &options).expect("a model");
-            let patches = renderer.tables(model).unwrap().plan().patches();
-            let of_face: HashMap<u32, usize> = patches.iter().enumerate().map(|(i, p)| (p.face, i)).collect();
-            for edge in shared_edges(&topology) {
-                let [a, mut b] = edge.sides.map(|(face, k)| {
-                    let patch = of_face[&face];
-                    let kind = patches[patch].kind;
-                    assert_eq!(corner_parameters(kind).len(), kind.corners());
-                    let parameters = grid_parameters(kind, segments + 1);
-                    let along = (0..=segments).map(|i| edge_parameters(kind, k, f64::from(i) / f64::from(segments)));
-                    let at = |uv: [f64; 2]| {
-                        let near = |other: &[f64; 2]| (0..2).all(|i| (uv[i] - other[i]).abs() < 1e-9);
-                        bits(position(&lattices[patch][parameters.iter().position(near).expect("on the lattice")]))
-                    };
-                    along.map(at).collect::<Vec<_>>()
-                });
-                b.reverse();
-                assert_eq!(a, b, "{name} {segments} {:?}", edge.sides);
-            }
-        }
-    }
-    stage.finish();
 }
 
 #[test]
@@ -261,14 +78,14 @@ fn vertices_follow_positions_and_segments() {
     stage.finish();
 }
 
-#[test]
-fn several_passes_evaluate_once() {
+/// Invocations of compute shader and geometry shader in frames of three passes, in which the vertices move or not.
+fn counts(options: &ModelOptions, moves: [bool; 3]) -> [[u64; 2]; 3] {
     let stage = Stage::new();
     let mut renderer = stage.renderer(&Options::default());
     let mesh = shape("cube").expect("built in");
-    let model = renderer.add_model(&mesh, &compute(Scheme::Gregory)).expect("a model");
+    let model = renderer.add_model(&mesh, options).expect("a model");
     renderer.set_segments(model, 5).unwrap();
-    let mut frame = |moves: bool| {
+    let counts = moves.map(|moves| {
         if moves {
             renderer.set_positions(model, 0, &mesh.positions_f32()).unwrap();
         }
@@ -286,12 +103,25 @@ fn several_passes_evaluate_once() {
         let counted = counted.expect("counts");
         assert_eq!((counted.evaluation_invocations, counted.control_patches), (0, 0));
         assert_eq!(counted.clipping_invocations, 3 * 6 * 2 * 25);
-        counted.compute_invocations
-    };
-    // 24 corners in a group of 64, and a group of 32 for each patch.
-    assert_eq!([true, false, true].map(&mut frame), [64 + 6 * 32, 0, 64 + 6 * 32]);
+        [counted.compute_invocations, counted.geometry_invocations]
+    });
     drop(renderer);
     stage.finish();
+    counts
+}
+
+#[test]
+fn several_passes_evaluate_once() {
+    let moves = [true, false, true];
+    // 24 corners in a group of 64, and a group of 32 for each patch.
+    let points = 64;
+    let vertices = 6 * 32;
+    let options = compute(Scheme::Gregory);
+    assert_eq!(counts(&options, moves), [[points + vertices, 0], [0, 0], [points + vertices, 0]]);
+    let instanced = ModelOptions { evaluation: Evaluation::Instanced, ..options.clone() };
+    assert_eq!(counts(&instanced, moves), [[points, 0], [0, 0], [points, 0]]);
+    let two_pass = ModelOptions { evaluation: Evaluation::GeometryTwoPass, ..options };
+    assert_eq!(counts(&two_pass, moves), [[0, 24], [0, 0], [0, 24]]);
 }
 
 #[test]
@@ -301,38 +131,69 @@ fn wrong_use_is_told() {
     let mesh = shape("cube").expect("built in");
     let text = |error: Error| error.to_string();
     let wrong = [
-        (
-            ModelOptions { construction: Construction::TwoStage, ..compute(Scheme::Gregory) },
-            "constructions other than Construction::Cached",
-        ),
         (ModelOptions { shared_normals: true, ..compute(Scheme::Gregory) }, "shared normals"),
         (ModelOptions { edge_factors: true, ..compute(Scheme::Gregory) }, "factors of edges"),
         (ModelOptions { spacing: Spacing::FractionalOdd, ..compute(Scheme::Gregory) }, "fractional spacing"),
     ];
     for (options, what) in wrong {
-        let error = text(renderer.add_model(&mesh, &options).unwrap_err());
-        let told = format!(
-            "model 0: evaluation by compute does not go with {what}: do without, or choose Evaluation::Tessellation"
-        );
-        assert_eq!(error, told);
+        for evaluation in Evaluation::ALL.into_iter().filter(|&evaluation| evaluation != Evaluation::Tessellation) {
+            let error = text(renderer.add_model(&mesh, &ModelOptions { evaluation, ..options.clone() }).unwrap_err());
+            let told = format!(
+                "model 0: Evaluation::{evaluation:?} does not go with {what}: do without, or choose Evaluation::Tessellation"
+            );
+            assert_eq!(error, told);
+        }
     }
+    let options = ModelOptions { construction: Construction::TwoStage, ..compute(Scheme::Gregory) };
+    assert_eq!(
+        text(renderer.add_model(&mesh, &options).unwrap_err()),
+        "model 0: Evaluation::Compute goes with Construction::Cached, not with TwoStage"
+    );
     let model = renderer.add_model(&mesh, &compute(Scheme::Gregory)).unwrap();
     let other = renderer.add_model(&mesh, &ModelOptions::default()).unwrap();
-    let told = "model 1: the tessellation stages evaluate it: set ModelOptions::evaluation to Compute";
-    assert_eq!(text(renderer.set_segments(other, 4).unwrap_err()), told);
-    assert_eq!(text(renderer.evaluated_vertices(other).unwrap_err()), told);
+    assert_eq!(
+        text(renderer.set_segments(other, 4).unwrap_err()),
+        "model 1: Evaluation::Tessellation takes its segments from DrawItem::factor: set_segments is for others"
+    );
+    assert_eq!(
+        text(renderer.evaluated_vertices(other).unwrap_err()),
+        "model 1: no vertices of it are kept: set ModelOptions::evaluation to Compute"
+    );
+    let geometry = ModelOptions { evaluation: Evaluation::Geometry, ..compute(Scheme::Gregory) };
+    let geometry = renderer.add_model(&mesh, &geometry).unwrap();
+    assert_eq!(
+        text(renderer.set_segments(geometry, 4).unwrap_err()),
+        "model 2: Evaluation::Geometry takes its segments from DrawItem::factor: set_segments is for others"
+    );
     for segments in [0, 1025] {
         let error = text(renderer.set_segments(model, segments).unwrap_err());
         assert_eq!(error, format!("model 0: {segments} segments: from 1 to 1024 are possible along an edge"));
     }
     assert_eq!(renderer.evaluated_vertices(model).unwrap(), None);
     stage.prepare(&mut renderer, 0);
-    let draw = |renderer: &mut Renderer, factor: Factor| {
+    let draw_model = |renderer: &mut Renderer, model, factor: Factor| {
         stage.draw(renderer, 0, &[DrawItem::new(model, factor)]).map_err(text)
     };
+    assert_eq!(
+        draw_model(&mut renderer, geometry, Factor::Uniform(1024.5)),
+        Err("model 2: 1025 segments: from 1 to 1024 are possible along an edge".into())
+    );
+    assert_eq!(
+        draw_model(&mut renderer, geometry, Factor::Edges(2.0)),
+        Err("model 2: its edges have no factors: call set_edge_factors first".into())
+    );
+    let sized = View::framing(mesh.bounds(), [0.0, 0.0, 1.0], 1.0).sized(8, 8);
+    let by_pixels = DrawItem::new(geometry, Factor::Pixels(2.0));
+    // SAFETY: nothing is submitted, for it fails.
+    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_draw(cmd, 0, &sized, &[by_pixels]) });
+    assert_eq!(
+        text(error.unwrap_err()),
+        "model 2: Pixels(2.0): Evaluation::Geometry has one factor for all edges: draw with a uniform one"
+    );
+    let draw = |renderer: &mut Renderer, factor: Factor| draw_model(renderer, model, factor);
     let told = |factor: &str, n: u32| {
         Err(format!(
-            "model 0: {factor}: it was evaluated with {n} segments: call set_segments before cmd_prepare, and draw with that \
+            "model 0: {factor}: its edges have {n} segments: call set_segments before cmd_prepare, and draw with that \
              number as uniform factor"
         ))
     };
@@ -349,5 +210,54 @@ fn wrong_use_is_told() {
     assert!(draw(&mut renderer, Factor::Uniform(3.5)).is_ok());
     assert_eq!(draw(&mut renderer, Factor::Uniform(5.0)), told("Uniform(5.0)", 4));
     drop(renderer);
+    stage.finish();
+}
+
+/// Takes memory where another context does.
+struct Borrowed(Arc<DeviceContext>);
+
+// SAFETY: as the other context's.
+unsafe impl Allocator for Borrowed {
+    fn allocate(&self, request: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError> {
+        self.0.allocator().allocate(request)
+    }
+
+    unsafe fn free(&self, allocation: Allocation) {
+        // SAFETY: as the caller promises.
+        unsafe { self.0.allocator().free(allocation) }
+    }
+}
+
+#[test]
+fn evaluations_that_need_features_say_so() {
+    let stage = Stage::new();
+    let desc = stage.target.desc();
+    let target = Target::dynamic(desc.color, desc.depth, desc.samples);
+    let options = Options { evaluations: vec![Evaluation::GeometryTwoPass, Evaluation::Compute], ..Options::default() };
+    let needs = requirements(&target, &options).features;
+    assert!(needs.geometry && needs.vertex_stores);
+    let without = requirements(&target, &Options::default()).context_options();
+    let (instance, device) = (stage.headless.instance(), stage.headless.device());
+    let allocator = Arc::new(Borrowed(stage.headless.context().clone()));
+    // SAFETY: the device is of the instance, has more than these features, and outlives the context; nothing is recorded.
+    let context = unsafe { DeviceContext::new(instance, stage.headless.physical_device(), device, allocator, without) };
+    // SAFETY: nothing is recorded.
+    let error = unsafe { Renderer::new(&context, &target, &options) }.err().expect("an error").to_string();
+    assert!(error.contains("geometryShader (the device has it") && error.contains("vertexPipelineStores"), "{error}");
+    // SAFETY: nothing is recorded.
+    let mut renderer = unsafe { Renderer::new(&context, &target, &Options::default()) }.expect("a renderer");
+    for (evaluation, missing) in [
+        (Evaluation::Geometry, "geometryShader"),
+        (Evaluation::GeometryTwoPass, "vertexPipelineStoresAndAtomics and geometryShader"),
+    ] {
+        let options = ModelOptions { evaluation, construction: Construction::Cached, ..ModelOptions::default() };
+        let error = renderer.add_model(&shape("cube").expect("built in"), &options).unwrap_err().to_string();
+        let told = format!(
+            "model 0: Evaluation::{evaluation:?} needs {missing}: name it in Options::evaluations and make the device with \
+             what requirements lists then, or choose another evaluation"
+        );
+        assert_eq!(error, told);
+    }
+    drop((renderer, context));
     stage.finish();
 }

@@ -62,6 +62,8 @@ struct Picture {
     /// By the built-in height map, this part of the diagonal.
     displacement: Option<f32>,
     evaluation: Evaluation,
+    /// Of patches on lattices, which the tessellator draws otherwise.
+    of_lattice: bool,
     /// Seen from behind: what is left out when it is seen from the front.
     culled: bool,
 }
@@ -81,6 +83,7 @@ impl Picture {
             spacing: Spacing::Equal,
             displacement: None,
             evaluation: Evaluation::Tessellation,
+            of_lattice: false,
             culled: false,
         }
     }
@@ -168,6 +171,14 @@ fn pictures() -> Vec<Picture> {
         Picture::of_scheme(Scheme::CPatch, "creature", Some(0.2)),
         Picture::of_scheme(Scheme::Pm, "pentagons", None),
         Picture { layers: wire(), name: "wireframe-pentagons".into(), scheme: Scheme::Pm, ..Picture::lit("pentagons") },
+        Picture { of_lattice: true, name: "lattice-fan".into(), layers: wire(), ..Picture::lit("fan") },
+        Picture {
+            of_lattice: true,
+            name: "lattice-pentagons".into(),
+            layers: wire(),
+            scheme: Scheme::Pm,
+            ..Picture::lit("pentagons")
+        },
         // Its triangles fall back to Gregory patches.
         Picture::of_scheme(Scheme::Acc, "creature-mixed", Some(0.15)),
     ]);
@@ -235,7 +246,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     let model_options =
         ModelOptions { construction, fallback, scheme, spacing, displacement, evaluation, ..ModelOptions::default() };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
-    if evaluation == Evaluation::Compute {
+    if evaluation.needs_segments() {
         renderer.set_segments(model, factor.value() as u32).expect("segments");
     }
     let [low, high] = mesh.bounds();
@@ -268,7 +279,7 @@ fn pictures_are_as_they_were() {
     let headless = common::headless();
     if golden::is_pinned(&headless) {
         let mut wrong = Vec::new();
-        for picture in pictures() {
+        for picture in pictures().into_iter().filter(|picture| !picture.of_lattice) {
             for construction in Construction::ALL {
                 let pixels = draw(&headless, &picture, construction, false);
                 let writes = construction == Construction::TwoStage;
@@ -285,9 +296,16 @@ fn pictures_are_as_they_were() {
     headless.finish_silent();
 }
 
-/// Within triangles the lattice has vertices elsewhere than the tessellator: these pictures are left out.
+/// Every evaluation on a lattice with every construction that it goes with.
+fn lattice_ways() -> impl Iterator<Item = (Evaluation, Construction)> {
+    let on_lattices = Evaluation::ALL.into_iter().filter(|&evaluation| evaluation != Evaluation::Tessellation);
+    on_lattices.flat_map(|evaluation| evaluation.constructions().iter().map(move |&c| (evaluation, c)))
+}
+
+/// Within triangles the lattice has vertices elsewhere than the tessellator: these pictures are left out, but for those that
+/// are of lattices anyway.
 #[test]
-fn pictures_evaluated_by_compute_are_the_same() {
+fn pictures_evaluated_on_lattices_are_the_same() {
     let headless = common::headless();
     if golden::is_pinned(&headless) {
         let mut wrong = Vec::new();
@@ -297,13 +315,16 @@ fn pictures_evaluated_by_compute_are_the_same() {
                 && matches!(picture.factor, Factor::Uniform(_))
                 && picture.evaluation == Evaluation::Tessellation
                 && !picture.culled;
-            let lines = picture.layers.iter().any(|layer| layer.style.wireframe);
-            if fits && !lines && quads_only(picture.shape) {
-                let picture = Picture { evaluation: Evaluation::Compute, ..picture };
-                let pixels = draw(&headless, &picture, Construction::Cached, false);
-                wrong.extend(golden::check(&picture.name, "compute", [SIDE; 2], pixels, false).err());
-                compared += 1;
+            if !fits || !(picture.of_lattice || quads_only(picture.shape)) {
+                continue;
             }
+            for (evaluation, construction) in lattice_ways() {
+                let pixels = draw(&headless, &Picture { evaluation, ..picture.clone() }, construction, false);
+                let variant = format!("{}-{}", evaluation.name(), construction.name());
+                let writes = picture.of_lattice && evaluation == Evaluation::Compute;
+                wrong.extend(golden::check(&picture.name, &variant, [SIDE; 2], pixels, writes).err());
+            }
+            compared += 1;
         }
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));
         assert!(compared >= 12, "{compared}");
@@ -343,7 +364,7 @@ fn every_golden_fails_against_every_other() {
 fn goldens_of_schemes_fail_with_other_schemes() {
     let headless = common::headless();
     if golden::is_pinned(&headless) {
-        for picture in pictures().into_iter().filter(|picture| picture.scheme != Scheme::Gregory) {
+        for picture in pictures().into_iter().filter(|p| p.scheme != Scheme::Gregory && !p.of_lattice) {
             let golden = golden::load(&golden::folder().join(&picture.name).with_extension("png"));
             let others: &[_] = match (picture.shape, picture.scheme) {
                 ("creature-mixed" | "pentagons", _) => &[Scheme::Gregory],

@@ -273,8 +273,9 @@ fn wrong_use_is_told() {
     ];
     for (options, what) in wrong {
         let error = renderer.add_model(&mesh, &options).unwrap_err().to_string();
-        let told =
-            format!("model 0: subdivision does not go with {what}: do without, or choose Evaluation::Tessellation");
+        let told = format!(
+            "model 0: Evaluation::Subdivision does not go with {what}: do without, or choose Evaluation::Tessellation"
+        );
         assert_eq!(error, told);
     }
     let polygons = shape("polygons").expect("built in");

@@ -1,4 +1,5 @@
-// The stencil construction has nothing to do for a vertex: one invocation a patch, which says which patch it is.
+// The stencil construction has nothing to do for a vertex: one invocation a patch, which says which patch it is. (Or which tile
+// of all patches', for glsl/evaluate/strips.geom.)
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"

@@ -1,4 +1,4 @@
-// A vertex that was evaluated by compute: see glsl/lib/lattice.glsl.
+// A vertex that was evaluated by compute: see glsl/evaluate/lattice.comp.
 // variants: TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require

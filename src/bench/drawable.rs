@@ -3,7 +3,7 @@
 use super::{BenchError, Contestant, Normals, Path, Subject};
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
-use crate::renderer::{Evaluation, ModelOptions, TableBytes, View};
+use crate::renderer::{ModelOptions, TableBytes, View};
 use ash::vk;
 use std::time::Instant;
 
@@ -94,11 +94,6 @@ pub(super) trait Drawable {
     /// Everything that drawing reads.
     fn bytes(&self) -> Vec<TableBytes>;
 
-    /// Vertices that a geometry shader makes for one instance in strips, if there is one.
-    fn strip_vertices(&self, _factor: f32) -> u64 {
-        0
-    }
-
     /// Bytes of the control points of all patches, as the control stage passes them on, if it is used.
     fn control_point_bytes(&self) -> u64;
 }
@@ -118,21 +113,15 @@ impl Contestant {
     /// Makes everything that does not depend on the factor.
     pub(super) fn open(self, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
         Ok(match self.path {
-            Path::Tessellation | Path::Compute | Path::Subdivision => {
-                Box::new(super::surface::Surface::new(lane, self.model_options(lane), self.cull)?)
-            }
             Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
             Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
+            _ => Box::new(super::surface::Surface::new(lane, self.model_options(lane), self.cull)?),
         })
     }
 
     /// For paths that are the renderer's own.
     pub(super) fn model_options(self, lane: Lane) -> ModelOptions {
-        let evaluation = match self.path {
-            Path::Compute => Evaluation::Compute,
-            Path::Subdivision => Evaluation::Subdivision,
-            Path::Tessellation | Path::Bilinear | Path::VertexBuffer => Evaluation::Tessellation,
-        };
+        let evaluation = self.path.evaluation().unwrap_or_default();
         let (scheme, construction) = self.patches.unwrap_or_default();
         ModelOptions {
             name: lane.subject.name.clone(),

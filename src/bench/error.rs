@@ -37,14 +37,17 @@ impl From<MeshError> for BenchError {
 }
 
 impl BenchError {
-    /// Whether it is only one contestant that cannot do it: it has no patches for the mesh, or takes more than the device
-    /// has.
+    /// Whether it is only one contestant that cannot do it: it has no patches for the mesh, or takes what the device has
+    /// not.
     pub fn leaves_out(&self) -> bool {
         use GpuError as Gpu;
         let Self::Renderer(error) = self else { return false };
         match error {
-            Error::Table(TableError::Undefined(_)) | Error::TableTooLarge { .. } | Error::NotByCompute { .. } => true,
-            Error::NoSuchLevel { .. } | Error::Unsupported { .. } => true,
+            Error::Table(TableError::Undefined(_))
+            | Error::TableTooLarge { .. }
+            | Error::NotEvaluatedBy { .. }
+            | Error::NoSuchLevel { .. }
+            | Error::EvaluationNeeds { .. } => true,
             Error::Gpu(error) => {
                 matches!(error, Gpu::Unsupported { .. } | Gpu::Allocation { .. } | Gpu::OutOfMemory { .. })
             }

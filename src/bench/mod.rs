@@ -38,19 +38,23 @@ pub use row::{Row, Series};
 pub use subject::{Subject, Subset};
 
 use crate::patch::Scheme;
-use crate::renderer::{Construction, Cull};
+use crate::renderer::{Construction, Cull, Evaluation};
 
 /// A way to get the surface drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Path {
     /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
     Tessellation,
-    /// Evaluated by compute once a frame, as the renderer does with
-    /// [`Evaluation::Compute`](crate::renderer::Evaluation::Compute), and drawn as indexed triangles in each pass.
+    /// Evaluated by compute once a frame, and drawn as indexed triangles in each pass ([`Evaluation::Compute`]).
     Compute,
-    /// Faces subdivided in a geometry shader, as the renderer does with
-    /// [`Evaluation::Subdivision`](crate::renderer::Evaluation::Subdivision): at factors 1, 2, 4 and 8.
+    /// Faces subdivided in a geometry shader ([`Evaluation::Subdivision`]): at factors 1, 2, 4 and 8.
     Subdivision,
+    /// A lattice instanced over the patches ([`Evaluation::Instanced`]).
+    Instanced,
+    /// Strips from the geometry shader ([`Evaluation::Geometry`]).
+    Geometry,
+    /// Control points from the geometry shader, then instanced ([`Evaluation::GeometryTwoPass`]).
+    GeometryTwoPass,
     /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
     Bilinear,
     /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
@@ -60,17 +64,36 @@ pub enum Path {
 
 impl Path {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Tessellation, Self::Compute, Self::Subdivision, Self::Bilinear, Self::VertexBuffer];
+    pub const ALL: [Self; 8] = [
+        Self::Tessellation,
+        Self::Compute,
+        Self::Instanced,
+        Self::Geometry,
+        Self::GeometryTwoPass,
+        Self::Subdivision,
+        Self::Bilinear,
+        Self::VertexBuffer,
+    ];
 
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Tessellation => "tessellation",
-            Self::Compute => "compute",
-            Self::Subdivision => "subdivision",
             Self::Bilinear => "bilinear",
             Self::VertexBuffer => "vertex-buffer",
+            _ => self.evaluation().map_or("", Evaluation::name),
+        }
+    }
+
+    /// What evaluates; `None` for a floor.
+    pub fn evaluation(self) -> Option<Evaluation> {
+        match self {
+            Self::Tessellation => Some(Evaluation::Tessellation),
+            Self::Compute => Some(Evaluation::Compute),
+            Self::Instanced => Some(Evaluation::Instanced),
+            Self::Geometry => Some(Evaluation::Geometry),
+            Self::GeometryTwoPass => Some(Evaluation::GeometryTwoPass),
+            Self::Subdivision => Some(Evaluation::Subdivision),
+            Self::Bilinear | Self::VertexBuffer => None,
         }
     }
 
@@ -145,7 +168,7 @@ impl Contestant {
             if path.is_floor() || path == Path::Subdivision {
                 return vec![Self::new(path, None)];
             }
-            let fits = |&&c: &&Construction| path != Path::Compute || c == Construction::Cached;
+            let fits = |c: &&Construction| path.evaluation().is_some_and(|e| e.constructions().contains(c));
             let pairs = schemes.iter().flat_map(|&s| constructions.iter().filter(fits).map(move |&c| (s, c)));
             pairs.map(|pair| Self::new(path, Some(pair))).collect()
         };

@@ -265,13 +265,15 @@ impl<'h> Bench<'h> {
         };
         let count = |of: fn(&Statistics) -> u64| counted.as_ref().map(of);
         let evaluations = count(|s| s.evaluation_invocations);
-        let vertices = count(|s| s.evaluation_invocations.max(s.vertex_invocations)).unwrap_or(0);
+        // Strips have at least a vertex for each triangle.
+        let vertices = |s: &Statistics| s.evaluation_invocations.max(s.vertex_invocations).max(s.geometry_primitives);
+        let vertices = count(vertices).unwrap_or(0);
         let times = u64::from(self.options.instances) * u64::from(self.options.passes);
         let bytes = drawable.bytes();
         let traffic = Traffic {
             tables: times * bytes.iter().map(|(_, bytes)| bytes).sum::<u64>(),
             control_points: times * drawable.control_point_bytes(),
-            vertices: VERTEX_BYTES * vertices.max(times * drawable.strip_vertices(factor)),
+            vertices: VERTEX_BYTES * vertices,
         };
         let [gpu, geometry] = <[Series; 2]>::try_from(series).unwrap_or_default();
         Ok(Row {

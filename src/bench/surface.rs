@@ -5,7 +5,7 @@ use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
 use crate::measure::statistics::Summary;
 use crate::renderer::{
     Cull, DrawItem, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Options, Renderer, Style,
-    TableBytes, Target, subdivision_level, subdivision_vertices,
+    TableBytes, Target, subdivision_level,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -22,8 +22,6 @@ pub(super) struct Surface {
     control_point_bytes: u64,
     evaluation: Evaluation,
     cull: Cull,
-    /// Patches of an instance.
-    faces: u64,
 }
 
 impl Surface {
@@ -48,11 +46,10 @@ impl Surface {
         // Once more, now that the pipelines are there.
         renderer.remove_model(first)?;
         let bytes = tables.bytes();
-        let faces = tables.plan().patches().len() as u64;
         let points = |kind| u64::from(tables.patch_count(kind)) * 12 * scheme.points(kind) as u64;
         let control_point_bytes = match evaluation {
             Evaluation::Tessellation => PatchKind::ALL.map(points).iter().sum(),
-            Evaluation::Compute | Evaluation::Subdivision => 0,
+            _ => 0,
         };
         let (model, upload) = timed(|| {
             let model = renderer.add_tables(tables, &positions, &model_options)?;
@@ -61,7 +58,7 @@ impl Surface {
             Ok::<_, Error>(model)
         })?;
         let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
-        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation, cull, faces })
+        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation, cull })
     }
 }
 
@@ -79,9 +76,11 @@ fn build_tables(lane: Lane, options: &ModelOptions) -> Result<(ModelTables, f64)
 impl Drawable for Surface {
     fn set_factor(&mut self, factor: f32) -> Result<(), BenchError> {
         match self.evaluation {
-            Evaluation::Compute => self.renderer.set_segments(self.model, factor.ceil() as u32)?,
             Evaluation::Subdivision => _ = subdivision_level(self.model, Factor::Uniform(factor))?,
-            Evaluation::Tessellation => {}
+            evaluation if evaluation.needs_segments() => {
+                self.renderer.set_segments(self.model, factor.ceil() as u32)?;
+            }
+            _ => {}
         }
         Ok(())
     }
@@ -110,13 +109,6 @@ impl Drawable for Surface {
     fn bytes(&self) -> Vec<TableBytes> {
         let vertices = self.renderer.memory_usage().vertices;
         self.bytes.iter().copied().chain((vertices > 0).then_some(("vertices", vertices))).collect()
-    }
-
-    fn strip_vertices(&self, factor: f32) -> u64 {
-        match (self.evaluation, subdivision_level(self.model, Factor::Uniform(factor))) {
-            (Evaluation::Subdivision, Ok(level)) => self.faces * u64::from(subdivision_vertices(level)),
-            _ => 0,
-        }
     }
 
     fn control_point_bytes(&self) -> u64 {

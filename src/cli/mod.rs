@@ -22,6 +22,7 @@ mod displacement;
 mod error;
 mod error_map;
 mod errors;
+mod evaluation;
 mod info;
 mod legend;
 mod obj;

@@ -1,6 +1,7 @@
 //! Values of options.
 
 use ash_subdiv::bench::{Camera, Normals, Path, Subset};
+use ash_subdiv::renderer::Evaluation;
 use ash_subdiv::{Construction, Fallback, Scheme, Spacing};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
@@ -68,6 +69,14 @@ pub(super) fn subset() -> impl TypedValueParser<Value = Subset> {
 /// A construction by its name.
 pub(super) fn construction() -> impl TypedValueParser<Value = Construction> {
     named(Construction::ALL.map(|construction| (construction.name(), construction)))
+}
+
+/// What evaluates, by its name.
+pub(super) fn evaluation() -> impl TypedValueParser<Value = Evaluation> {
+    // Subdivision has --level.
+    use Evaluation::{Compute, Geometry, GeometryTwoPass, Instanced, Tessellation};
+    let of_patches = [Tessellation, Compute, Instanced, Geometry, GeometryTwoPass];
+    named(of_patches.map(|evaluation| (evaluation.name(), evaluation)))
 }
 
 const SPACINGS: [(&str, Spacing); 3] =

@@ -5,6 +5,7 @@ use super::cull::CullArgs;
 use super::displacement::{DisplacementArgs, texture};
 use super::error::CliError;
 use super::error_map::{ErrorMap, ErrorSet};
+use super::evaluation::EvaluationArgs;
 use super::info::Patches;
 use super::legend::Legend;
 use super::output::{self, Progress, write_file};
@@ -40,7 +41,7 @@ struct FactorArgs {
     /// Instead of drawing patches, subdivide each face this many times in a geometry shader.
     #[arg(
         long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(0..=3),
-        conflicts_with_all = ["factor", "pixels", "bend", "cull", "displacement", "construction", "scheme"]
+        conflicts_with_all = ["factor", "pixels", "bend", "cull", "displacement", "evaluation", "construction", "scheme"]
     )]
     level: Option<u32>,
     #[command(flatten)]
@@ -55,10 +56,6 @@ impl FactorArgs {
             (.., Some(level)) => Factor::Uniform((1 << level) as f32),
             _ => Factor::Uniform(self.factor),
         }
-    }
-
-    fn evaluation(&self) -> Evaluation {
-        if self.level.is_some() { Evaluation::Subdivision } else { Evaluation::Tessellation }
     }
 
     /// In words.
@@ -80,9 +77,8 @@ pub(super) struct RenderArgs {
     /// The picture, a PNG file. Missing folders are made.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// How the GPU makes the control points.
-    #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::construction())]
-    construction: Construction,
+    #[command(flatten)]
+    evaluation: EvaluationArgs,
     #[command(flatten)]
     factor: FactorArgs,
     /// Where the tessellator puts its vertices along an edge.
@@ -113,8 +109,8 @@ pub(super) struct RenderArgs {
 }
 
 const EXAMPLES: &str = "\
-JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, construction, factor
-(null unless one for all), pixels, bend, level (null unless given), spacing, shading, samples, device,
+JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, evaluation, construction,
+factor (null unless one for all), pixels, bend, level (null unless given), spacing, shading, samples, device,
 error{top, largest} (null unless an error is shown),
 statistics{patches_drawn, patches_culled, largest_factor, factors_clamped}: factors_clamped tells whether an
 edge asked for more segments than the device has.
@@ -133,6 +129,7 @@ struct RenderOut<'a> {
     file: &'a str,
     size: [u32; 2],
     patches: Patches,
+    evaluation: &'static str,
     construction: &'static str,
     factor: Option<f32>,
     pixels: Option<f32>,
@@ -167,13 +164,14 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     if ending.is_none_or(|ending| ending != "png") {
         return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
     }
+    let construction = args.construction()?;
     let legend = if args.shading.quantity().is_some() { Legend::height(args.size)? } else { 0 };
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
     let map = args.error_map(&mesh, &progress)?;
     progress.now("building tables");
-    let evaluation = args.factor.evaluation();
-    let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(args.construction) };
+    let evaluation = args.factor.level.map_or(args.evaluation.evaluation, |_| Evaluation::Subdivision);
+    let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(construction) };
     let texels = args.displacement.texels()?;
     options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
     let mut drawn = &mesh;
@@ -214,7 +212,8 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
             file: &file,
             size: args.size,
             patches,
-            construction: args.construction.name(),
+            evaluation: options.evaluation.name(),
+            construction: options.construction.name(),
             factor: Some(args.factor.factor()).filter(|f| matches!(f, Factor::Uniform(_))).map(Factor::value),
             level: args.factor.level,
             pixels: args.factor.pixels,
@@ -249,6 +248,17 @@ struct Picture<'p> {
 }
 
 impl RenderArgs {
+    /// How control points are made; an error if the evaluation does not go with what was asked for.
+    fn construction(&self) -> Result<Construction, CliError> {
+        self.evaluation.construction(&[
+            ("--pixels", self.factor.pixels.is_some()),
+            ("--bend", self.factor.bend.is_some()),
+            ("--cull", self.factor.cull.cull() != Cull::NONE),
+            ("--spacing", self.spacing != Spacing::Equal),
+            ("--displacement", self.displacement.is_given()),
+        ])
+    }
+
     /// The errors to be shown, if any.
     fn error_map(&self, mesh: &ControlMesh, progress: &Progress) -> Result<Option<ErrorMap>, CliError> {
         let Some(quantity) = self.shading.quantity() else {
@@ -384,6 +394,9 @@ impl RenderArgs {
             unsafe { renderer.add_displacement(texture.into()) };
         }
         let model = renderer.add_tables(tables, &mesh.positions_f32(), model_options)?;
+        if model_options.evaluation.needs_segments() {
+            renderer.set_segments(model, self.factor.factor.ceil() as u32)?;
+        }
         let item = DrawItem {
             cull: self.factor.cull.cull(),
             displacement: self.displacement.amount(mesh),

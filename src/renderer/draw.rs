@@ -1,11 +1,13 @@
 //! Recording the draws of a view.
 
+use super::evaluated::Drawn;
 use super::factor::{Cull, Cut, Factor};
 use super::gpu_data::DrawConstants;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::{Error, Evaluation, Geometry, ModelId, Renderer, View, subdivision};
 use crate::gpu::{Domain, tessellated_vertices};
+use crate::table::{TILE_VERTICES, lattice_tiles};
 use ash::vk;
 
 /// One model drawn once.
@@ -106,7 +108,7 @@ impl Renderer {
         let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
         let cut = Cut::new(factor, cull);
         if model.made & cut.bit() == 0 {
-            self.pipelines.make(&model.stages, model.evaluation, cut)?;
+            self.pipelines.make(&model.stages, cut)?;
             model.made |= cut.bit();
         }
         // A factor that is none of a level is told by the draw.
@@ -165,42 +167,78 @@ impl Renderer {
                 }
                 return Ok(());
             }
-            if model.evaluation == Evaluation::Compute {
-                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Lattice }, bound);
-                let push = |group: usize| {
-                    constants.colour = item.colors[model.stages[group].kind as usize];
-                    self.push(cmd, &constants);
-                };
-                return self.cmd_draw_lattice(cmd, model, item.factor, push);
+            let drawn = model.drawn(item.factor)?;
+            match drawn {
+                Drawn::Patches => {}
+                Drawn::Lattice(lattice) => {
+                    constants.set_factor(lattice.segments as f32);
+                    lattice.cmd_bind(device, cmd);
+                }
+                Drawn::Tiles { segments } => constants.set_factor(segments as f32),
+                Drawn::Subdivided { .. } => {}
             }
-            let level = match model.evaluation {
-                Evaluation::Subdivision => Some(subdivision::level(id, item.factor)?),
-                _ => None,
-            };
-            for (&stages, group) in model.stages.iter().zip(model.tables.plan().groups()) {
-                let (kind, spacing) = (stages.kind, stages.spacing);
-                let (geometry, vertices, points) = match level {
-                    Some(level) => (GeometryKey::Subdivision(level), subdivision::vertices(level), 1),
-                    None => {
-                        let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
-                        let vertices = tessellated_vertices(domain, spacing, most, properties.max_tessellation_level);
-                        (GeometryKey::Patches(stages, cut), vertices, stages.input_points())
-                    }
+            for (number, (&stages, group)) in model.stages.iter().zip(model.tables.plan().groups()).enumerate() {
+                let geometry = match drawn {
+                    Drawn::Subdivided { level } => GeometryKey::Subdivision(level),
+                    _ => stages.geometry(cut),
                 };
                 self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
-                constants.colour = item.colors[kind as usize];
+                constants.colour = item.colors[stages.kind as usize];
                 constants.first_corner = group.first_corner as u32;
                 constants.first_patch = group.patches.start as u32;
-                for draw in properties.patch_batch.draws(group.patches.len() as u32, points, vertices) {
-                    if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
-                        constants.patches_per_instance = draw.patches_per_instance;
-                        self.push(cmd, &constants);
+                let patches = group.patches.len() as u32;
+                match drawn {
+                    Drawn::Patches => {
+                        let domain = if stages.kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
+                        let level = properties.max_tessellation_level;
+                        let vertices = tessellated_vertices(domain, stages.spacing, most, level);
+                        self.cmd_draw_batches(cmd, &mut constants, patches, stages.input_points(), vertices);
                     }
-                    device.cmd_draw(cmd, draw.vertex_count, draw.instance_count, 0, draw.first_instance);
+                    Drawn::Subdivided { level } => {
+                        self.cmd_draw_batches(cmd, &mut constants, patches, 1, subdivision::vertices(level));
+                    }
+                    Drawn::Lattice(lattice) => {
+                        self.push(cmd, &constants);
+                        lattice.cmd_draw(device, cmd, number);
+                    }
+                    Drawn::Tiles { segments } => {
+                        let tiles = lattice_tiles(segments);
+                        // No more than can be counted.
+                        let step = u32::MAX / tiles;
+                        for first in (0..patches).step_by(step as usize) {
+                            let first_corner = group.first_corner + first as usize * stages.kind.corners();
+                            constants.first_corner = first_corner as u32;
+                            constants.first_patch = group.patches.start as u32 + first;
+                            let count = step.min(patches - first) * tiles;
+                            self.cmd_draw_batches(cmd, &mut constants, count, 1, TILE_VERTICES);
+                        }
+                    }
                 }
             }
         }
         Ok(())
+    }
+
+    /// Records the draws of so many patches (or tiles of them), in instances as the device likes them. Each has so many points,
+    /// and at most so many vertices when it is evaluated.
+    unsafe fn cmd_draw_batches(
+        &self,
+        cmd: vk::CommandBuffer,
+        constants: &mut DrawConstants,
+        count: u32,
+        points: u32,
+        vertices: u32,
+    ) {
+        for draw in self.context.properties().patch_batch.draws(count, points, vertices) {
+            // SAFETY: as the caller of `cmd_draw` promises.
+            unsafe {
+                if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
+                    constants.patches_per_instance = draw.patches_per_instance;
+                    self.push(cmd, constants);
+                }
+                self.context.device().cmd_draw(cmd, draw.vertex_count, draw.instance_count, 0, draw.first_instance);
+            }
+        }
     }
 
     /// Tells whether the numbers of an item make sense. Gives the largest factor that any edge may have.

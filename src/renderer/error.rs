@@ -1,4 +1,4 @@
-use super::{DisplacementId, Evaluation, Factor, ModelId};
+use super::{Construction, DisplacementId, Evaluation, Factor, ModelId};
 use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 use crate::table::TableError;
@@ -46,22 +46,31 @@ pub enum Error {
     BadEdgeFactor { id: ModelId, edge: usize, factor: f32 },
     #[error("model {}: displacement by {scale} and {bias} is not by finite numbers", id.0)]
     BadDisplacement { id: ModelId, scale: f32, bias: f32 },
-    #[error("model {}: evaluation by compute does not go with {what}: do without, or choose Evaluation::Tessellation", id.0)]
-    NotByCompute { id: ModelId, what: &'static str },
+    #[error("model {}: Evaluation::{evaluation:?} does not go with {what}: do without, or choose Evaluation::Tessellation", id.0)]
+    NotEvaluatedBy { id: ModelId, evaluation: Evaluation, what: &'static str },
+    #[error("model {}: Evaluation::{evaluation:?} goes with Construction::{}, not with {construction:?}", id.0, constructions(*evaluation))]
+    NotConstructedBy { id: ModelId, evaluation: Evaluation, construction: Construction },
     #[error("model {}: Evaluation::{evaluation:?} needs {}: name it in Options::evaluations and make the device with what requirements lists then, or choose another evaluation", id.0, missing.join(" and "))]
     EvaluationNeeds { id: ModelId, evaluation: Evaluation, missing: Vec<&'static str> },
-    #[error("model {}: subdivision does not go with {what}: do without, or choose Evaluation::Tessellation", id.0)]
-    NotBySubdivision { id: ModelId, what: &'static str },
+    #[error("model {}: {factor:?}: Evaluation::{evaluation:?} has one factor for all edges: draw with a uniform one", id.0)]
+    NotUniform { id: ModelId, evaluation: Evaluation, factor: Factor },
     #[error("model {}: {factor:?}: subdivision has uniform factors of 1, 2, 4 and 8, for levels 0 to 3", id.0)]
     NoSuchLevel { id: ModelId, factor: Factor },
-    #[error("model {}: the tessellation stages evaluate it: set ModelOptions::evaluation to Compute", id.0)]
+    #[error("model {}: Evaluation::{evaluation:?} takes its segments from DrawItem::factor: set_segments is for others", id.0)]
+    NoSegments { id: ModelId, evaluation: Evaluation },
+    #[error("model {}: no vertices of it are kept: set ModelOptions::evaluation to Compute", id.0)]
     NotComputed { id: ModelId },
     #[error("model {}: {given} segments: from 1 to {max} are possible along an edge", id.0)]
     BadSegments { id: ModelId, given: u32, max: u32 },
-    #[error("model {}: {factor:?}: it was evaluated with {segments} segments: call set_segments before cmd_prepare, and draw with that number as uniform factor", id.0)]
-    NotEvaluated { id: ModelId, factor: Factor, segments: u32 },
+    #[error("model {}: {factor:?}: its edges have {segments} segments: call set_segments before cmd_prepare, and draw with that number as uniform factor", id.0)]
+    OtherSegments { id: ModelId, factor: Factor, segments: u32 },
     #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
     BadGrid { given: u32, max: u32 },
     #[error("{what} of Options is {given}: it must be at least 1")]
     BadOption { what: &'static str, given: u32 },
+}
+
+fn constructions(evaluation: Evaluation) -> String {
+    let names: Vec<String> = evaluation.constructions().iter().map(|c| format!("{c:?}")).collect();
+    names.join(" and ")
 }

@@ -1,28 +1,42 @@
-//! Models that are evaluated by compute: what the caller sees of them, and their draws.
+//! Models that are not evaluated by the tessellation stages: what they go with, and what the caller sees of them.
 
-use super::lattice::{Lattice, MAX_SEGMENTS, vertex_bytes};
+use super::lattice::{Lattice, vertex_bytes};
 use super::model::Model;
 use super::stages::Sharing;
-use super::{
-    Construction, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Renderer, Retired, RetiredObject,
-};
-use crate::gpu::Spacing;
+use super::subdivision;
+use super::{Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Renderer, Retired, RetiredObject};
+use crate::gpu::{Features, Spacing};
+use crate::table::MAX_SEGMENTS;
 use ash::vk;
 
-/// Tells what a model has that evaluation by compute has not.
-pub(super) fn check_evaluation(id: ModelId, options: &ModelOptions, tables: &ModelTables) -> Result<(), Error> {
-    if options.evaluation != Evaluation::Compute {
+/// Tells what a model has that its evaluation does not go with, or what the device lacks for it.
+pub(super) fn check_evaluation(
+    id: ModelId,
+    options: &ModelOptions,
+    tables: &ModelTables,
+    features: Features,
+) -> Result<(), Error> {
+    let ModelOptions { evaluation, construction, .. } = *options;
+    let missing = features.missing(evaluation.features());
+    if !missing.is_empty() {
+        return Err(Error::EvaluationNeeds { id, evaluation, missing });
+    }
+    if !evaluation.constructions().contains(&construction) {
+        return Err(Error::NotConstructedBy { id, evaluation, construction });
+    }
+    if evaluation == Evaluation::Tessellation {
         return Ok(());
     }
     let what = match tables.sharing() {
-        _ if tables.construction() != Construction::Cached => "constructions other than Construction::Cached",
         Sharing::Displacement => "displacement",
         Sharing::Normals => "shared normals",
         Sharing::Positions if tables.edges().is_some() => "factors of edges",
+        // It has no spacing.
+        Sharing::Positions if evaluation == Evaluation::Subdivision => return Ok(()),
         Sharing::Positions if options.spacing != Spacing::Equal => "fractional spacing",
         Sharing::Positions => return Ok(()),
     };
-    Err(Error::NotByCompute { id, what })
+    Err(Error::NotEvaluatedBy { id, evaluation, what })
 }
 
 /// The vertices of a model that is evaluated by compute, for your own use: for acceleration structures, or draws without
@@ -46,19 +60,20 @@ pub struct EvaluatedVertices {
 }
 
 impl Renderer {
-    /// Sets how many segments every edge of a model has, which is [`Evaluation::Compute`]: from the next
+    /// Sets how many segments every edge of a model has, where [`Evaluation::needs_segments`]: from the next
     /// [`Renderer::cmd_prepare`] on, until others are set. Draws name the same number as their [`Factor::Uniform`].
     ///
-    /// Takes memory for the vertices, (n + 1)² a quad, and lets that of the segments before go when every frame has been
-    /// prepared again. The number that is set already costs nothing.
+    /// Takes memory for the indices of a patch, and for the vertices that compute evaluates, (n + 1)² a quad; lets that of the
+    /// segments before go when every frame has been prepared again. The number that is set already costs nothing.
     ///
     /// # Errors
-    /// [`Error::NoSuchModel`]; [`Error::NotComputed`]; [`Error::BadSegments`] unless from 1 to 1024; [`Error::TableTooLarge`]
+    /// [`Error::NoSuchModel`]; [`Error::NoSegments`]; [`Error::BadSegments`] unless from 1 to 1024; [`Error::TableTooLarge`]
     /// if the vertices are more than a shader of the device can see. The model is as it was before.
     pub fn set_segments(&mut self, id: ModelId, segments: u32) -> Result<(), Error> {
         let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
-        if model.evaluation != Evaluation::Compute {
-            return Err(Error::NotComputed { id });
+        let evaluation = model.evaluation;
+        if !evaluation.needs_segments() {
+            return Err(Error::NoSegments { id, evaluation });
         }
         if !(1..=MAX_SEGMENTS).contains(&segments) {
             return Err(Error::BadSegments { id, given: segments, max: MAX_SEGMENTS });
@@ -66,7 +81,7 @@ impl Renderer {
         if model.lattice.as_ref().is_some_and(|lattice| lattice.segments == segments) {
             return Ok(());
         }
-        let lattice = Lattice::new(&self.pipelines.lattice, id, &model.tables.plan, segments)?;
+        let lattice = Lattice::new(&self.pipelines.lattice, id, evaluation, &model.tables.plan, segments)?;
         if let Some(before) = model.set_lattice(lattice) {
             let frames = vec![true; self.options.frames_in_flight as usize];
             self.retired.push(Retired { frames, _what: RetiredObject::Lattice(Box::new(before)) });
@@ -83,44 +98,55 @@ impl Renderer {
         if model.evaluation != Evaluation::Compute {
             return Err(Error::NotComputed { id });
         }
-        Ok(model.lattice.as_ref().map(|lattice| EvaluatedVertices {
-            buffer: lattice.vertices.raw(),
-            size: lattice.vertices.size(),
+        let kept = model.lattice.as_ref().and_then(|lattice| Some((lattice, lattice.vertices.as_ref()?)));
+        Ok(kept.map(|(lattice, vertices)| EvaluatedVertices {
+            buffer: vertices.buffer.raw(),
+            size: vertices.buffer.size(),
             stride: vertex_bytes(self.options.texcoords),
             segments: lattice.segments,
         }))
     }
+}
 
-    /// Records the draws of a surface that was evaluated.
-    ///
-    /// # Safety
-    /// As [`Renderer::cmd_draw`]; the pipeline is bound, and `push` records the constants of a group.
-    pub(super) unsafe fn cmd_draw_lattice(
-        &self,
-        cmd: vk::CommandBuffer,
-        model: &Model,
-        factor: Factor,
-        mut push: impl FnMut(usize),
-    ) -> Result<(), Error> {
-        let segments = model.lattice.as_ref().map_or(0, |lattice| lattice.segments);
-        let fits = |lattice: &&Lattice| matches!(factor, Factor::Uniform(f) if f.ceil() == lattice.segments as f32);
-        let lattice = model.lattice.as_ref().filter(fits);
-        let lattice = lattice.ok_or(Error::NotEvaluated { id: model.id, factor, segments })?;
-        if !lattice.ready {
-            return Err(Error::NotPrepared { id: model.id });
-        }
-        let device = self.context.device();
-        // SAFETY: as the caller promises.
-        unsafe {
-            device.cmd_bind_vertex_buffers(cmd, 0, &[lattice.vertices.raw()], &[0]);
-            device.cmd_bind_index_buffer(cmd, lattice.indices.raw(), 0, vk::IndexType::UINT32);
-            for (number, group) in lattice.groups.iter().enumerate() {
-                push(number);
-                for (count, first, offset) in group.draws() {
-                    device.cmd_draw_indexed(cmd, count, 1, first, offset, 0);
-                }
+/// What the surface of a model is drawn from.
+#[derive(Clone, Copy)]
+pub(super) enum Drawn<'m> {
+    /// Patches, for the tessellation stages.
+    Patches,
+    Lattice(&'m Lattice),
+    /// Tiles of patches, for the geometry shader.
+    Tiles {
+        segments: u32,
+    },
+    /// Faces, subdivided so often.
+    Subdivided {
+        level: u32,
+    },
+}
+
+impl Model {
+    /// What a draw with this factor is of.
+    pub(super) fn drawn(&self, factor: Factor) -> Result<Drawn<'_>, Error> {
+        let (id, evaluation) = (self.id, self.evaluation);
+        let asked = match factor {
+            Factor::Uniform(factor) => Some(factor.ceil() as u32),
+            _ => None,
+        };
+        if evaluation == Evaluation::Tessellation {
+            Ok(Drawn::Patches)
+        } else if evaluation == Evaluation::Subdivision {
+            Ok(Drawn::Subdivided { level: subdivision::level(id, factor)? })
+        } else if evaluation.needs_segments() {
+            let segments = self.lattice.as_ref().map_or(0, |lattice| lattice.segments);
+            let lattice = self.lattice.as_ref().filter(|lattice| asked == Some(lattice.segments));
+            let lattice = lattice.ok_or(Error::OtherSegments { id, factor, segments })?;
+            if lattice.needs_copies() { Err(Error::NotPrepared { id }) } else { Ok(Drawn::Lattice(lattice)) }
+        } else {
+            let segments = asked.ok_or(Error::NotUniform { id, evaluation, factor })?;
+            if segments > MAX_SEGMENTS {
+                return Err(Error::BadSegments { id, given: segments, max: MAX_SEGMENTS });
             }
+            Ok(Drawn::Tiles { segments })
         }
-        Ok(())
     }
 }

@@ -77,6 +77,10 @@ impl DrawConstants {
             ..Self::zeroed()
         }
     }
+
+    pub(crate) fn set_factor(&mut self, factor: f32) {
+        self.normal_transform[0][3] = factor;
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
-//! Evaluation by compute: pipelines, vertices and dispatches.
+//! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
 
 use super::model::{device_buffer, upload_buffer};
 use super::stages::PatchStages;
-use super::{Error, ModelId};
+use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{
     Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, VkResultExt,
     descriptor_set_layout, pipeline_layout, shaders,
@@ -13,16 +13,14 @@ use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Vertices of a patch that a workgroup takes. GLSL twin: `GROUP_VERTICES` in `glsl/lib/lattice.glsl`.
+/// Vertices of a patch that a workgroup takes. GLSL twin: `GROUP_VERTICES` in `glsl/evaluate/lattice.comp`.
 const GROUP_VERTICES: u32 = 256;
 /// Every Vulkan device has as many workgroups along an axis.
 const MAX_GROUPS: u32 = 65_535;
-/// What the shader's arithmetic is right for.
-pub(super) const MAX_SEGMENTS: u32 = 1024;
-/// About as many vertices are drawn with the same indices, of one patch at least.
+/// About as many evaluated vertices are drawn with the same indices, of one patch at least.
 const BLOCK_VERTICES: u64 = 65_536;
 
-/// The push constants of a dispatch. GLSL twin: `Patches` in `glsl/lib/lattice.glsl`.
+/// The push constants of a dispatch. GLSL twin: `Patches` in `glsl/evaluate/lattice.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Dispatch {
@@ -70,7 +68,7 @@ impl LatticePipelines {
         if self.made.contains_key(&stages) {
             return Ok(());
         }
-        let name = stages.lattice(self.texcoords);
+        let name = stages.evaluation(Capture::Off, self.texcoords);
         let stride = [Specialization::uint(3, stages.stride)];
         let desc = ComputePipelineDesc {
             name: &format!("subdiv {name}"),
@@ -85,56 +83,54 @@ impl LatticePipelines {
     }
 }
 
-/// The vertices of a model's patches, with as many segments along every side.
+/// How the patches of a model are drawn with as many segments along every side.
 pub(super) struct Lattice {
     pub segments: u32,
-    pub vertices: Buffer,
-    pub indices: Buffer,
-    /// How the patches of each group are drawn, in the order of the plan.
-    pub groups: Vec<LatticeGroup>,
-    /// Whether the vertices were evaluated.
-    pub ready: bool,
+    /// Those that compute evaluates.
+    pub vertices: Option<LatticeVertices>,
+    indices: Buffer,
+    /// In the order of the plan.
+    groups: Vec<LatticeGroup>,
     staged: Option<Buffer>,
+}
+
+/// Evaluated vertices, group by group.
+pub(super) struct LatticeVertices {
+    pub buffer: Buffer,
     set: vk::DescriptorSet,
     _pool: Owned<vk::DescriptorPool>,
 }
 
-/// Patches whose vertices follow one another, drawn block by block.
+/// Patches of one kind.
 #[derive(Clone, Copy)]
-pub(super) struct LatticeGroup {
-    first_vertex: u32,
-    vertices: u32,
-    first_index: u32,
-    indices: u32,
+struct LatticeGroup {
     patches: u32,
+    /// Vertices of a patch, and the first of all.
+    vertices: u32,
+    first_vertex: u32,
+    /// Indices of a patch, and the first.
+    indices: u32,
+    first_index: u32,
+    /// Patches that there are indices for.
     block: u32,
-}
-
-impl LatticeGroup {
-    /// The draws: how many indices, from which, and what is added to them.
-    pub(super) fn draws(self) -> impl Iterator<Item = (u32, u32, i32)> {
-        (0..self.patches).step_by(self.block as usize).map(move |patch| {
-            let count = self.indices * self.block.min(self.patches - patch);
-            (count, self.first_index, (self.first_vertex + patch * self.vertices) as i32)
-        })
-    }
 }
 
 impl Lattice {
     pub(super) fn new(
         pipelines: &LatticePipelines,
         id: ModelId,
+        evaluation: Evaluation,
         plan: &PatchPlan,
         segments: u32,
     ) -> Result<Self, Error> {
         let context = &pipelines.context;
+        let computed = evaluation == Evaluation::Compute;
         let max = context.properties().max_storage_buffer_range;
         let counts = plan.groups().iter().map(|g| g.patches.len() as u64 * lattice_vertices(g.kind, segments));
         let bytes = counts.sum::<u64>() * u64::from(vertex_bytes(pipelines.texcoords));
-        if bytes > max {
+        if computed && bytes > max {
             return Err(Error::TableTooLarge { id, table: "evaluated vertices", bytes, max });
         }
-        // What fits into the buffer can be counted by 32 bits.
         let (mut groups, mut indices) = (Vec::new(), Vec::new());
         let mut first_vertex = 0;
         let mut blocks: [Option<(u32, u32)>; 2] = [None; 2];
@@ -144,27 +140,26 @@ impl Lattice {
             let (first_index, block) = *blocks[usize::from(kind.is_triangular())].get_or_insert_with(|| {
                 let alike = plan.groups().iter().filter(|g| g.kind.is_triangular() == kind.is_triangular());
                 let most = alike.map(|g| g.patches.len() as u64).max().unwrap_or(1);
-                let block = (BLOCK_VERTICES / vertices).clamp(1, most);
+                let block = if computed { (BLOCK_VERTICES / vertices).clamp(1, most) } else { 1 };
                 let (first, of_patch) = (indices.len() as u32, lattice_indices(kind, segments));
                 let starts = (0..block).map(|patch| (patch * vertices) as u32);
                 indices.extend(starts.flat_map(|start| of_patch.iter().map(move |i| start + i)));
                 (first, block as u32)
             });
-            let of_patch = 3 * lattice_triangles(kind, segments) as u32;
-            let vertices = vertices as u32;
-            groups.push(LatticeGroup { first_vertex, vertices, first_index, indices: of_patch, patches, block });
-            first_vertex += patches * vertices;
+            let (vertices, of_patch) = (vertices as u32, 3 * lattice_triangles(kind, segments) as u32);
+            groups.push(LatticeGroup { patches, vertices, first_vertex, indices: of_patch, first_index, block });
+            if computed {
+                // What fits into the buffer can be counted by 32 bits.
+                first_vertex += patches * vertices;
+            }
         }
-        use vk::BufferUsageFlags as Usage;
+        let vertices = computed.then(|| LatticeVertices::new(pipelines, bytes)).transpose()?;
         // A buffer of no bytes is no buffer.
-        let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC;
-        let vertices = device_buffer(context, "subdiv vertices", bytes.max(4), usage)?;
         let index_bytes = (4 * indices.len() as u64).max(4);
         let mut staged = upload_buffer(context, "subdiv indices to copy", index_bytes)?;
         staged.write(0, &indices)?;
-        let indices = device_buffer(context, "subdiv indices", index_bytes, Usage::INDEX_BUFFER)?;
-        let (pool, set) = vertex_set(context, pipelines.set_layout.raw(), &vertices)?;
-        Ok(Self { segments, vertices, indices, groups, ready: false, staged: Some(staged), set, _pool: pool })
+        let indices = device_buffer(context, "subdiv indices", index_bytes, vk::BufferUsageFlags::INDEX_BUFFER)?;
+        Ok(Self { segments, vertices, indices, groups, staged: Some(staged) })
     }
 
     pub(super) fn needs_copies(&self) -> bool {
@@ -178,7 +173,8 @@ impl Lattice {
 
     /// Bytes on the device, and on the host.
     pub(super) fn bytes(&self) -> [u64; 2] {
-        [self.vertices.size() + self.indices.size(), self.staged.as_ref().map_or(0, Buffer::size)]
+        let vertices = self.vertices.as_ref().map_or(0, |vertices| vertices.buffer.size());
+        [vertices + self.indices.size(), self.staged.as_ref().map_or(0, Buffer::size)]
     }
 
     /// Records the dispatches for all patches of a model, whose set and stages these are.
@@ -187,18 +183,18 @@ impl Lattice {
     /// `cmd` is being recorded, outside rendering, after what makes the control points; the pipelines of `stages` were
     /// made.
     pub(super) unsafe fn cmd_evaluate(
-        &mut self,
+        &self,
         pipelines: &LatticePipelines,
         cmd: vk::CommandBuffer,
         model: vk::DescriptorSet,
         stages: &[PatchStages],
         plan: &PatchPlan,
     ) {
-        self.ready = true;
+        let Some(vertices) = &self.vertices else { return };
         let (device, layout) = (pipelines.context.device(), pipelines.layout.raw());
         let point = vk::PipelineBindPoint::COMPUTE;
         // SAFETY: as the caller promises.
-        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model, self.set], &[]) };
+        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model, vertices.set], &[]) };
         for ((&stages, group), lattice) in stages.iter().zip(plan.groups()).zip(&self.groups) {
             let Some(pipeline) = pipelines.made.get(&stages) else { continue };
             // SAFETY: as the caller promises.
@@ -220,6 +216,49 @@ impl Lattice {
                 }
             }
         }
+    }
+
+    /// Binds what all groups are drawn from.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded.
+    pub(super) unsafe fn cmd_bind(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
+        // SAFETY: as the caller promises.
+        unsafe {
+            device.cmd_bind_index_buffer(cmd, self.indices.raw(), 0, vk::IndexType::UINT32);
+            if let Some(vertices) = &self.vertices {
+                device.cmd_bind_vertex_buffers(cmd, 0, &[vertices.buffer.raw()], &[0]);
+            }
+        }
+    }
+
+    /// Records the draws of a group.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, inside rendering, after [`Lattice::cmd_bind`], with a pipeline for it.
+    pub(super) unsafe fn cmd_draw(&self, device: &ash::Device, cmd: vk::CommandBuffer, group: usize) {
+        let LatticeGroup { patches, vertices, first_vertex, indices, first_index, block } = self.groups[group];
+        if self.vertices.is_none() {
+            // SAFETY: as the caller promises.
+            unsafe { device.cmd_draw_indexed(cmd, indices, patches, first_index, 0, 0) };
+            return;
+        }
+        for patch in (0..patches).step_by(block as usize) {
+            let count = indices * block.min(patches - patch);
+            let offset = (first_vertex + patch * vertices) as i32;
+            // SAFETY: as the caller promises.
+            unsafe { device.cmd_draw_indexed(cmd, count, 1, first_index, offset, 0) };
+        }
+    }
+}
+
+impl LatticeVertices {
+    fn new(pipelines: &LatticePipelines, bytes: u64) -> Result<Self, GpuError> {
+        use vk::BufferUsageFlags as Usage;
+        let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC;
+        let buffer = device_buffer(&pipelines.context, "subdiv vertices", bytes.max(4), usage)?;
+        let (pool, set) = vertex_set(&pipelines.context, pipelines.set_layout.raw(), &buffer)?;
+        Ok(Self { buffer, set, _pool: pool })
     }
 }
 

@@ -15,6 +15,9 @@
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
 //! | compute, cached | vertices and weights of the patches, positions | control points, if the vertices moved |
 //! | compute, evaluation | control points | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
+//! | GS, two passes | as compute, cached | control points of models that are [`Evaluation::GeometryTwoPass`], if the vertices moved |
+//! | VS, instanced | control points | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
+//! | GS | vertices and weights of the patch, positions; or control points | strips of models that are [`Evaluation::Geometry`], which have only VS (the number of a tile) and FS besides |
 //! | VS, two-stage | patch corners, rings and their weights, positions | limit point and tangent frame, for each patch corner |
 //! | VS, stencil and cached | nothing | the number of the patch, for each patch |
 //! | TCS, two-stage | the frames of its corners, their rings, positions | control points, factors |
@@ -27,6 +30,7 @@
 //! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
 
 mod cached;
+mod conversion;
 mod displacement;
 mod draw;
 mod error;
@@ -35,6 +39,7 @@ mod factor;
 mod gpu_data;
 mod lattice;
 mod model;
+mod model_options;
 mod options;
 mod pipelines;
 mod stages;
@@ -48,20 +53,19 @@ pub use draw::DrawItem;
 pub use error::Error;
 pub use evaluated::EvaluatedVertices;
 pub use factor::{Cull, Factor};
-pub use options::{
-    ColorEncoding, Construction, Evaluation, Fragment, Geometry, ModelOptions, Options, Pass, Requirements, Style,
-    Target, check, requirements,
-};
+pub use model_options::{Construction, Evaluation, ModelOptions};
+pub use options::{ColorEncoding, Fragment, Geometry, Options, Pass, Requirements, Style, Target, check, requirements};
 pub use tables::{Edges, ModelTables, TableBytes};
 pub use view::{MeasuredFrom, View};
 
 pub(crate) use pipelines::Capture;
+#[cfg(feature = "headless")]
+pub(crate) use pipelines::STAGES;
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
-    pipelines::STAGES,
     stages::spaced,
-    subdivision::{level as subdivision_level, vertices as subdivision_vertices},
+    subdivision::level as subdivision_level,
 };
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
@@ -90,7 +94,7 @@ pub struct MemoryUsage {
     pub positions: u64,
     /// Control points that the cached construction keeps, on the device.
     pub control_points: u64,
-    /// Vertices that were evaluated by compute, and their indices, on the device.
+    /// Vertices that were evaluated by compute, and indices of lattices, on the device.
     pub vertices: u64,
     /// Edges and faces of control meshes on the device, if a style draws them.
     pub control_meshes: u64,
@@ -305,8 +309,7 @@ impl Renderer {
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
-    /// [`Construction::Cached`]. The device is done with what was
-    /// recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue.
+    /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]). The device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue.
     pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         self.views_drawn[frame_index as usize] = 0;
@@ -319,7 +322,7 @@ impl Renderer {
             return Ok(());
         }
         let device = self.context.device();
-        let readers = vk::PipelineStageFlags::VERTEX_INPUT | pipelines::shader_readers(self.context.features());
+        let readers = vk::PipelineStageFlags::VERTEX_INPUT | self.shader_readers();
         let transfer = vk::PipelineStageFlags::TRANSFER;
         let none = vk::DependencyFlags::empty();
         let after_copies = [vk::MemoryBarrier::default()
@@ -356,6 +359,20 @@ impl Renderer {
         let mut usage = MemoryUsage { views: self.views.size(), ..MemoryUsage::default() };
         self.models.values().for_each(|model| model.add_memory(&mut usage));
         usage
+    }
+
+    /// The shader stages that read what models keep in buffers.
+    fn shader_readers(&self) -> vk::PipelineStageFlags {
+        use vk::PipelineStageFlags as Stage;
+        let mut readers = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER;
+        if self.context.features().geometry {
+            readers |= Stage::GEOMETRY_SHADER;
+        }
+        // The queue may be one that does not compute.
+        if self.models.values().any(Model::computes) {
+            readers |= Stage::COMPUTE_SHADER;
+        }
+        readers
     }
 
     fn model(&self, id: ModelId) -> Result<&Model, Error> {

@@ -1,12 +1,10 @@
 //! A model on the GPU.
 
-use super::cached::CachedPipelines;
 use super::evaluated::check_evaluation;
 use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::{MODEL_BUFFERS, Pipelines};
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
-use super::subdivision::check_subdivision;
 use super::{
     Construction, DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables,
     Options,
@@ -37,7 +35,7 @@ pub(super) struct Model {
     /// What the cached construction keeps.
     control_points: Option<Buffer>,
     pub evaluation: Evaluation,
-    /// What evaluation by compute makes, once it is known how finely.
+    /// What is drawn instead of patches, once it is known how finely.
     pub lattice: Option<Lattice>,
     /// Whether control points and vertices are out of date.
     stale: bool,
@@ -73,8 +71,7 @@ impl Model {
         control: &[[f32; 3]],
         map: DisplacementMap,
     ) -> Result<Self, Error> {
-        check_evaluation(id, model_options, &tables)?;
-        check_subdivision(id, model_options, &tables, context.features())?;
+        check_evaluation(id, model_options, &tables, context.features())?;
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
         let check = |table: &'static str, bytes: u64| {
@@ -159,11 +156,11 @@ impl Model {
         buffers.push(corner_factors.as_ref().map_or(positions.descriptor(), Streamed::descriptor));
         buffers.push(control_points.as_ref().map_or(positions.descriptor(), Buffer::descriptor));
         write_set(context, set, &buffers, map);
-        let ModelOptions { construction, spacing, .. } = *model_options;
+        let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride, has_speakers) = (tables.sharing(), tables.cached_stride(), tables.has_speakers());
-        let stages = |g: &PatchGroup| {
-            let (scheme, kind) = (g.scheme, g.kind);
-            PatchStages { scheme, kind, construction, spacing, sharing, has_speakers, stride }
+        let stages = |group: &PatchGroup| {
+            let PatchGroup { scheme, kind, .. } = *group;
+            PatchStages { scheme, kind, construction, evaluation, spacing, sharing, has_speakers, stride }
         };
         Ok(Self {
             id,
@@ -177,7 +174,7 @@ impl Model {
             corner_factors,
             largest_edge_factor: 1.0,
             control_points,
-            evaluation: model_options.evaluation,
+            evaluation,
             lattice: None,
             stale: false,
             control,
@@ -233,6 +230,11 @@ impl Model {
         self.control_points.is_some() && (self.stale || self.needs_copies(frame))
     }
 
+    /// Whether compute shaders make something of it.
+    pub(super) fn computes(&self) -> bool {
+        self.control_points.is_some() && self.evaluation != Evaluation::GeometryTwoPass
+    }
+
     /// Has the control points computed anew in the next frame, even though nothing moved.
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(super) fn forget_points(&mut self) {
@@ -261,19 +263,27 @@ impl Model {
     /// As [`Lattice::cmd_evaluate`].
     pub(super) unsafe fn cmd_evaluate(&mut self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
         self.stale = false;
-        if let Some(lattice) = &mut self.lattice {
+        if let Some(lattice) = &self.lattice {
             // SAFETY: as the caller promises.
             unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set, &self.stages, &self.tables.plan) };
         }
     }
 
-    /// Records the computation of the control points.
+    /// Records what makes the control points.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after the copies; `pipelines` have those of the model's kinds.
-    pub(super) unsafe fn cmd_compute(&self, pipelines: &CachedPipelines, cmd: vk::CommandBuffer) {
+    pub(super) unsafe fn cmd_construct(&self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
+        let (set, stages, plan) = (self.set, &self.stages, &self.tables.plan);
         // SAFETY: as the caller promises.
-        unsafe { pipelines.cmd_compute(cmd, self.set, &self.stages, &self.tables.plan) };
+        unsafe {
+            match &pipelines.conversion {
+                Some(conversion) if self.evaluation == Evaluation::GeometryTwoPass => {
+                    conversion.cmd_convert(cmd, set, stages, plan);
+                }
+                _ => pipelines.cached.cmd_compute(cmd, set, stages, plan),
+            }
+        }
     }
 
     /// Records the copies that are due, and gives away the staging buffers to be kept until the frame is done.

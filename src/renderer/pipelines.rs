@@ -1,13 +1,14 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
 use super::cached::CachedPipelines;
+use super::conversion::Conversion;
 use super::factor::Cut;
 use super::lattice::{LatticePipelines, vertex_bytes};
 use super::stages::{PatchStages, Sharing, spaced};
 use super::subdivision;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
-    DeviceContext, Features, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
+    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
     descriptor_set_layout, pipeline_layout, shaders,
 };
 use ash::vk;
@@ -40,10 +41,10 @@ pub(super) struct PipelineKey {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum GeometryKey {
-    /// Of draws with these flags ([`Cut`]).
+    /// Of draws with these flags ([`Cut`]), if they are of the tessellation stages.
     Patches(PatchStages, Cut),
-    /// Patches of all kinds that were evaluated by compute.
-    Lattice,
+    /// Patches of all kinds that were evaluated before.
+    Evaluated,
     /// Faces that are subdivided this many times.
     Subdivision(u32),
     Control,
@@ -63,6 +64,8 @@ pub(super) struct Pipelines {
     pub layout: Owned<vk::PipelineLayout>,
     /// For what the cached construction computes.
     pub cached: CachedPipelines,
+    /// For the first of two passes, once a model wants it.
+    pub conversion: Option<Conversion>,
     /// For what evaluation by compute does.
     pub lattice: LatticePipelines,
     made: HashMap<PipelineKey, Owned<vk::Pipeline>>,
@@ -76,13 +79,6 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::GEOMETRY.as_raw()
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
-
-/// The stages that read what models keep in buffers, on a device with these features.
-pub(super) fn shader_readers(features: Features) -> vk::PipelineStageFlags {
-    use vk::PipelineStageFlags as Stage;
-    let all = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER | Stage::COMPUTE_SHADER;
-    if features.geometry { all | Stage::GEOMETRY_SHADER } else { all }
-}
 
 /// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
 /// points. The displacement map comes after them.
@@ -121,6 +117,7 @@ impl Pipelines {
             model_layout,
             layout,
             cached,
+            conversion: None,
             lattice,
             made: HashMap::new(),
         })
@@ -135,11 +132,17 @@ impl Pipelines {
     }
 
     /// Makes what draws of these patches need in every style.
-    pub(super) fn make(&mut self, patches: &[PatchStages], evaluation: Evaluation, cut: Cut) -> Result<(), GpuError> {
-        for stages in patches.iter().filter(|stages| stages.construction == Construction::Cached) {
-            self.cached.make(*stages)?;
-            if evaluation == Evaluation::Compute {
-                self.lattice.make(*stages)?;
+    pub(super) fn make(&mut self, patches: &[PatchStages], cut: Cut) -> Result<(), GpuError> {
+        // Subdivision has no patches, and pipelines by level.
+        let patches = || patches.iter().filter(|stages| stages.evaluation != Evaluation::Subdivision);
+        for &stages in patches() {
+            match (stages.construction, stages.evaluation) {
+                (Construction::Cached, Evaluation::GeometryTwoPass) => self.conversion()?.make(stages)?,
+                (Construction::Cached, _) => self.cached.make(stages)?,
+                _ => {}
+            }
+            if stages.evaluation == Evaluation::Compute {
+                self.lattice.make(stages)?;
             }
         }
         for style in 0..self.styles.len() {
@@ -147,15 +150,8 @@ impl Pipelines {
                 self.make_one(PipelineKey { style, geometry: GeometryKey::Control })?;
                 continue;
             }
-            if evaluation == Evaluation::Compute {
-                self.make_one(PipelineKey { style, geometry: GeometryKey::Lattice })?;
-                continue;
-            }
-            if evaluation == Evaluation::Subdivision {
-                continue;
-            }
-            for &stages in patches {
-                self.make_one(PipelineKey { style, geometry: GeometryKey::Patches(stages, cut) })?;
+            for stages in patches() {
+                self.make_one(PipelineKey { style, geometry: stages.geometry(cut) })?;
             }
         }
         Ok(())
@@ -163,11 +159,20 @@ impl Pipelines {
 
     /// Makes what draws of subdivided faces need in every style of the surface.
     pub(super) fn make_subdivision(&mut self, level: u32) -> Result<(), GpuError> {
-        let styles = 0..self.styles.len();
-        for style in styles.filter(|&style| self.styles[style].geometry == Geometry::Surface).collect::<Vec<_>>() {
-            self.make_one(PipelineKey { style, geometry: GeometryKey::Subdivision(level) })?;
+        for style in 0..self.styles.len() {
+            if self.styles[style].geometry == Geometry::Surface {
+                self.make_one(PipelineKey { style, geometry: GeometryKey::Subdivision(level) })?;
+            }
         }
         Ok(())
+    }
+
+    fn conversion(&mut self) -> Result<&mut Conversion, GpuError> {
+        let made = match self.conversion.take() {
+            Some(made) => made,
+            None => Conversion::new(&self.context, [self.view_layout.raw(), self.model_layout.raw()], self.cache)?,
+        };
+        Ok(self.conversion.insert(made))
     }
 
     fn make_one(&mut self, key: PipelineKey) -> Result<(), GpuError> {
@@ -185,7 +190,7 @@ impl Pipelines {
                 ];
                 self.create(&name, key, &stages, 0)?
             }
-            GeometryKey::Lattice => {
+            GeometryKey::Evaluated => {
                 let name = format!("subdiv style {} of evaluated vertices", key.style);
                 let vertex = match self.texcoords {
                     true => shaders::EVALUATE_LATTICE_VERT_TEXCOORD,
@@ -206,27 +211,53 @@ impl Pipelines {
             }
             GeometryKey::Patches(patch, cut) => {
                 let name = format!("subdiv style {} {patch:?}", key.style);
-                let vertex = self.find(&patch.vertex(self.capture))?;
-                let control = self.find(&patch.control(self.capture, self.texcoords))?;
+                let fragment = fragment(style, patch.sharing, &encode);
                 let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
-                let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
-                let evaluation = spaced(evaluation, spacing);
                 let most = self.context.properties().max_tessellation_level as f32;
                 let constants = patch.specialization(cut.flags(), most);
-                let mut stages = vec![
-                    Shader::vertex(vertex).specialized(&constants),
-                    Shader::tess_control(control).specialized(&constants),
-                    Shader::tess_evaluation(&evaluation),
-                ];
-                if self.capture == Capture::Triangles {
-                    stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
+                match patch.evaluation {
+                    Evaluation::Tessellation => {
+                        self.create_tessellating(&name, key, patch, &constants, evaluation, fragment)?
+                    }
+                    Evaluation::Geometry => {
+                        let tile = Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT);
+                        let evaluation = Shader::geometry(evaluation).specialized(&constants);
+                        self.create(&name, key, &[tile, evaluation, fragment], 0)?
+                    }
+                    _ => {
+                        let evaluation = Shader::vertex(evaluation).specialized(&constants);
+                        self.create(&name, key, &[evaluation, fragment], 0)?
+                    }
                 }
-                stages.push(fragment(style, patch.sharing, &encode));
-                self.create(&name, key, &stages, patch.input_points())?
             }
         };
         self.made.insert(key, pipeline);
         Ok(())
+    }
+
+    fn create_tessellating(
+        &self,
+        name: &str,
+        key: PipelineKey,
+        patch: PatchStages,
+        constants: &[Specialization],
+        evaluation: &[u32],
+        fragment: Shader,
+    ) -> Result<Owned<vk::Pipeline>, GpuError> {
+        let vertex = self.find(&patch.vertex(self.capture))?;
+        let control = self.find(&patch.control(self.capture, self.texcoords))?;
+        let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
+        let evaluation = spaced(evaluation, spacing);
+        let mut stages = vec![
+            Shader::vertex(vertex).specialized(constants),
+            Shader::tess_control(control).specialized(constants),
+            Shader::tess_evaluation(&evaluation),
+        ];
+        if self.capture == Capture::Triangles {
+            stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
+        }
+        stages.push(fragment);
+        self.create(name, key, &stages, patch.input_points())
     }
 
     /// A shader by its name: the caller's own, or ours.
@@ -242,7 +273,7 @@ impl Pipelines {
         patch_control_points: u32,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
         let style = &self.styles[key.style];
-        let lattice = key.geometry == GeometryKey::Lattice;
+        let evaluated = key.geometry == GeometryKey::Evaluated;
         let target = match &self.target.pass {
             Pass::Dynamic { color, depth, stencil, view_mask } => {
                 RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: *view_mask }
@@ -252,7 +283,14 @@ impl Pipelines {
             }
         };
         let stages = if style.rasterizer_discard { &stages[..stages.len() - 1] } else { stages };
-        let lines = style.geometry == Geometry::ControlEdges;
+        let topology = match key.geometry {
+            GeometryKey::Subdivision(_)
+            | GeometryKey::Patches(PatchStages { evaluation: Evaluation::Geometry, .. }, _) => {
+                vk::PrimitiveTopology::POINT_LIST
+            }
+            _ if style.geometry == Geometry::ControlEdges => vk::PrimitiveTopology::LINE_LIST,
+            _ => vk::PrimitiveTopology::TRIANGLE_LIST,
+        };
         let stride = vertex_bytes(self.texcoords);
         let bindings = [vk::VertexInputBindingDescription { binding: 0, stride, ..Default::default() }];
         let attributes =
@@ -263,13 +301,9 @@ impl Pipelines {
         let attributes: Vec<_> = attributes.filter(|attribute| attribute.offset < stride).collect();
         let desc = GraphicsPipelineDesc {
             patch_control_points,
-            vertex_bindings: if lattice { &bindings } else { &[] },
-            vertex_attributes: if lattice { &attributes } else { &[] },
-            topology: match key.geometry {
-                GeometryKey::Subdivision(_) => vk::PrimitiveTopology::POINT_LIST,
-                _ if lines => vk::PrimitiveTopology::LINE_LIST,
-                _ => vk::PrimitiveTopology::TRIANGLE_LIST,
-            },
+            vertex_bindings: if evaluated { &bindings } else { &[] },
+            vertex_attributes: if evaluated { &attributes } else { &[] },
+            topology,
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,
             front_face: style.front_face,

@@ -1,16 +1,19 @@
 //! Which shaders a patch is drawn with: found by name, so that a scheme adds files and its arm in [`files`].
 
-use super::{Capture, Construction};
+use super::factor::Cut;
+use super::pipelines::GeometryKey;
+use super::{Capture, Construction, Cull, Evaluation, Factor};
 use crate::gpu::{Spacing, Specialization};
 use crate::patch::Scheme;
 use crate::topology::PatchKind;
 
-/// What tells the tessellation stages of a patch apart.
+/// What tells the shaders of a patch apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct PatchStages {
     pub scheme: Scheme,
     pub kind: PatchKind,
     pub construction: Construction,
+    pub evaluation: Evaluation,
     pub spacing: Spacing,
     pub sharing: Sharing,
     /// Whether any corner has another ring than its own speak for what it shares.
@@ -41,7 +44,8 @@ impl Sharing {
     }
 }
 
-/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` (and `_.comp`) of a kind of patch.
+/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch; the latter is also its name in
+/// `glsl/lib/kinds.glsl`.
 fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
     match (kind, scheme) {
         (PatchKind::Regular, _) => ["REGULAR", "BICUBIC"],
@@ -61,6 +65,21 @@ impl PatchStages {
             Construction::TwoStage => self.kind.corners() as u32,
             Construction::Stencil | Construction::Cached => 1,
         }
+    }
+
+    /// What tells their pipelines apart in one style.
+    pub(super) fn geometry(self, cut: Cut) -> GeometryKey {
+        match self.evaluation {
+            Evaluation::Compute => GeometryKey::Evaluated,
+            Evaluation::Tessellation => GeometryKey::Patches(self, cut),
+            // Neither adaptive nor culled.
+            _ => GeometryKey::Patches(self, Cut::new(Factor::Uniform(1.0), Cull::NONE)),
+        }
+    }
+
+    /// What tells apart the pipelines that make cached control points: those that a corner owns, and those it has room for.
+    pub(super) fn cached_key(self) -> [u32; 2] {
+        [self.scheme.owned(self.kind) as u32, self.stride]
     }
 
     /// The name of the vertex shader.
@@ -113,16 +132,19 @@ impl PatchStages {
         name
     }
 
-    /// The name of the compute shader that evaluates a lattice.
-    pub(super) fn lattice(self, texcoords: bool) -> String {
-        let [_, file] = files(self.scheme, self.kind);
-        format!("EVALUATE_{file}_COMP{}", if texcoords { "_TEXCOORD" } else { "" })
-    }
-
-    /// The name of the evaluation shader.
+    /// The name of the shader that evaluates.
     pub(super) fn evaluation(self, capture: Capture, texcoords: bool) -> String {
         let [_, file] = files(self.scheme, self.kind);
-        let mut name = format!("EVALUATE_{file}_TESE");
+        let mut name = match self.evaluation {
+            // Subdivision has no patches: see `subdivision::shader`.
+            Evaluation::Tessellation | Evaluation::Subdivision => format!("EVALUATE_{file}_TESE"),
+            Evaluation::Compute => format!("EVALUATE_LATTICE_COMP_{file}"),
+            Evaluation::Instanced | Evaluation::GeometryTwoPass => format!("EVALUATE_INSTANCED_VERT_{file}"),
+            Evaluation::Geometry => format!("EVALUATE_STRIPS_GEOM_{file}"),
+        };
+        if (self.evaluation, self.construction) == (Evaluation::Geometry, Construction::Cached) {
+            name += "_CACHED";
+        }
         name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Grid => "_CAPTURE_GRID",
@@ -172,24 +194,35 @@ mod tests {
             {
                 continue;
             }
-            for construction in Construction::ALL {
-                for sharing in [Sharing::Positions, Sharing::Normals, Sharing::Displacement] {
-                    if sharing != Sharing::Positions && !scheme.is_watertight() {
-                        continue;
-                    }
-                    let spacing = Spacing::Equal;
-                    let stages =
-                        PatchStages { scheme, kind, construction, spacing, sharing, has_speakers: true, stride: 8 };
-                    for capture in modes {
-                        for texcoords in [false, true] {
-                            for name in [
-                                stages.vertex(capture),
-                                stages.control(capture, texcoords),
-                                stages.evaluation(capture, texcoords),
-                            ] {
-                                assert!(shaders::find(&name).is_some(), "{name}");
-                            }
-                        }
+            let ways = Evaluation::ALL.into_iter().flat_map(|e| e.constructions().iter().map(move |&c| (e, c)));
+            for ((evaluation, construction), sharing) in
+                ways.flat_map(|way| [Sharing::Positions, Sharing::Normals, Sharing::Displacement].map(|s| (way, s)))
+            {
+                let tessellates = evaluation == Evaluation::Tessellation;
+                if sharing != Sharing::Positions && !(scheme.is_watertight() && tessellates) {
+                    continue;
+                }
+                let spacing = Spacing::Equal;
+                let stages = PatchStages {
+                    scheme,
+                    kind,
+                    construction,
+                    evaluation,
+                    spacing,
+                    sharing,
+                    has_speakers: true,
+                    stride: 8,
+                };
+                for (capture, texcoords) in modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]) {
+                    let made = [stages.vertex(capture), stages.control(capture, texcoords)];
+                    let watched = match evaluation {
+                        Evaluation::Tessellation => true,
+                        Evaluation::Compute => capture == Capture::Off,
+                        _ => matches!(capture, Capture::Off | Capture::Vertices),
+                    };
+                    let evaluation = watched.then(|| stages.evaluation(capture, texcoords));
+                    for name in made.into_iter().filter(|_| tessellates).chain(evaluation) {
+                        assert!(shaders::find(&name).is_some(), "{name}");
                     }
                 }
             }

@@ -1,35 +1,11 @@
 //! Models whose faces are subdivided in a geometry shader ([`Evaluation::Subdivision`]).
 
-use super::stages::Sharing;
-use super::{Capture, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables};
-use crate::gpu::Features;
+#[cfg(doc)]
+use super::Evaluation;
+use super::{Capture, Error, Factor, ModelId};
 
 /// Every device with geometry shaders has room for the strips of so many levels (`glsl/subdivide/faces.geom`).
 pub(super) const MAX_LEVEL: u32 = 3;
-
-/// Tells what a model asks for that subdivision has not, or what it needs of its renderer.
-pub(super) fn check_subdivision(
-    id: ModelId,
-    options: &ModelOptions,
-    tables: &ModelTables,
-    features: Features,
-) -> Result<(), Error> {
-    let evaluation = options.evaluation;
-    if evaluation != Evaluation::Subdivision {
-        return Ok(());
-    }
-    let missing = features.missing(evaluation.features());
-    if !missing.is_empty() {
-        return Err(Error::EvaluationNeeds { id, evaluation, missing });
-    }
-    let what = match tables.sharing() {
-        Sharing::Displacement => "displacement",
-        Sharing::Normals => "shared normals",
-        Sharing::Positions if tables.edges().is_some() => "factors of edges",
-        Sharing::Positions => return Ok(()),
-    };
-    Err(Error::NotBySubdivision { id, what })
-}
 
 /// How often a draw with this factor subdivides.
 pub(crate) fn level(id: ModelId, factor: Factor) -> Result<u32, Error> {

@@ -3,6 +3,9 @@
 use crate::topology::PatchKind;
 use std::cmp::Ordering;
 
+/// The most segments along a side: what the arithmetic of `glsl/lib/lattice.glsl` is right for.
+pub(crate) const MAX_SEGMENTS: u32 = 1024;
+
 /// How many vertices a patch has with `n` segments along each side.
 pub(crate) fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
     let n = u64::from(n);
@@ -13,6 +16,23 @@ pub(crate) fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
 pub(crate) fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
     let n = u64::from(n);
     if kind.is_triangular() { n * n } else { 2 * n * n }
+}
+
+/// Vertices that an invocation of the geometry shader emits, at most. GLSL twin: `TILE_VERTICES` in
+/// `glsl/evaluate/strips.geom`.
+pub(crate) const TILE_VERTICES: u32 = 64;
+
+/// Columns and rows of the cells that an invocation of the geometry shader emits, of a patch with `n` segments along each side.
+/// A row of `c` cells takes up to `2 c + 6` vertices.
+fn tile_size(n: u32) -> [u32; 2] {
+    let most = (TILE_VERTICES - 6) / 2;
+    let columns = n.div_ceil(n.div_ceil(most));
+    [columns, (TILE_VERTICES / (2 * columns + 6)).min(n)]
+}
+
+/// How many of them cover a patch; of a triangle, some are empty.
+pub(crate) fn lattice_tiles(n: u32) -> u32 {
+    tile_size(n).into_iter().map(|side| n.div_ceil(side)).product()
 }
 
 /// Whether the diagonal of a cell of a quad goes along u = v. As the tessellators that follow Direct3D's have it, Mesa's
@@ -73,5 +93,15 @@ mod tests {
                 assert!((areas.iter().sum::<f64>() - whole).abs() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn tiles_fit_the_geometry_shader() {
+        for n in 1..=1024 {
+            let [columns, rows] = tile_size(n);
+            assert!(rows * (2 * columns + 6) <= TILE_VERTICES && rows >= 1, "{n}");
+            assert!(lattice_tiles(n) * columns * rows >= n * n);
+        }
+        assert_eq!([1, 4, 8, 16, 1024].map(lattice_tiles), [1, 1, 4, 16, 36 * 1024]);
     }
 }

@@ -48,6 +48,16 @@ fn wrong_usage_is_said_in_one_line() {
         2,
         "--up points along the view: choose another direction",
     );
+    fails(
+        "render --shape cube -o x.png --evaluation compute --construction stencil",
+        2,
+        "--evaluation compute: it does not go with --construction stencil: choose cached, or leave it out",
+    );
+    for what in ["--pixels 3", "--bend 1", "--cull back", "--spacing odd", "--displacement scales"] {
+        let (name, _) = what.split_once(' ').unwrap();
+        let message = format!("--evaluation instanced: it does not go with {name}: leave one of both out");
+        fails(&format!("render --shape cube -o x.png --evaluation instanced {what}"), 2, &message);
+    }
     fails("render --shape cube -o x.jpg", 2, "--output x.jpg: pictures are PNG files: let the name end in .png");
     fails(
         "info --shape cube --scheme loop",

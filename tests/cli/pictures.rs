@@ -1,6 +1,7 @@
 //! Pictures that `subdiv render` draws.
 
 use crate::{folder, json};
+use ash_subdiv::renderer::Evaluation;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -39,6 +40,11 @@ fn constructions_draw_the_same_and_options_are_obeyed() {
     let base = draw("");
     let differing = |other: &image::RgbaImage| base.pixels().zip(other.pixels()).filter(|(a, b)| a != b).count();
     assert!(differing(&draw("--construction stencil")) < 20);
+    for evaluation in Evaluation::ALL.map(Evaluation::name) {
+        let (told, pixels) =
+            picture(&folder.join("x.png"), &format!("--shape creature --evaluation {evaluation} --factor 7.5"));
+        assert!(differing(&pixels) < 20 && told["evaluation"] == evaluation, "{evaluation}");
+    }
     for other in ["--factor 1", "--samples 1", "--yaw 40", "--pitch -5", "--zoom 2", "--fov 60", "--up 0,0,1"] {
         assert!(differing(&draw(other)) > 20, "{other}");
     }

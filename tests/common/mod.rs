@@ -8,6 +8,8 @@ pub mod limit;
 pub mod random;
 #[cfg(feature = "headless")]
 pub mod render_pass;
+#[cfg(feature = "headless")]
+pub mod stage;
 
 use ash_subdiv::ControlMesh;
 use std::path::PathBuf;

@@ -28,7 +28,7 @@ pub(in super::super) struct BenchArgs {
     constructions: Vec<Construction>,
     /// Ways to draw, with commas; all if not given.
     #[arg(long, value_name = "PATH", value_delimiter = ',', value_parser = parse::path())]
-    paths: Vec<Path>,
+    pub(super) paths: Vec<Path>,
     /// Where normals come from, with commas: those that patches share cost time. For watertight schemes.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::normals())]
     normals: Vec<Normals>,
@@ -103,7 +103,9 @@ x base:       the median of ratios to the first row, frame by frame, with the in
 construction: control points alone: factor 1 less the bilinear floor at factor 1, without rasterization.
 set-up:       tables and upload, without pipelines.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
-`compute` evaluates once a frame into a vertex buffer that all passes draw; it goes with the construction `cached`.
+`compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one lattice for all patches, an
+instance for each, which the vertex shader evaluates; in `geometry` the geometry shader evaluates, in `geometry-two-pass` it
+makes control points for `instanced`. They go with the construction `cached`, `geometry` also with `stencil`.
 Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of several counts of passes,
 `compute wins from` says where its time and that of tessellating in every pass cross. Of meshes of several sizes, `grows`
 says by which power of patches. `more` is more than what was measured can tell.

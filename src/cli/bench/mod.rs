@@ -25,7 +25,7 @@ use super::error::CliError;
 use super::output::{self, Progress, note};
 use super::parse;
 pub(super) use args::BenchArgs;
-use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Event, Subject};
+use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Event, Path, Subject};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::measure::{ErrorOptions, surface_errors};
 use ash_subdiv::{Scheme, Spacing};
@@ -72,9 +72,17 @@ impl BenchArgs {
         drop(progress);
         let contestants = self.contestants();
         if contestants.is_empty() {
-            let message = "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached \
-                           only, shared normals with tessellation and watertight schemes (gregory, gregory-fitted)";
-            return Err(CliError::Usage(message.into()));
+            let goes_with = |path: &Path| {
+                let names: Vec<_> = path.evaluation()?.constructions().iter().map(|c| c.name()).collect();
+                Some(format!("{} goes with {}", path.name(), names.join(" and ")))
+            };
+            let paths: Vec<String> = self.paths.iter().filter_map(goes_with).collect();
+            let message = format!(
+                "none of --paths, --constructions, --schemes and --normals go together: {}; shared normals go with \
+                 tessellation and watertight schemes (gregory, gregory-fitted)",
+                paths.join(", ")
+            );
+            return Err(CliError::Usage(message));
         }
         let options = BenchOptions {
             factors: self.factors(),

@@ -1,0 +1,38 @@
+// Instanced tessellation (the Direct3D 10 path of Loop et al. 2009): one lattice for all patches, an instance for each. A
+// vertex of it is evaluated from the control points of the instance's patch.
+// variants: BICUBIC, GREGORY_QUAD, GREGORY_TRIANGLE, ACC, PM_QUAD, PM_TRIANGLE, PM_PENTAGON
+// variants: BICUBIC+TEXCOORD, GREGORY_QUAD+TEXCOORD, GREGORY_TRIANGLE+TEXCOORD, ACC+TEXCOORD
+// variants: PM_QUAD+TEXCOORD, PM_TRIANGLE+TEXCOORD, PM_PENTAGON+TEXCOORD
+// variants: BICUBIC+CAPTURE, GREGORY_QUAD+CAPTURE, GREGORY_TRIANGLE+CAPTURE, ACC+CAPTURE
+// variants: PM_QUAD+CAPTURE, PM_TRIANGLE+CAPTURE, PM_PENTAGON+CAPTURE
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lattice.glsl"
+#include "read_cached.glsl"
+#include "draw.glsl"
+#ifdef CAPTURE
+#include "capture.glsl"
+#endif
+
+layout(location = 0) out vec3 world_position;
+layout(location = 1) out vec3 world_normal;
+#ifdef TEXCOORD
+layout(location = 2) out vec2 out_texcoord;
+#endif
+
+void main() {
+    uint patch_number = uint(gl_InstanceIndex);
+    uint first_corner = draw.first_corner + patch_number * CORNERS;
+    read_cached(first_corner);
+    vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()));
+    Sample surface = sample_of(evaluate_surface(at));
+#ifdef CAPTURE
+    capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
+#endif
+#ifdef TEXCOORD
+    out_texcoord = texcoord_at(first_corner, at);
+#endif
+    world_position = to_world(surface.position);
+    world_normal = normal_to_world(surface.normal);
+    gl_Position = to_clip(world_position);
+}

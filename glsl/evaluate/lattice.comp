@@ -1,0 +1,55 @@
+// Evaluation by compute: the vertices of each patch on a lattice, for draws to share. A workgroup takes some of the vertices
+// of one patch. Rust twin: `Dispatch` in src/renderer/lattice.rs.
+// variants: BICUBIC, GREGORY_QUAD, GREGORY_TRIANGLE, ACC, PM_QUAD, PM_TRIANGLE, PM_PENTAGON
+// variants: BICUBIC+TEXCOORD, GREGORY_QUAD+TEXCOORD, GREGORY_TRIANGLE+TEXCOORD, ACC+TEXCOORD
+// variants: PM_QUAD+TEXCOORD, PM_TRIANGLE+TEXCOORD, PM_PENTAGON+TEXCOORD
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lattice.glsl"
+#include "read_cached.glsl"
+
+layout(local_size_x = 32) in;
+
+// Vertices of a patch that a workgroup takes: enough that reading the control points is little beside them.
+const uint GROUP_VERTICES = 256u;
+
+#ifdef TEXCOORD
+const uint VERTEX_WORDS = 8u;
+#else
+const uint VERTEX_WORDS = 6u;
+#endif
+layout(set = 2, binding = 0, std430) writeonly buffer Vertices { float vertices[]; };
+
+// One patch for each workgroup along x.
+layout(push_constant, std430) uniform Patches {
+    uint first_corner;
+    uint first_vertex;
+    uint segments;
+    uint vertices;  // of a patch
+} patches;
+
+void put(uint at, vec3 x) {
+    vertices[at] = x.x;
+    vertices[at + 1u] = x.y;
+    vertices[at + 2u] = x.z;
+}
+
+void main() {
+    uint first_corner = patches.first_corner + gl_WorkGroupID.x * CORNERS;
+    read_cached(first_corner);
+    uint first_vertex = patches.first_vertex + gl_WorkGroupID.x * patches.vertices;
+    uint start = gl_WorkGroupID.y * GROUP_VERTICES;
+    uint end = min(start + GROUP_VERTICES, patches.vertices);
+    for (uint i = start + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) {
+        vec3 at = lattice_parameter(i, patches.segments);
+        Sample surface = sample_of(evaluate_surface(at));
+        uint word = VERTEX_WORDS * (first_vertex + i);
+        put(word, surface.position);
+        put(word + 3u, surface.normal);
+#ifdef TEXCOORD
+        vec2 x = texcoord_at(first_corner, at);
+        vertices[word + 6u] = x.x;
+        vertices[word + 7u] = x.y;
+#endif
+    }
+}

@@ -1,0 +1,40 @@
+//! What evaluates the patches, and how their control points are made.
+
+use super::error::CliError;
+use super::parse;
+use ash_subdiv::Construction;
+use ash_subdiv::renderer::Evaluation;
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub(super) struct EvaluationArgs {
+    /// What evaluates the patches. All but the tessellation stages cut every edge into as many segments as --factor says,
+    /// rounded up.
+    #[arg(long, value_name = "WHAT", default_value = Evaluation::Tessellation.name(), value_parser = parse::evaluation())]
+    pub(super) evaluation: Evaluation,
+    /// How the GPU makes the control points; if not given, as is usual with the evaluation (two-stage with tessellation).
+    #[arg(long, value_name = "HOW", value_parser = parse::construction())]
+    construction: Option<Construction>,
+}
+
+impl EvaluationArgs {
+    /// The construction; `given` are further arguments, and whether they were given, that only the tessellation stages go with.
+    pub(super) fn construction(&self, given: &[(&str, bool)]) -> Result<Construction, CliError> {
+        let (name, known) = (self.evaluation.name(), self.evaluation.constructions());
+        let wrong = |what: &str| CliError::Usage(format!("--evaluation {name}: it does not go with {what}"));
+        if self.evaluation != Evaluation::Tessellation
+            && let Some((what, _)) = given.iter().find(|(_, given)| *given)
+        {
+            return Err(wrong(&format!("{what}: leave one of both out")));
+        }
+        match self.construction {
+            None => Ok(known[0]),
+            Some(construction) if known.contains(&construction) => Ok(construction),
+            Some(construction) => {
+                let names: Vec<_> = known.iter().map(|construction| construction.name()).collect();
+                let names = names.join(" or ");
+                Err(wrong(&format!("--construction {}: choose {names}, or leave it out", construction.name())))
+            }
+        }
+    }
+}

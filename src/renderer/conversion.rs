@@ -1,0 +1,115 @@
+//! Control points made by the geometry shader, in a pass of their own before the draws (Ni et al. 2008).
+
+use super::cached::Corners;
+use super::stages::PatchStages;
+use crate::gpu::{
+    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Specialization, VkResultExt,
+    pipeline_layout, shaders,
+};
+use crate::table::PatchPlan;
+use ash::vk;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+const NAME: &str = "subdiv conversion";
+
+/// Pipelines by [`PatchStages::cached_key`], and a pass without attachments to run them in.
+pub(super) struct Conversion {
+    context: Arc<DeviceContext>,
+    layout: Owned<vk::PipelineLayout>,
+    cache: vk::PipelineCache,
+    pass: Owned<vk::RenderPass>,
+    framebuffer: Owned<vk::Framebuffer>,
+    made: HashMap<[u32; 2], Owned<vk::Pipeline>>,
+}
+
+impl Conversion {
+    /// With the set layouts of the draws.
+    pub(super) fn new(
+        context: &Arc<DeviceContext>,
+        sets: [vk::DescriptorSetLayout; 2],
+        cache: vk::PipelineCache,
+    ) -> Result<Self, GpuError> {
+        let constants = [vk::PushConstantRange {
+            stage_flags: vk::ShaderStageFlags::GEOMETRY,
+            offset: 0,
+            size: size_of::<Corners>() as u32,
+        }];
+        let subpass = [vk::SubpassDescription::default().pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)];
+        let pass = vk::RenderPassCreateInfo::default().subpasses(&subpass);
+        let device = context.device();
+        // SAFETY: the set layouts are of this device; what is created is taken over by `Owned`.
+        unsafe {
+            let layout = pipeline_layout(context, NAME, &sets, &constants)?;
+            let pass = device.create_render_pass(&pass, None).of("vkCreateRenderPass", NAME)?;
+            let pass = Owned::new(context, pass, NAME);
+            let framebuffer = vk::FramebufferCreateInfo::default().render_pass(pass.raw()).width(1).height(1).layers(1);
+            let framebuffer = device.create_framebuffer(&framebuffer, None).of("vkCreateFramebuffer", NAME)?;
+            let framebuffer = Owned::new(context, framebuffer, NAME);
+            Ok(Self { context: context.clone(), layout, cache, pass, framebuffer, made: HashMap::new() })
+        }
+    }
+
+    /// Makes what patches need.
+    pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
+        let key = stages.cached_key();
+        if self.made.contains_key(&key) {
+            return Ok(());
+        }
+        let [owned, stride] = key;
+        let name = format!("CONSTRUCT_CONVERT_GEOM_OWNED_{owned}");
+        let stride = [Specialization::uint(3, stride)];
+        let shaders = [
+            Shader::vertex(shaders::CONSTRUCT_CONVERT_VERT),
+            Shader::geometry(shaders::named(&name)?).specialized(&stride),
+        ];
+        let target = RenderTarget::RenderPass { render_pass: self.pass.raw(), subpass: 0, color_attachments: 0 };
+        let desc = GraphicsPipelineDesc {
+            topology: vk::PrimitiveTopology::POINT_LIST,
+            rasterizer_discard: true,
+            cache: self.cache,
+            ..GraphicsPipelineDesc::new(NAME, self.layout.raw(), target, &shaders)
+        };
+        // SAFETY: the shaders are ours and match the layout and the pass.
+        let pipeline = unsafe { desc.create(&self.context)? };
+        self.made.insert(key, pipeline);
+        Ok(())
+    }
+
+    /// Records the pass for all patches of a model, whose set this is.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering; the pipelines of `stages` were made.
+    pub(super) unsafe fn cmd_convert(
+        &self,
+        cmd: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        stages: &[PatchStages],
+        plan: &PatchPlan,
+    ) {
+        let (device, layout) = (self.context.device(), self.layout.raw());
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        let begin = vk::RenderPassBeginInfo::default()
+            .render_pass(self.pass.raw())
+            .framebuffer(self.framebuffer.raw())
+            .render_area(vk::Rect2D { extent: vk::Extent2D { width: 1, height: 1 }, ..Default::default() });
+        // SAFETY: as the caller promises; the pass is ended below.
+        unsafe {
+            device.cmd_begin_render_pass(cmd, &begin, vk::SubpassContents::INLINE);
+            device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[set], &[]);
+        }
+        for (&stages, group) in stages.iter().zip(plan.groups()) {
+            let Some(pipeline) = self.made.get(&stages.cached_key()) else { continue };
+            let corners = Corners::new(group);
+            // SAFETY: as above.
+            unsafe {
+                device.cmd_bind_pipeline(cmd, point, pipeline.raw());
+                let stage = vk::ShaderStageFlags::GEOMETRY;
+                device.cmd_push_constants(cmd, layout, stage, 0, bytemuck::bytes_of(&corners));
+                device.cmd_draw(cmd, corners.invocations, 1, 0, 0);
+            }
+        }
+        // SAFETY: as above.
+        unsafe { device.cmd_end_render_pass(cmd) };
+    }
+}

@@ -1,0 +1,60 @@
+//! A small picture with renderers for it, and the vertices that compute evaluates.
+
+use ash::vk;
+use ash_subdiv::gpu::{Buffer, BufferDesc, MemoryLocation};
+use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
+use ash_subdiv::{DrawItem, Error, ModelId, Options, Renderer, Target, View};
+
+/// A picture, and a renderer for it.
+pub struct Stage {
+    pub target: Offscreen,
+    pub headless: Headless,
+}
+
+impl Stage {
+    pub fn new() -> Self {
+        let headless = super::headless();
+        Self { target: Offscreen::new(&headless, &OffscreenDesc::new(96, 96)).expect("an image"), headless }
+    }
+
+    pub fn renderer(&self, options: &Options) -> Renderer {
+        let desc = self.target.desc();
+        let target = Target::dynamic(desc.color, desc.depth, desc.samples);
+        // SAFETY: every submission is waited for, and the renderer is dropped before the stage.
+        unsafe { Renderer::new(self.headless.context(), &target, options) }.expect("a renderer")
+    }
+
+    pub fn prepare(&self, renderer: &mut Renderer, frame: u32) {
+        // SAFETY: the command buffer is being recorded, and all frames before are done.
+        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("a frame");
+    }
+
+    pub fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Vec<u8>, Error> {
+        let view = View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [-0.6, 0.5, 1.0], 1.0);
+        let record = |cmd| {
+            // SAFETY: as above, inside rendering.
+            unsafe { renderer.cmd_draw(cmd, frame, &view, items) }
+        };
+        self.target.draw(&self.headless, [0.0; 4], record)
+    }
+
+    pub fn finish(self) {
+        drop(self.target);
+        self.headless.finish_silent();
+    }
+}
+
+/// The vertices of a model that was prepared, as words.
+pub fn read_vertices(headless: &Headless, renderer: &Renderer, model: ModelId) -> Vec<f32> {
+    let vertices = renderer.evaluated_vertices(model).expect("a model").expect("segments");
+    let (name, size) = ("vertices to read", vertices.size);
+    let usage = vk::BufferUsageFlags::TRANSFER_DST;
+    let desc = BufferDesc { name, size, usage, location: MemoryLocation::Readback };
+    let buffer = Buffer::new(headless.context(), &desc).expect("a buffer");
+    let region = vk::BufferCopy { size, ..vk::BufferCopy::default() };
+    let device = headless.device();
+    // SAFETY: both buffers hold the range; what wrote it was waited for.
+    let copy = |cmd| unsafe { device.cmd_copy_buffer(cmd, vertices.buffer, buffer.raw(), &[region]) };
+    headless.submit(copy).expect("a copy");
+    buffer.read(0, size as usize / 4).expect("as many words")
+}

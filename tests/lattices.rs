@@ -1,0 +1,266 @@
+//! What every evaluation on a lattice has: the vertices of the tessellation stages, and along edges the same bits.
+#![cfg(feature = "headless")]
+
+mod common;
+
+use ash::vk;
+use ash_subdiv::capture::{Captured, CapturedVertex};
+use ash_subdiv::renderer::{Evaluation, Fragment, ModelTables};
+use ash_subdiv::table::{Patch, grid_parameters};
+use ash_subdiv::topology::{PatchKind, Topology};
+use ash_subdiv::{ControlMesh, DrawItem, Fallback, ModelOptions, Options, Scheme, Style, shape};
+use common::edges::{bits, edge_parameters, shared_edges};
+use common::stage::{Stage, read_vertices};
+use glam::Vec3;
+use std::collections::HashMap;
+
+mod test_shaders {
+    #![allow(dead_code, reason = "each test takes those that it needs")]
+    include!(concat!(env!("OUT_DIR"), "/test_shaders.rs"));
+}
+
+type Vertex = [f32; 6];
+
+/// Every evaluation on a lattice with every construction that it goes with.
+fn ways(scheme: Scheme) -> impl Iterator<Item = ModelOptions> {
+    let on_lattices = Evaluation::ALL.into_iter().filter(|&evaluation| evaluation != Evaluation::Tessellation);
+    let pairs = on_lattices.flat_map(|evaluation| evaluation.constructions().iter().map(move |&c| (evaluation, c)));
+    let fallback = Fallback::Gregory;
+    pairs.map(move |(evaluation, construction)| ModelOptions {
+        scheme,
+        fallback,
+        construction,
+        evaluation,
+        ..ModelOptions::default()
+    })
+}
+
+/// Each patch on its lattice, in the order of [`grid_parameters`], as the device evaluates it.
+fn lattices(stage: &Stage, mesh: &ControlMesh, options: &ModelOptions, segments: u32) -> Vec<Vec<Vertex>> {
+    if options.evaluation == Evaluation::Compute {
+        return kept_lattices(stage, mesh, options, segments);
+    }
+    let captured = Captured::new(&stage.headless, mesh, options).expect("a model");
+    let count = |kind| grid_parameters(kind, segments + 1).len();
+    let patches = captured.tables().plan().patches();
+    let mut lattices: Vec<Vec<Option<Vertex>>> = patches.iter().map(|patch| vec![None; count(patch.kind)]).collect();
+    for vertex in captured.vertices(segments as f32).expect("a capture") {
+        let patch = vertex.patch as usize;
+        let place = &mut lattices[patch][number(patches[patch].kind, vertex.coordinate, segments)];
+        let ([x, y, z], [i, j, k]) = (vertex.position, vertex.normal);
+        let value = [x, y, z, i, j, k];
+        // A vertex may be evaluated several times.
+        assert!(place.is_none_or(|before| before.map(f32::to_bits) == value.map(f32::to_bits)), "{vertex:?}");
+        *place = Some(value);
+    }
+    let all = |lattice: Vec<Option<Vertex>>| lattice.into_iter().map(|v| v.expect("every vertex")).collect();
+    lattices.into_iter().map(all).collect()
+}
+
+/// The number of the vertex of a lattice that is nearest to a coordinate.
+fn number(kind: PatchKind, coordinate: [f32; 3], segments: u32) -> usize {
+    let [u, v, w] = coordinate.map(|x| (x * segments as f32).round() as usize);
+    let n = segments as usize;
+    if kind.is_triangular() { (n - u) * (n - u + 1) / 2 + w } else { v * (n + 1) + u }
+}
+
+/// The same from the vertices that compute keeps.
+fn kept_lattices(stage: &Stage, mesh: &ControlMesh, options: &ModelOptions, segments: u32) -> Vec<Vec<Vertex>> {
+    let mut renderer = stage.renderer(&Options::default());
+    let model = renderer.add_model(mesh, options).expect("a model");
+    renderer.set_segments(model, segments).expect("segments");
+    stage.prepare(&mut renderer, 0);
+    let words = read_vertices(&stage.headless, &renderer, model);
+    let mut vertices = words.chunks_exact(6).map(|v| [v[0], v[1], v[2], v[3], v[4], v[5]]);
+    let patches = renderer.tables(model).unwrap().plan().patches();
+    let lattices: Vec<Vec<Vertex>> = patches
+        .iter()
+        .map(|patch| vertices.by_ref().take(grid_parameters(patch.kind, segments + 1).len()).collect())
+        .collect();
+    assert!(vertices.next().is_none() && lattices.len() == patches.len());
+    lattices
+}
+
+fn position(vertex: &Vertex) -> Vec3 {
+    Vec3::new(vertex[0], vertex[1], vertex[2])
+}
+
+fn normal(vertex: &Vertex) -> Vec3 {
+    Vec3::new(vertex[3], vertex[4], vertex[5])
+}
+
+/// Where a vertex lies, by numbers of segments: the tessellator's parameters are rounded.
+fn place(patch: u32, [u, v]: [f64; 2], segments: u32) -> (u32, [u32; 2]) {
+    (patch, [u, v].map(|x| (x * f64::from(segments)).round() as u32))
+}
+
+/// On an edge of a triangle.
+fn on_edge(vertex: &CapturedVertex) -> bool {
+    vertex.coordinate.contains(&0.0)
+}
+
+#[test]
+fn vertices_are_those_of_the_tessellation_stages() {
+    let stage = Stage::new();
+    let shapes = [
+        ("creature-mixed", &[6][..], &Scheme::ALL[..]),
+        ("cube", &[1, 13, 31], &Scheme::ALL),
+        ("fan", &[1, 13, 31], &[Scheme::Gregory]),
+        ("cloth", &[6], &[Scheme::Gregory]),
+        ("pentagons", &[6, 13], &[Scheme::Pm]),
+    ];
+    for (name, counts, schemes) in shapes {
+        let mesh = if name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
+        for &scheme in schemes {
+            for &segments in counts {
+                // The stencil construction and the cached one have the patches in the same order.
+                let tessellated =
+                    ModelOptions { evaluation: Evaluation::Tessellation, ..ways(scheme).next().expect("compute") };
+                let captured = Captured::new(&stage.headless, &mesh, &tessellated).expect("a model");
+                let vertices = captured.vertices(segments as f32).expect("a capture");
+                let grids = captured.grid(segments + 1).expect("a capture");
+                for options in ways(scheme) {
+                    let lattices = lattices(&stage, &mesh, &options, segments);
+                    let what = format!("{name} {scheme:?} {:?} {segments}", options.evaluation);
+                    compare(captured.tables().plan().patches(), segments, &lattices, &vertices, &what);
+                    for (lattice, grid) in lattices.iter().zip(&grids) {
+                        for (vertex, sample) in lattice.iter().zip(grid) {
+                            let off = (position(vertex) - Vec3::from(sample.position)).length();
+                            let turn = (normal(vertex) - Vec3::from(sample.normal)).length();
+                            // The grid's parameters are not rounded to 16 bits.
+                            assert!(off < 5e-5 && turn < 1e-3, "{what}: {off} {turn} {sample:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+    stage.finish();
+}
+
+/// Asserts that lattices have the positions of what was tessellated, to the bit.
+fn compare(patches: &[Patch], segments: u32, lattices: &[Vec<Vertex>], tessellated: &[CapturedVertex], what: &str) {
+    let at: HashMap<_, &CapturedVertex> = tessellated
+        .iter()
+        .filter(|v| patches[v.patch as usize].kind.is_triangular() <= on_edge(v))
+        .map(|v| (place(v.patch, [v.coordinate[0], v.coordinate[1]].map(f64::from), segments), v))
+        .collect();
+    for (i, (patch, lattice)) in patches.iter().zip(lattices).enumerate() {
+        for (uv, vertex) in grid_parameters(patch.kind, segments + 1).into_iter().zip(lattice) {
+            let w = 1.0 - uv[0] - uv[1];
+            let edge = uv[0] == 0.0 || uv[1] == 0.0 || w.abs() < 0.5 / f64::from(segments);
+            // Within triangles the tessellator has vertices elsewhere.
+            if patch.kind.is_triangular() && !edge {
+                continue;
+            }
+            let other = at[&place(i as u32, uv, segments)];
+            assert_eq!(bits(position(vertex)), bits(other.position), "{what} {uv:?} {other:?}");
+            let turn = (normal(vertex) - Vec3::from(other.normal)).length();
+            assert!(turn < 1e-5, "{what} {uv:?}: {turn}");
+        }
+    }
+}
+
+#[test]
+fn patches_meet_to_the_bit() {
+    let stage = Stage::new();
+    for name in ["creature-mixed", "machine-part", "cloth", "valences"] {
+        let mesh = shape(name).expect("built in");
+        let topology = Topology::new(&mesh);
+        for (segments, options) in [2, 7, 19].into_iter().flat_map(|n| ways(Scheme::Gregory).map(move |way| (n, way))) {
+            let lattices = lattices(&stage, &mesh, &options, segments);
+            let tables = ModelTables::new(&mesh, &options).expect("tables");
+            let patches = tables.plan().patches();
+            let of_face: HashMap<u32, usize> = patches.iter().enumerate().map(|(i, p)| (p.face, i)).collect();
+            for edge in shared_edges(&topology) {
+                let [a, mut b] = edge.sides.map(|(face, k)| {
+                    let patch = of_face[&face];
+                    let kind = patches[patch].kind;
+                    let parameters = grid_parameters(kind, segments + 1);
+                    let along = (0..=segments).map(|i| edge_parameters(kind, k, f64::from(i) / f64::from(segments)));
+                    let at = |uv: [f64; 2]| {
+                        let near = |other: &[f64; 2]| (0..2).all(|i| (uv[i] - other[i]).abs() < 1e-9);
+                        bits(position(&lattices[patch][parameters.iter().position(near).expect("on the lattice")]))
+                    };
+                    along.map(at).collect::<Vec<_>>()
+                });
+                b.reverse();
+                assert_eq!(a, b, "{name} {:?} {segments} {:?}", options.evaluation, edge.sides);
+            }
+        }
+    }
+    stage.finish();
+}
+
+/// Whether pictures are the same within rounding, and show something.
+fn assert_same(a: &[u8], b: &[u8], what: &str) {
+    let differ = a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    assert!(a.iter().any(|&x| x > 0) && differ == 0, "{what}: {differ}");
+}
+
+#[test]
+fn pictures_follow_positions_and_segments() {
+    let stage = Stage::new();
+    let mesh = shape("creature").expect("built in");
+    // Texture coordinates as colours, from the front only.
+    let fragment = Fragment::Spirv(test_shaders::TEXCOORD_FRAG.to_vec());
+    let cull = vk::CullModeFlags::BACK;
+    let styles = vec![Style { fragment, cull, ..Style::default() }, Style::default()];
+    let mut renderer = stage.renderer(&Options { texcoords: true, styles, ..Options::default() });
+    let tessellated = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
+    let models: Vec<_> = ways(Scheme::Gregory)
+        .map(|options| (renderer.add_model(&mesh, &options).expect("a model"), options.evaluation))
+        .collect();
+    let small: Vec<_> = mesh.positions_f32().iter().map(|p| p.map(|x| 0.5 * x)).collect();
+    for (frame, n, moves) in [(0, 4, false), (1, 4, true), (0, 9, false), (1, 9, true), (0, 1, true), (1, 3, false)] {
+        for &(model, evaluation) in &models {
+            if evaluation.needs_segments() {
+                renderer.set_segments(model, n).unwrap();
+            }
+        }
+        if moves {
+            let positions = if frame == 1 { &small } else { &mesh.positions_f32() };
+            for model in models.iter().map(|(model, _)| *model).chain([tessellated]) {
+                renderer.set_positions(model, frame, positions).unwrap();
+            }
+        }
+        stage.prepare(&mut renderer, frame);
+        for style in 0..2 {
+            let mut picture = |model| {
+                let item = DrawItem { style, ..DrawItem::new(model, n as f32) };
+                stage.draw(&mut renderer, frame, &[item]).expect("a picture")
+            };
+            let expected = picture(tessellated);
+            for &(model, evaluation) in &models {
+                assert_same(&picture(model), &expected, &format!("{evaluation:?}: {n} in frame {frame}"));
+            }
+        }
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+/// More than the tessellator has, and in one draw more than lavapipe takes in one batch.
+#[test]
+fn lattices_may_be_fine() {
+    let stage = Stage::new();
+    for (name, segments) in [("cube", 150), ("tetrahedron", 301), ("single-quad", 1024)] {
+        let mesh = shape(name).expect("built in");
+        let styles = vec![Style { cull: vk::CullModeFlags::BACK, ..Style::default() }];
+        let mut renderer = stage.renderer(&Options { styles, ..Options::default() });
+        let mut expected = None;
+        for options in ways(Scheme::Gregory) {
+            let model = renderer.add_model(&mesh, &options).expect("a model");
+            if options.evaluation.needs_segments() {
+                renderer.set_segments(model, segments).unwrap();
+            }
+            stage.prepare(&mut renderer, 0);
+            let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, segments as f32)]).expect("a picture");
+            let what = format!("{name} {:?} {:?}", options.evaluation, options.construction);
+            assert_same(&picture, expected.get_or_insert(picture.clone()), &what);
+            renderer.remove_model(model).unwrap();
+        }
+        drop(renderer);
+    }
+    stage.finish();
+}
