@@ -117,9 +117,8 @@ pub struct Captured<'h> {
 }
 
 impl<'h> Captured<'h> {
-    /// Builds the tables of a model. Whatever evaluates it, the tessellation stages are watched; but of
-    /// [`Evaluation::Subdivision`] its own geometry shader, which has nothing but [`Captured::grid`], of as many samples as one
-    /// of its levels has.
+    /// Builds the tables of a model. Of [`Evaluation::Subdivision`] there is nothing but [`Captured::grid`], of as many samples as
+    /// one of its levels has.
     ///
     /// # Errors
     /// [`Error::Unsupported`] if the device cannot write buffers before rasterization, and as
@@ -130,13 +129,9 @@ impl<'h> Captured<'h> {
             return Err(Error::Unsupported { device, missing: vec!["vertexPipelineStoresAndAtomics".into()] });
         }
         let tables = ModelTables::new(mesh, options)?;
-        let evaluation = match options.evaluation {
-            Evaluation::Subdivision => Evaluation::Subdivision,
-            _ => Evaluation::Tessellation,
-        };
         Ok(Self {
             headless,
-            options: ModelOptions { evaluation, ..options.clone() },
+            options: options.clone(),
             tables,
             positions: mesh.positions_f32(),
             displacement: None,
@@ -325,6 +320,7 @@ impl<'h> Captured<'h> {
     /// The evaluation that is watched.
     fn evaluation(&self, mode: Capture) -> Evaluation {
         match self.options.evaluation {
+            Evaluation::Subdivision => Evaluation::Subdivision,
             evaluation if mode == Capture::Vertices && evaluation != Evaluation::Compute => evaluation,
             _ => Evaluation::Tessellation,
         }
@@ -396,7 +392,11 @@ impl<'h> Captured<'h> {
         let model_options = ModelOptions { evaluation: self.evaluation(mode), ..self.options.clone() };
         let model = renderer.add_tables(self.tables.clone(), &self.positions, &model_options)?;
         if model_options.evaluation.needs_segments() {
-            renderer.set_segments(model, draw.factor.value().ceil() as u32)?;
+            let most = match draw.factor {
+                Factor::Uniform(factor) => factor,
+                _ => draw.edge_factors.iter().copied().fold(1.0, f32::max),
+            };
+            renderer.set_segments(model, most.ceil() as u32)?;
         }
         if let Factor::Edges(_) = draw.factor {
             renderer.set_edge_factors(model, 0, &draw.edge_factors)?;

@@ -132,11 +132,10 @@ fn wrong_use_is_told() {
     let text = |error: Error| error.to_string();
     let wrong = [
         (ModelOptions { shared_normals: true, ..compute(Scheme::Gregory) }, "shared normals"),
-        (ModelOptions { edge_factors: true, ..compute(Scheme::Gregory) }, "factors of edges"),
         (ModelOptions { spacing: Spacing::FractionalOdd, ..compute(Scheme::Gregory) }, "fractional spacing"),
     ];
     for (options, what) in wrong {
-        for evaluation in Evaluation::ALL.into_iter().filter(|&evaluation| evaluation != Evaluation::Tessellation) {
+        for evaluation in Evaluation::ALL.into_iter().filter(|e| !e.constructions().contains(&Construction::TwoStage)) {
             let error = text(renderer.add_model(&mesh, &ModelOptions { evaluation, ..options.clone() }).unwrap_err());
             let told = format!(
                 "model 0: Evaluation::{evaluation:?} does not go with {what}: do without, or choose Evaluation::Tessellation"
@@ -209,6 +208,18 @@ fn wrong_use_is_told() {
     stage.prepare(&mut renderer, 0);
     assert!(draw(&mut renderer, Factor::Uniform(3.5)).is_ok());
     assert_eq!(draw(&mut renderer, Factor::Uniform(5.0)), told("Uniform(5.0)", 4));
+    let of_edges = ModelOptions { edge_factors: true, ..compute(Scheme::Gregory) };
+    let of_edges = renderer.add_model(&mesh, &of_edges).unwrap();
+    renderer.set_segments(of_edges, 4).unwrap();
+    stage.prepare(&mut renderer, 0);
+    assert!(draw_model(&mut renderer, of_edges, Factor::Edges(1.0)).is_ok());
+    for factor in [Factor::Uniform(4.0), Factor::Edges(0.5)] {
+        let told = format!(
+            "model 3: {factor:?}: Evaluation::Compute with edges that have factors of their own takes these as they are: \
+             draw with Factor::Edges(1.0)"
+        );
+        assert_eq!(draw_model(&mut renderer, of_edges, factor), Err(told));
+    }
     drop(renderer);
     stage.finish();
 }

@@ -4,15 +4,15 @@
 mod common;
 
 use ash::vk;
-use ash_subdiv::capture::{Captured, CapturedVertex};
-use ash_subdiv::renderer::{Evaluation, Fragment, ModelTables};
+use ash_subdiv::capture::{CaptureDraw, Captured, CapturedVertex, Which};
+use ash_subdiv::renderer::{Evaluation, Factor, Fragment, ModelTables};
 use ash_subdiv::table::{Patch, grid_parameters};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, DrawItem, Fallback, ModelOptions, Options, Scheme, Style, shape};
 use common::edges::{bits, edge_parameters, shared_edges};
 use common::stage::{Stage, read_vertices};
 use glam::Vec3;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 mod test_shaders {
     #![allow(dead_code, reason = "each test takes those that it needs")]
@@ -23,7 +23,8 @@ type Vertex = [f32; 6];
 
 /// Every evaluation on a lattice with every construction that it goes with.
 fn ways(scheme: Scheme) -> impl Iterator<Item = ModelOptions> {
-    let on_lattices = Evaluation::ALL.into_iter().filter(|&evaluation| evaluation != Evaluation::Tessellation);
+    let others = [Evaluation::Tessellation, Evaluation::Subdivision];
+    let on_lattices = Evaluation::ALL.into_iter().filter(move |evaluation| !others.contains(evaluation));
     let pairs = on_lattices.flat_map(|evaluation| evaluation.constructions().iter().map(move |&c| (evaluation, c)));
     let fallback = Fallback::Gregory;
     pairs.map(move |(evaluation, construction)| ModelOptions {
@@ -38,7 +39,7 @@ fn ways(scheme: Scheme) -> impl Iterator<Item = ModelOptions> {
 /// Each patch on its lattice, in the order of [`grid_parameters`], as the device evaluates it.
 fn lattices(stage: &Stage, mesh: &ControlMesh, options: &ModelOptions, segments: u32) -> Vec<Vec<Vertex>> {
     if options.evaluation == Evaluation::Compute {
-        return kept_lattices(stage, mesh, options, segments);
+        return kept_lattices(stage, mesh, options, segments, None);
     }
     let captured = Captured::new(&stage.headless, mesh, options).expect("a model");
     let count = |kind| grid_parameters(kind, segments + 1).len();
@@ -50,7 +51,7 @@ fn lattices(stage: &Stage, mesh: &ControlMesh, options: &ModelOptions, segments:
         let ([x, y, z], [i, j, k]) = (vertex.position, vertex.normal);
         let value = [x, y, z, i, j, k];
         // A vertex may be evaluated several times.
-        assert!(place.is_none_or(|before| before.map(f32::to_bits) == value.map(f32::to_bits)), "{vertex:?}");
+        assert!(place.is_none_or(|before| before.map(f32::to_bits) == value.map(f32::to_bits)), "{vertex:?} {place:?}");
         *place = Some(value);
     }
     let all = |lattice: Vec<Option<Vertex>>| lattice.into_iter().map(|v| v.expect("every vertex")).collect();
@@ -65,10 +66,19 @@ fn number(kind: PatchKind, coordinate: [f32; 3], segments: u32) -> usize {
 }
 
 /// The same from the vertices that compute keeps.
-fn kept_lattices(stage: &Stage, mesh: &ControlMesh, options: &ModelOptions, segments: u32) -> Vec<Vec<Vertex>> {
+fn kept_lattices(
+    stage: &Stage,
+    mesh: &ControlMesh,
+    options: &ModelOptions,
+    segments: u32,
+    edge_factors: Option<&[f32]>,
+) -> Vec<Vec<Vertex>> {
     let mut renderer = stage.renderer(&Options::default());
     let model = renderer.add_model(mesh, options).expect("a model");
     renderer.set_segments(model, segments).expect("segments");
+    if let Some(factors) = edge_factors {
+        renderer.set_edge_factors(model, 0, factors).expect("factors");
+    }
     stage.prepare(&mut renderer, 0);
     let words = read_vertices(&stage.headless, &renderer, model);
     let mut vertices = words.chunks_exact(6).map(|v| [v[0], v[1], v[2], v[3], v[4], v[5]]);
@@ -261,6 +271,76 @@ fn lattices_may_be_fine() {
             renderer.remove_model(model).unwrap();
         }
         drop(renderer);
+    }
+    stage.finish();
+}
+
+/// The bits of the vertices on each side of each patch. Sides of a piece of a pentagon that are inside the face are left out.
+fn side_points(patches: &[Patch], vertices: impl Iterator<Item = (u32, [f64; 2], [f32; 3])>) -> Vec<[Points; 4]> {
+    let mut sides = vec![<[Points; 4]>::default(); patches.len()];
+    for (patch, [u, v], position) in vertices {
+        let on = match patches[patch as usize].kind {
+            PatchKind::Pentagon => [u + v == 1.0, false, false, false],
+            PatchKind::Triangle => [u + v == 1.0, u == 0.0, v == 0.0, false],
+            _ => [v == 0.0, u == 1.0, v == 1.0, u == 0.0],
+        };
+        for (side, _) in sides[patch as usize].iter_mut().zip(on).filter(|(_, on)| *on) {
+            side.insert(bits(position));
+        }
+    }
+    sides
+}
+
+type Points = BTreeSet<[u32; 3]>;
+
+#[test]
+fn edges_have_the_segments_of_their_own_factors() {
+    let stage = Stage::new();
+    for (name, scheme) in [("creature-mixed", Scheme::Gregory), ("creature", Scheme::Acc), ("pentagons", Scheme::Pm)] {
+        let mesh = if name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
+        for options in ways(scheme) {
+            let options = ModelOptions { edge_factors: true, ..options };
+            let tessellated = ModelOptions { evaluation: Evaluation::Tessellation, ..options.clone() };
+            let captured = Captured::new(&stage.headless, &mesh, &tessellated).expect("a model");
+            let patches = captured.tables().plan().patches();
+            // From below 1 up to 13, and some between whole numbers.
+            let count = captured.tables().edges().expect("edges").vertices.len();
+            let edge_factors: Vec<f32> = (0..count).map(|i| ((29 * i) % 40) as f32 / 3.0).collect();
+            let draw = CaptureDraw { edge_factors: edge_factors.clone(), ..CaptureDraw::new(Factor::Edges(1.0)) };
+            let capture = |captured: &Captured| {
+                let vertices = captured.vertices_of(&draw, Which::All).expect("a capture").into_iter();
+                let [u, v] = [0, 1];
+                side_points(
+                    patches,
+                    vertices.map(|x| (x.patch, [u, v].map(|i| f64::from(x.coordinate[i])), x.position)),
+                )
+            };
+            let expected = capture(&captured);
+            let points = if options.evaluation == Evaluation::Compute {
+                let lattices = kept_lattices(&stage, &mesh, &options, 13, Some(&edge_factors));
+                let at = |(patch, lattice): (usize, Vec<Vertex>)| {
+                    let parameters = grid_parameters(patches[patch].kind, 14).into_iter();
+                    // Exactly on the edge opposite the last corner.
+                    let exact = |[u, v]: [f64; 2]| if (u + v - 1.0).abs() < 1e-9 { [u, 1.0 - u] } else { [u, v] };
+                    let triangular = patches[patch].kind.is_triangular();
+                    let vertices = parameters.zip(lattice).map(move |(uv, [x, y, z, ..])| {
+                        (patch as u32, if triangular { exact(uv) } else { uv }, [x, y, z])
+                    });
+                    vertices.collect::<Vec<_>>()
+                };
+                side_points(patches, lattices.into_iter().enumerate().flat_map(at))
+            } else {
+                capture(&Captured::new(&stage.headless, &mesh, &options).expect("a model"))
+            };
+            for (patch, (points, expected)) in points.iter().zip(&expected).enumerate() {
+                let what = format!("{name} {:?} {:?} patch {patch}", options.evaluation, options.construction);
+                assert_eq!(points, expected, "{what} {:?}", patches[patch]);
+            }
+            assert!(
+                expected.iter().flatten().any(|side| side.len() == 2)
+                    && expected.iter().flatten().any(|s| s.len() == 14)
+            );
+        }
     }
     stage.finish();
 }

@@ -24,7 +24,7 @@ void main() {
     uint patch_number = uint(gl_InstanceIndex);
     uint first_corner = draw.first_corner + patch_number * CORNERS;
     read_cached(first_corner);
-    vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()));
+    vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()), first_corner);
     Sample surface = sample_of(evaluate_surface(at));
 #ifdef CAPTURE
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);

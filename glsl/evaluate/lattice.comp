@@ -41,7 +41,7 @@ void main() {
     uint start = gl_WorkGroupID.y * GROUP_VERTICES;
     uint end = min(start + GROUP_VERTICES, patches.vertices);
     for (uint i = start + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) {
-        vec3 at = lattice_parameter(i, patches.segments);
+        vec3 at = lattice_parameter(i, patches.segments, first_corner);
         Sample surface = sample_of(evaluate_surface(at));
         uint word = VERTEX_WORDS * (first_vertex + i);
         put(word, surface.position);

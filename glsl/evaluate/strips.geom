@@ -66,13 +66,14 @@ uint patch_number;
 uint segments;
 
 void emit(uint row, uint place) {
-    vec3 at = lattice_parameter(row, place, segments);
+    uint first_corner = draw.first_corner + patch_number * CORNERS;
+    vec3 at = lattice_parameter(row, place, segments, first_corner);
     Sample surface = sample_of(evaluate_surface(at));
 #ifdef CAPTURE
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
 #endif
 #ifdef TEXCOORD
-    out_texcoord = texcoord_at(draw.first_corner + patch_number * CORNERS, at);
+    out_texcoord = texcoord_at(first_corner, at);
 #endif
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);

@@ -14,13 +14,18 @@
 // corner 0: see `evaluate_tensor`.
 void add_corner(float x, float y, float z, vec3 origin, vec3 p, vec3 plus, vec3 next_minus, vec3 f_plus, vec3 f_minus,
                 inout vec3 inner, inout vec3 dx, inout vec3 dy, inout vec3 dz) {
-    vec3 edge = x * plus + y * next_minus;
-    float scale = 3.0 * x * y * (x + y);
-    vec3 face = blend(f_plus, y, f_minus, z);
-    inner += (12.0 * x * x * y * z) * (origin + face);
-    dx += (3.0 * x * x) * p + (3.0 * y * (2.0 * x + y)) * edge + scale * plus + (24.0 * x * y * z) * face;
-    dy += (3.0 * x * (x + 2.0 * y)) * edge + scale * next_minus + (12.0 * x * x * z) * face;
-    dz += (12.0 * x * x * y) * face;
+    precise vec3 edge = x * plus + y * next_minus;
+    precise float scale = 3.0 * x * y * (x + y);
+    precise vec3 face = blend(f_plus, y, f_minus, z);
+    precise vec3 of_inner = inner + (12.0 * x * x * y * z) * (origin + face);
+    precise vec3 of_dx =
+        dx + ((3.0 * x * x) * p + (3.0 * y * (2.0 * x + y)) * edge + scale * plus + (24.0 * x * y * z) * face);
+    precise vec3 of_dy = dy + ((3.0 * x * (x + 2.0 * y)) * edge + scale * next_minus + (12.0 * x * x * z) * face);
+    precise vec3 of_dz = dz + (12.0 * x * x * y) * face;
+    inner = of_inner;
+    dx = of_dx;
+    dy = of_dy;
+    dz = of_dz;
 }
 
 // The two inner terms of the cubic along an edge; the factor is 1 on the edge itself.
@@ -41,10 +46,13 @@ vec3 position_at(float u, float v, float w, vec3 inner) {
 Surface evaluate_gregory_triangle(float u, float v, float w) {
     precise vec3 o = corner(0), b = corner(1) - o, c = corner(2) - o;
     vec3 inner = vec3(0.0), du = vec3(0.0), dv = vec3(0.0), dw = vec3(0.0);
-    add_corner(u, v, w, o, vec3(0.0), owned[0][1], b + owned[1][2], owned[0][3], owned[0][4], inner, du, dv, dw);
-    add_corner(v, w, u, o, b, b + owned[1][1], c + owned[2][2], b + owned[1][3], b + owned[1][4], inner, dv, dw, du);
-    add_corner(w, u, v, o, c, c + owned[2][1], owned[0][2], c + owned[2][3], c + owned[2][4], inner, dw, du, dv);
-    return Surface(position_at(u, v, w, inner), du - dw, dv - dw, cross(b, c));
+    precise vec3 plus1 = b + owned[1][1], minus1 = b + owned[1][2], f_plus1 = b + owned[1][3], f_minus1 = b + owned[1][4];
+    precise vec3 plus2 = c + owned[2][1], minus2 = c + owned[2][2], f_plus2 = c + owned[2][3], f_minus2 = c + owned[2][4];
+    add_corner(u, v, w, o, vec3(0.0), owned[0][1], minus1, owned[0][3], owned[0][4], inner, du, dv, dw);
+    add_corner(v, w, u, o, b, plus1, minus2, f_plus1, f_minus1, inner, dv, dw, du);
+    add_corner(w, u, v, o, c, plus2, owned[0][2], f_plus2, f_minus2, inner, dw, du, dv);
+    precise vec3 along_u = du - dw, along_v = dv - dw;
+    return Surface(position_at(u, v, w, inner), along_u, along_v, cross(b, c));
 }
 
 Surface evaluate_surface(vec3 at) {

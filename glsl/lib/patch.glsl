@@ -1,6 +1,7 @@
 // Evaluation that patches share. Rust twins: src/patch/bicubic.rs, src/patch/point.rs.
 //
-// glslang does not carry `precise` into called functions: every local of a shared edge's arithmetic says it itself.
+// glslang does not carry `precise` into called functions: every local of a shared edge's arithmetic says it itself, and so
+// does all else, for a vertex to be the same wherever a shader evaluates it.
 #ifndef PATCH_GLSL
 #define PATCH_GLSL
 
@@ -107,8 +108,8 @@ Surface evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCo
     vec3 x = symmetric_sum(bu.value, a.p, x1, x2, b.p);
     vec3 y = symmetric_sum(bu.value, d.p, y1, y2, c.p);
     // From those edges inwards.
-    vec3 v1 = a.inner - a.plus, v2 = b.inner - b.minus;
-    vec3 w1 = d.inner - d.minus, w2 = c.inner - c.plus;
+    precise vec3 v1 = a.inner - a.plus, v2 = b.inner - b.minus;
+    precise vec3 w1 = d.inner - d.minus, w2 = c.inner - c.plus;
     vec3 x_in = symmetric_sum(bu.value, a.minus, v1, v2, b.plus);
     vec3 y_in = symmetric_sum(bu.value, d.plus, w1, w2, c.minus);
     vec3 x_beside = from_corner(x, x_in), y_beside = from_corner(y, y_in);
@@ -118,8 +119,8 @@ Surface evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCo
     vec3 dv = edge_slope(bv.slope, x_in, y_beside - x_beside, y_in);
     vec3 dx = edge_slope(bu.slope, a.plus, x2 - x1, b.minus);
     vec3 dy = edge_slope(bu.slope, d.minus, y2 - y1, c.plus);
-    vec3 dx_in = bu.slope.x * (v1 - a.minus) + bu.slope.y * (v2 - v1) + bu.slope.z * (b.plus - v2);
-    vec3 dy_in = bu.slope.x * (w1 - d.plus) + bu.slope.y * (w2 - w1) + bu.slope.z * (c.minus - w2);
+    precise vec3 dx_in = bu.slope.x * (v1 - a.minus) + bu.slope.y * (v2 - v1) + bu.slope.z * (b.plus - v2);
+    precise vec3 dy_in = bu.slope.x * (w1 - d.plus) + bu.slope.y * (w2 - w1) + bu.slope.z * (c.minus - w2);
     vec4 at = bv.value;
     precise vec3 du = ((at.x + at.y) * dx + at.y * dx_in) + ((at.z + at.w) * dy + at.z * dy_in);
     return Surface(position, du, dv, cross(c.p - a.p, d.p - b.p));
@@ -127,7 +128,8 @@ Surface evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCo
 
 // The face point (a f+ + b f-) / (a + b); at a corner, where both weights vanish, it does not matter.
 vec3 blend(vec3 plus, float a, vec3 minus, float b) {
-    return plus + (b / max(a + b, 1e-30)) * (minus - plus);
+    precise vec3 between = plus + (b / max(a + b, 1e-30)) * (minus - plus);
+    return between;
 }
 
 // What the corners have, at a point of the patch.

@@ -54,6 +54,8 @@ pub enum Error {
     EvaluationNeeds { id: ModelId, evaluation: Evaluation, missing: Vec<&'static str> },
     #[error("model {}: {factor:?}: Evaluation::{evaluation:?} has one factor for all edges: draw with a uniform one", id.0)]
     NotUniform { id: ModelId, evaluation: Evaluation, factor: Factor },
+    #[error("model {}: {factor:?}: Evaluation::{evaluation:?} with edges that have factors of their own takes these as they are: draw with Factor::Edges(1.0)", id.0)]
+    NotOfEdges { id: ModelId, evaluation: Evaluation, factor: Factor },
     #[error("model {}: {factor:?}: subdivision has uniform factors of 1, 2, 4 and 8, for levels 0 to 3", id.0)]
     NoSuchLevel { id: ModelId, factor: Factor },
     #[error("model {}: Evaluation::{evaluation:?} takes its segments from DrawItem::factor: set_segments is for others", id.0)]

@@ -30,7 +30,7 @@ pub(super) fn check_evaluation(
     let what = match tables.sharing() {
         Sharing::Displacement => "displacement",
         Sharing::Normals => "shared normals",
-        Sharing::Positions if tables.edges().is_some() => "factors of edges",
+        Sharing::Positions if evaluation == Evaluation::Subdivision && tables.edges().is_some() => "factors of edges",
         // It has no spacing.
         Sharing::Positions if evaluation == Evaluation::Subdivision => return Ok(()),
         Sharing::Positions if options.spacing != Spacing::Equal => "fractional spacing",
@@ -62,6 +62,9 @@ pub struct EvaluatedVertices {
 impl Renderer {
     /// Sets how many segments every edge of a model has, where [`Evaluation::needs_segments`]: from the next
     /// [`Renderer::cmd_prepare`] on, until others are set. Draws name the same number as their [`Factor::Uniform`].
+    ///
+    /// With [`ModelOptions::edge_factors`] it is the most that an edge has, and what every patch has inside: edges with
+    /// smaller factors have fewer segments, their factors rounded up. Draws have [`Factor::Edges`]`(1.0)`.
     ///
     /// Takes memory for the indices of a patch, and for the vertices that compute evaluates, (n + 1)² a quad; lets that of the
     /// segments before go when every frame has been prepared again. The number that is set already costs nothing.
@@ -128,24 +131,29 @@ impl Model {
     /// What a draw with this factor is of.
     pub(super) fn drawn(&self, factor: Factor) -> Result<Drawn<'_>, Error> {
         let (id, evaluation) = (self.id, self.evaluation);
-        let asked = match factor {
-            Factor::Uniform(factor) => Some(factor.ceil() as u32),
-            _ => None,
+        match evaluation {
+            Evaluation::Tessellation => return Ok(Drawn::Patches),
+            Evaluation::Subdivision => return Ok(Drawn::Subdivided { level: subdivision::level(id, factor)? }),
+            _ => {}
+        }
+        let kept = self.lattice.as_ref();
+        let segments = match (factor, self.largest_edge_factor()) {
+            (Factor::Uniform(factor), None) => factor.ceil() as u32,
+            (_, None) => return Err(Error::NotUniform { id, evaluation, factor }),
+            // Vertices may have been evaluated before the draw, too late to scale factors.
+            (Factor::Edges(scale), Some(largest)) if scale == 1.0 => {
+                kept.map_or(largest.ceil() as u32, |lattice| lattice.segments)
+            }
+            (_, Some(_)) => return Err(Error::NotOfEdges { id, evaluation, factor }),
         };
-        if evaluation == Evaluation::Tessellation {
-            Ok(Drawn::Patches)
-        } else if evaluation == Evaluation::Subdivision {
-            Ok(Drawn::Subdivided { level: subdivision::level(id, factor)? })
-        } else if evaluation.needs_segments() {
-            let segments = self.lattice.as_ref().map_or(0, |lattice| lattice.segments);
-            let lattice = self.lattice.as_ref().filter(|lattice| asked == Some(lattice.segments));
+        if evaluation.needs_segments() {
+            let lattice = kept.filter(|lattice| lattice.segments == segments);
+            let segments = kept.map_or(0, |lattice| lattice.segments);
             let lattice = lattice.ok_or(Error::OtherSegments { id, factor, segments })?;
             if lattice.needs_copies() { Err(Error::NotPrepared { id }) } else { Ok(Drawn::Lattice(lattice)) }
+        } else if segments > MAX_SEGMENTS {
+            Err(Error::BadSegments { id, given: segments, max: MAX_SEGMENTS })
         } else {
-            let segments = asked.ok_or(Error::NotUniform { id, evaluation, factor })?;
-            if segments > MAX_SEGMENTS {
-                return Err(Error::BadSegments { id, given: segments, max: MAX_SEGMENTS });
-            }
             Ok(Drawn::Tiles { segments })
         }
     }

@@ -4,8 +4,8 @@ use super::model::{device_buffer, upload_buffer};
 use super::stages::PatchStages;
 use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{
-    Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, VkResultExt,
-    descriptor_set_layout, pipeline_layout, shaders,
+    Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
+    pipeline_layout, shaders,
 };
 use crate::table::{PatchPlan, lattice_indices, lattice_triangles, lattice_vertices};
 use ash::vk;
@@ -69,11 +69,11 @@ impl LatticePipelines {
             return Ok(());
         }
         let name = stages.evaluation(Capture::Off, self.texcoords);
-        let stride = [Specialization::uint(3, stages.stride)];
+        let constants = stages.specialization(0, 0.0);
         let desc = ComputePipelineDesc {
             name: &format!("subdiv {name}"),
             layout: self.layout.raw(),
-            shader: Shader::compute(shaders::named(&name)?).specialized(&stride),
+            shader: Shader::compute(shaders::named(&name)?).specialized(&constants),
             cache: self.cache,
         };
         // SAFETY: the shader is ours and matches the layout.

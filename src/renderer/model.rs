@@ -158,9 +158,11 @@ impl Model {
         write_set(context, set, &buffers, map);
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride, has_speakers) = (tables.sharing(), tables.cached_stride(), tables.has_speakers());
+        // The control shader knows by its flags.
+        let edge_factors = tables.edges().is_some() && evaluation != Evaluation::Tessellation;
         let stages = |group: &PatchGroup| {
             let PatchGroup { scheme, kind, .. } = *group;
-            PatchStages { scheme, kind, construction, evaluation, spacing, sharing, has_speakers, stride }
+            PatchStages { scheme, kind, construction, evaluation, spacing, sharing, has_speakers, edge_factors, stride }
         };
         Ok(Self {
             id,

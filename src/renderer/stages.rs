@@ -18,6 +18,8 @@ pub(super) struct PatchStages {
     pub sharing: Sharing,
     /// Whether any corner has another ring than its own speak for what it shares.
     pub has_speakers: bool,
+    /// Whether edges of a lattice have factors of their own.
+    pub edge_factors: bool,
     /// Control points that a corner has room for where they are cached, else 0.
     pub stride: u32,
 }
@@ -96,7 +98,7 @@ impl PatchStages {
 
     /// What the vertex and the control shader of draws with these flags are specialized to. `most` is the largest factor of
     /// the device.
-    pub(super) fn specialization(self, flags: u32, most: f32) -> [Specialization; 7] {
+    pub(super) fn specialization(self, flags: u32, most: f32) -> [Specialization; 8] {
         [
             Specialization::uint(0, self.kind.corners() as u32),
             Specialization::float(2, most),
@@ -105,6 +107,7 @@ impl PatchStages {
             Specialization::bool(5, self.scheme == Scheme::GregoryFitted),
             Specialization::bool(6, self.scheme.has_pentagons()),
             Specialization::bool(7, self.has_speakers),
+            Specialization::bool(8, self.edge_factors),
         ]
     }
 
@@ -211,6 +214,7 @@ mod tests {
                     spacing,
                     sharing,
                     has_speakers: true,
+                    edge_factors: false,
                     stride: 8,
                 };
                 for (capture, texcoords) in modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]) {
