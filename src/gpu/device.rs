@@ -32,6 +32,10 @@ pub struct DeviceProperties {
     pub max_patch_size: u32,
     /// The largest storage buffer that a shader can see at once, in bytes.
     pub max_storage_buffer_range: u64,
+    /// Storage buffers that a shader stage can have.
+    pub max_stage_storage_buffers: u32,
+    /// Numbers that a control shader can hand on for each vertex.
+    pub max_control_components: u32,
     /// The most elements of a texel buffer.
     pub max_texel_buffer_elements: u64,
     /// The largest buffer, in bytes.
@@ -76,6 +80,8 @@ impl DeviceProperties {
             max_tessellation_level: limits.max_tessellation_generation_level,
             max_patch_size: limits.max_tessellation_patch_size,
             max_storage_buffer_range: limits.max_storage_buffer_range.into(),
+            max_stage_storage_buffers: limits.max_per_stage_descriptor_storage_buffers,
+            max_control_components: limits.max_tessellation_control_per_vertex_output_components,
             max_texel_buffer_elements: limits.max_texel_buffer_elements.into(),
             // Zero where the device is older than Vulkan 1.3 and does not say.
             max_buffer_size: if v13.max_buffer_size == 0 { u64::MAX } else { v13.max_buffer_size },

@@ -1,5 +1,6 @@
 //! What the caller says once: where to draw, and how.
 
+use super::pipelines::{CONTROL_COMPONENTS, MODEL_BUFFERS};
 use super::{Error, Evaluation};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features};
 use ash::vk;
@@ -272,6 +273,14 @@ pub(super) fn check_properties(
         let counts: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
         missing.push(format!("{} samples a pixel (it has {})", target.samples.as_raw(), counts.join(", ")));
     }
+    for (what, least, has) in [
+        ("storage buffers a shader stage", MODEL_BUFFERS as u32, properties.max_stage_storage_buffers),
+        ("numbers a vertex from the control shader", CONTROL_COMPONENTS, properties.max_control_components),
+    ] {
+        if has < least {
+            missing.push(format!("{least} {what} (it has {has})"));
+        }
+    }
     let width = options.styles.iter().map(|s| s.line_width).fold(0.0, f32::max);
     if width > 1.0 && width > properties.max_line_width {
         missing.push(format!("lines {width} pixels wide (it has {})", properties.max_line_width));
@@ -283,4 +292,26 @@ pub(super) fn check_properties(
         }
     }
     if missing.is_empty() { Ok(()) } else { Err(Error::Unsupported { device: properties.name.clone(), missing }) }
+}
+
+#[cfg(all(test, feature = "headless"))]
+mod tests {
+    use super::*;
+    use crate::headless::{Headless, HeadlessOptions};
+
+    #[test]
+    fn limits_that_are_too_low_are_named() {
+        let headless = Headless::new(&HeadlessOptions::default()).unwrap();
+        let properties = DeviceProperties {
+            name: "small".into(),
+            max_stage_storage_buffers: 4,
+            max_control_components: 64,
+            ..headless.properties().clone()
+        };
+        let target = Target::dynamic(vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT, vk::SampleCountFlags::TYPE_1);
+        let error = check_properties(&properties, properties.features, &target, &Options::default()).unwrap_err();
+        let told = error.to_string();
+        assert!(told.contains("13 storage buffers a shader stage (it has 4)"), "{told}");
+        assert!(told.contains("120 numbers a vertex from the control shader (it has 64)"), "{told}");
+    }
 }

@@ -84,6 +84,9 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 /// points. The displacement map comes after them.
 pub(super) const MODEL_BUFFERS: usize = 13;
 
+/// Four for each location that the control shaders write to: the last is in `glsl/lib/culling.glsl`.
+pub(super) const CONTROL_COMPONENTS: u32 = 4 * 30;
+
 impl Pipelines {
     pub(super) fn new(
         context: &Arc<DeviceContext>,
