@@ -64,7 +64,8 @@ pub struct Cull {
     /// Those beyond a plane of the view frustum; their hull grows by what displacement can move them.
     pub frustum: bool,
     /// Those all of whose triangles face away: the picture is the same if the style culls back faces, or if what lies in front
-    /// hides them. The finer a patch is cut, the more surely that can be told of it. Not done where the surface is displaced, nor in parallel projections.
+    /// hides them. Of more of them that can be told where patches are cut finely. Not done where the surface is displaced, nor
+    /// in parallel projections.
     pub back: bool,
     /// Those between the centres of pixels. For one sample a pixel, and filled triangles. Needs
     /// [`View::viewport`](super::View::viewport). Not done where the surface is displaced.
