@@ -143,19 +143,20 @@ bool faces_away(float step) {
     vec3 p1[4] = { AT(0, 2), AT(0, 3), AT(1, 3), AT(1, 1) };
     vec3 p2[4] = { AT(3, 1), AT(3, 3), AT(2, 3), AT(2, 2) };
     vec3 p3[4] = { (owned[3][0] - centre) * axes, AT(3, 2), AT(2, 1), (owned[2][0] - centre) * axes };
-    float size = 0.0;
+    float squared = 0.0;
 #if HULL == 5
     vec3 others[4] = { AT(0, 4), AT(1, 4), AT(2, 4), AT(3, 4) };
     vec3 half_way[4] = { 0.5 * (others[0] - p1[1]), 0.5 * (others[1] - p1[2]), 0.5 * (others[2] - p2[2]),
                          0.5 * (others[3] - p2[1]) };
     for (int k = 0; k < 4; ++k) {
-        size = max(size, length(others[k]));
+        squared = max(squared, dot(others[k], others[k]));
     }
 #endif
 #undef AT
     for (int i = 0; i < 4; ++i) {
-        size = max(size, max(max(length(p0[i]), length(p1[i])), max(length(p2[i]), length(p3[i]))));
+        squared = max(squared, max(max(dot(p0[i], p0[i]), dot(p1[i], p1[i])), max(dot(p2[i], p2[i]), dot(p3[i], p3[i]))));
     }
+    float size = sqrt(squared);
     // The eye is outside of the sphere around all of them.
     if (!(size < away)) {
         return false;
