@@ -121,7 +121,15 @@ fn edges_have_one_factor() {
     headless.finish_silent();
 }
 
-fn picture(headless: &Headless, mesh: &ControlMesh, view: &View, cull: Cull, displaced: Option<&Texture>) -> Vec<u8> {
+/// How many pixels change in each view when patches are left out of a model with this transform.
+fn missed(
+    headless: &Headless,
+    mesh: &ControlMesh,
+    views: &[View],
+    cull: Cull,
+    transform: Mat4,
+    displaced: Option<&Texture>,
+) -> Vec<usize> {
     let desc = OffscreenDesc::new(SIDE, SIDE);
     let target = Offscreen::new(headless, &desc).expect("a target");
     let style = Style { cull: ash::vk::CullModeFlags::BACK, ..Style::default() };
@@ -133,11 +141,20 @@ fn picture(headless: &Headless, mesh: &ControlMesh, view: &View, cull: Cull, dis
     let displacement = displaced.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
     let model_options = ModelOptions { displacement, ..ModelOptions::default() };
     let model = renderer.add_model(mesh, &model_options).expect("a model");
-    let item = DrawItem { cull, displacement: [0.1, 0.0], ..DrawItem::new(model, 6.0) };
-    // SAFETY: outside rendering.
-    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) }).expect("prepared");
-    // SAFETY: inside.
-    target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, 0, view, &[item]) }).expect("a picture")
+    let transform = transform.to_cols_array_2d();
+    let all = DrawItem { transform, displacement: [0.1, 0.0], ..DrawItem::new(model, 6.0) };
+    let mut picture = |view: &View, cull: Cull| {
+        let item = DrawItem { cull, ..all };
+        // SAFETY: outside rendering, and every submission is waited for.
+        headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) }).expect("prepared");
+        // SAFETY: inside.
+        target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, 0, view, &[item]) }).expect("a picture")
+    };
+    let pixels = |view: &View| {
+        let (whole, culled) = (picture(view, Cull::NONE), picture(view, cull));
+        whole.chunks(4).zip(culled.chunks(4)).filter(|(a, b)| a != b).count()
+    };
+    views.iter().map(pixels).collect()
 }
 
 #[test]
@@ -147,13 +164,10 @@ fn what_is_left_out_is_not_missed() {
     let texture = Texture::new(&headless, "scales", &texels).expect("a texture");
     for name in ["creature", "machine-part", "valences"] {
         let mesh = shape(name).expect("built in");
-        for view in [view(&mesh, [-0.6, 0.5, 1.0]), view(&mesh, [0.2, -1.0, 0.1]), close_view(&mesh)] {
-            for displaced in [None, Some(&texture)] {
-                let whole = picture(&headless, &mesh, &view, Cull::NONE, displaced);
-                let culled = picture(&headless, &mesh, &view, Cull::ALL, displaced);
-                let differ = whole.chunks(4).zip(culled.chunks(4)).filter(|(a, b)| a != b).count();
-                assert_eq!(differ, 0, "{name} displaced {}", displaced.is_some());
-            }
+        let views = [view(&mesh, [-0.6, 0.5, 1.0]), view(&mesh, [0.2, -1.0, 0.1]), close_view(&mesh)];
+        for displaced in [None, Some(&texture)] {
+            let missed = missed(&headless, &mesh, &views, Cull::ALL, Mat4::IDENTITY, displaced);
+            assert_eq!(missed, [0; 3], "{name} displaced {}", displaced.is_some());
         }
         let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
         let count = |view, cull| {
@@ -167,6 +181,50 @@ fn what_is_left_out_is_not_missed() {
         assert!(5 * outside > all, "{name}: {outside} of {all}");
     }
     drop(texture);
+    headless.finish_silent();
+}
+
+/// All around, evenly and in no line with any axis: of the n-th of `n` on a spiral from pole to pole.
+fn around(n: usize) -> impl Iterator<Item = [f32; 3]> {
+    (0..n).map(move |i| {
+        let height = 1.0 - (2.0 * i as f32 + 1.0) / n as f32;
+        let (sine, cosine) = (2.4 * i as f32 + 0.3).sin_cos();
+        let across = (1.0 - height * height).sqrt();
+        [across * cosine, height, across * sine]
+    })
+}
+
+#[test]
+fn what_faces_away_is_left_out() {
+    let back = Cull { back: true, ..Cull::NONE };
+    let turned = Mat4::from_scale_rotation_translation(
+        Vec3::new(-0.7, 1.2, 0.9),
+        glam::Quat::from_rotation_y(0.5),
+        Vec3::new(0.1, -0.05, 0.0),
+    );
+    let headless = common::headless();
+    // At most a third of the creature's patches face away as a whole. Half of the mixed one's are triangles, which stay.
+    for (name, least) in [("creature", 0.25), ("creature-mixed", 0.1), ("torus", 0.25), ("cube", 0.0)] {
+        let mesh = shape(name).expect("built in");
+        let views: Vec<View> = around(12).map(|towards| view(&mesh, towards)).collect();
+        for transform in [Mat4::IDENTITY, turned] {
+            assert_eq!(missed(&headless, &mesh, &views, back, transform, None), [0; 12], "{name}, {transform}");
+        }
+        let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
+        let vertices = captured.vertices(6.0).expect("a capture");
+        let (mut left_out, mut all) = (0, 0);
+        for view in views {
+            let draw = CaptureDraw { view, cull: back, ..CaptureDraw::new(6.0) };
+            let culled: Vec<bool> = captured.factors(&draw).expect("a capture").iter().map(|f| f.culled).collect();
+            left_out += culled.iter().filter(|&&culled| culled).count();
+            all += culled.len();
+            for v in vertices.iter().filter(|v| culled[v.patch as usize]) {
+                let to_eye = (Vec3::from(view.eye) - Vec3::from(v.position)).normalize();
+                assert!(Vec3::from(v.normal).dot(to_eye) < 1e-4, "{name}: {v:?} faces the eye");
+            }
+        }
+        assert!(left_out as f64 >= least * all as f64, "{name}: {left_out} of {all}");
+    }
     headless.finish_silent();
 }
 

@@ -59,15 +59,16 @@ void finish_patch(uint patch_number) {
     if (gl_InvocationID != 0) {
         return;
     }
-    bool culled = (DRAW_FLAGS & CULL_FLAGS) != 0u && is_culled();
     float asked[CORNERS], outer[CORNERS];
-    float largest = 1.0;
+    float largest = 1.0, smallest = MAX_FACTOR;
     for (uint k = 0u; k < CORNERS; ++k) {
         asked[k] = plus_factor(patch_number, k, k + 1u == CORNERS ? 0u : k + 1u);
         // What is no number counts as 1.
         outer[k] = min(max(1.0, asked[k]), MAX_FACTOR);
         largest = max(largest, outer[k]);
+        smallest = min(smallest, outer[k]);
     }
+    bool culled = (DRAW_FLAGS & CULL_FLAGS) != 0u && is_culled(1.0 / smallest);
     // With fractional spacing an inner factor of nearly 1 would put vertices of the inside on the edge.
     float least = largest > 1.0 && metric() != METRIC_UNIFORM ? min(1.5, MAX_FACTOR) : 1.0;
     vec2 inner = vec2(max(least, largest));

@@ -62,81 +62,135 @@ bool between_pixels(vec4 box) {
 }
 
 #ifndef TRIANGLE
-// A cone of directions: an axis of length one and the sine of the angle to it; above 1 for all directions.
-struct Cone {
-    vec3 axis;
-    float sine;
-};
-
-// Around differences of control points that are each right to `radius`.
-Cone cone_around(vec3 d[12], float radius) {
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < 12; ++i) {
-        sum += d[i];
-    }
-    vec3 axis = unit(sum);
-    float least = 1.0;
-    for (int i = 0; i < 12; ++i) {
-        least = min(least, (dot(d[i], axis) - radius) / (length(d[i]) + radius));
-    }
-    return Cone(axis, least > 0.0 ? sqrt(max(1.0 - least * least, 0.0)) : 2.0);
+// How long a vector is across the view, seen in any direction that leans by `lean` at most.
+float extent(vec3 d, float lean) {
+    return length(d.xy) + lean * abs(d.z);
 }
 
-// Whether every point of the patch faces away from the eye: normals are within a cone that those of the tangents span
-// (Sederberg and Meyers, Loop detection in surface patch intersections, 1988).
-bool faces_away() {
+// A tangent as the eye sees it: across the view, how long it is there, and how long with all that is not known of it.
+vec4 tangent(vec3 d, float lean, float moved) {
+    return vec4(d.xy, length(d.xy), extent(d, lean) + moved);
+}
+
+// One row of the differences along u, times their binomial coefficients.
+mat3x4 along_u(vec3 row[4], float lean, vec3 moved) {
+    return mat3x4(tangent(row[1] - row[0], lean, moved.x), 2.0 * tangent(row[2] - row[1], lean, moved.y),
+                  tangent(row[3] - row[2], lean, moved.z));
+}
+
+// One of the differences along v, so that the dot product with one along u is at least what du x dv has towards the eye.
+vec4 turned(vec3 d, float lean, float moved) {
+    vec4 t = tangent(d, lean, moved);
+    return vec4(t.y, -t.x, -t.z, t.w);
+}
+
+// Those between two rows of points, times their binomial coefficients.
+mat4 along_v(vec3 row[4], vec3 next[4], float lean, vec4 moved) {
+    return transpose(mat4(turned(next[0] - row[0], lean, moved.x), 3.0 * turned(next[1] - row[1], lean, moved.y),
+                          3.0 * turned(next[2] - row[2], lean, moved.z), turned(next[3] - row[3], lean, moved.w)));
+}
+
+// How much the differences along u change from one row of points to the next, which is also how much those along v do.
+vec3 twist(vec3 row[4], vec3 next[4], float lean) {
+    vec3 a = next[0] - row[0], b = next[1] - row[1], c = next[2] - row[2], d = next[3] - row[3];
+    return vec3(extent(b - a, lean), extent(c - b, lean), extent(d - c, lean));
+}
+
+// Three coefficients as four.
+vec4 elevated(vec3 t) {
+    return vec4(t.x, (t.x + 2.0 * t.y) / 3.0, (2.0 * t.y + t.z) / 3.0, t.z);
+}
+
+// Whether all coefficients of one row are below zero; the summands of coefficient i + k are in column i, row k.
+bool below_zero(mat3x4 q) {
+    float ends = max(q[0].x, q[2].w);
+    float beside = max(q[0].y + q[1].x, q[1].w + q[2].z);
+    float middle = max(q[0].z + q[1].y + q[2].x, q[0].w + q[1].z + q[2].y);
+    return max(ends, max(beside, middle)) < 0.0;
+}
+
+// Whether all triangles of the patch face away from the eye, whose legs are at most `step` long in u and v.
+//
+// The normal of a bicubic patch is a Bezier patch of degree (5, 5); its coefficients are sums of cross products of the
+// differences of control points along u and along v, and if all of them face away, so does the patch. (The convex hull of
+// a patch of normals, as in Loop, Niessner and Eisenacher, Effective Back-Patch Culling for Hardware Tessellation, 2011, whose
+// patch is that of tangent planes.) Points are turned so that the eye is on the z axis, and cross products have only what is
+// towards it. What is not known of a tangent widens it:
+// - Other points are seen in other directions, which lean by `lean` at most; that moves a tangent by that much of its depth.
+// - The face point of a Gregory patch moves, by half the distance r of its ends, around their middle. As a function of u and
+//   v, both differences that have it move by r at most, and as its weights change, too, those that have it and a point of an
+//   edge by r / 2 more: a third of the derivative is 6 r (1 - u)^2 (1 - v)^2 v (uv / (u + v)^2), and the last factor is at
+//   most 1 / 4.
+// - The legs of a triangle are means of du and dv over the sides of a square. In its middle these are others, by half a
+//   step times the twist of the patch. This is to the first order in `step`, and of triangles with legs along u and v.
+bool faces_away(float step) {
     vec4 w = clip_row(3);
     // Displacement turns normals as it likes; a parallel projection has no eye.
     if (reach() > 0.0 || dot(w.xyz, w.xyz) == 0.0) {
         return false;
     }
-    vec3 p[4], plus[4], minus[4], inner[4];
-    float radius = 0.0;
-    vec3 centre = vec3(0.0);
-    for (int k = 0; k < 4; ++k) {
-        p[k] = to_world(owned[k][0]);
-        plus[k] = to_world(CONTROL_POINT(k, 1));
-        minus[k] = to_world(CONTROL_POINT(k, 2));
-        inner[k] = to_world(CONTROL_POINT(k, 3));
+    vec3 centre = 0.25 * ((owned[0][0] + owned[1][0]) + (owned[2][0] + owned[3][0]));
+    vec3 to_eye = view.measured_eye.xyz - to_world(centre);
+    float away = length(to_eye);
+    vec3 z = to_eye / away;
+    vec3 x = unit(abs(z.x) < 0.6 ? vec3(0.0, z.z, -z.y) : vec3(-z.z, 0.0, z.x));
+    // Columns are what the axes are in object space; the rows of the transform are its matrix transposed.
+    mat3 axes = mat3(draw.transform[0].xyz, draw.transform[1].xyz, draw.transform[2].xyz) * mat3(x, cross(z, x), z);
+
+    // Rows of control points, as seen from the centre.
+#define AT(k, i) (CONTROL_POINT(k, i) - centre) * axes
+    vec3 p0[4] = { (owned[0][0] - centre) * axes, AT(0, 1), AT(1, 2), (owned[1][0] - centre) * axes };
+    vec3 p1[4] = { AT(0, 2), AT(0, 3), AT(1, 3), AT(1, 1) };
+    vec3 p2[4] = { AT(3, 1), AT(3, 3), AT(2, 3), AT(2, 2) };
+    vec3 p3[4] = { (owned[3][0] - centre) * axes, AT(3, 2), AT(2, 1), (owned[2][0] - centre) * axes };
+    float squared = 0.0;
 #if HULL == 5
-        // The face point moves between two, and by that turns the tangents, too: by less than a third of their distance.
-        vec3 other = to_world(CONTROL_POINT(k, 4));
-        radius = max(radius, 1.3 * length(inner[k] - other));
-        inner[k] = 0.5 * (inner[k] + other);
-#endif
-        centre += 0.25 * p[k];
-    }
-    vec3 du[12] = { plus[0] - p[0], minus[1] - plus[0], p[1] - minus[1],               //
-                    inner[0] - minus[0], inner[1] - inner[0], plus[1] - inner[1],      //
-                    inner[3] - plus[3], inner[2] - inner[3], minus[2] - inner[2],      //
-                    minus[3] - p[3], plus[2] - minus[3], p[2] - plus[2] };
-    vec3 dv[12] = { minus[0] - p[0], plus[3] - minus[0], p[3] - plus[3],               //
-                    inner[0] - plus[0], inner[3] - inner[0], minus[3] - inner[3],      //
-                    inner[1] - minus[1], inner[2] - inner[1], plus[2] - inner[2],      //
-                    plus[1] - p[1], minus[2] - plus[1], p[2] - minus[2] };
-    Cone u = cone_around(du, radius), v = cone_around(dv, radius);
-    vec3 normal = cross(u.axis, v.axis);
-    float squared = dot(normal, normal);
-    float sine = sqrt((u.sine * u.sine + 2.0 * u.sine * v.sine * abs(dot(u.axis, v.axis)) + v.sine * v.sine)
-                      / max(squared, 1e-20));
-    float size = 0.0;
+    vec3 others[4] = { AT(0, 4), AT(1, 4), AT(2, 4), AT(3, 4) };
+    vec3 half_way[4] = { 0.5 * (others[0] - p1[1]), 0.5 * (others[1] - p1[2]), 0.5 * (others[2] - p2[2]),
+                         0.5 * (others[3] - p2[1]) };
     for (int k = 0; k < 4; ++k) {
-        size = max(max(size, length(p[k] - centre)), max(length(plus[k] - centre), length(minus[k] - centre)));
-        size = max(size, length(inner[k] - centre) + radius);
+        squared = max(squared, dot(others[k], others[k]));
     }
-    vec3 to_eye = view.measured_eye.xyz - centre;
-    float spread = size / max(length(to_eye), 1e-20);
-    if (sine >= 1.0 || spread >= 1.0) {
+#endif
+#undef AT
+    for (int i = 0; i < 4; ++i) {
+        squared = max(squared, max(max(dot(p0[i], p0[i]), dot(p1[i], p1[i])), max(dot(p2[i], p2[i]), dot(p3[i], p3[i]))));
+    }
+    float size = sqrt(squared);
+    // The eye is outside of the sphere around all of them.
+    if (!(size < away)) {
         return false;
     }
-    float cosine = dot(normal, to_eye) / (sqrt(squared) * length(to_eye));
-    // The sum of both angles.
-    return cosine < -(sine * sqrt(1.0 - spread * spread) + spread * sqrt(1.0 - sine * sine));
+    float lean = size / (away - size);
+    vec4 moved = vec4(0.0);
+#if HULL == 5
+    for (int k = 0; k < 4; ++k) {
+        moved[k] = extent(half_way[k], lean);
+    }
+    p1[1] += half_way[0];
+    p1[2] += half_way[1];
+    p2[2] += half_way[2];
+    p2[1] += half_way[3];
+#endif
+    vec3 t0 = 1.5 * step * twist(p0, p1, lean);
+    vec3 t1 = 1.5 * step * twist(p1, p2, lean);
+    vec3 t2 = 1.5 * step * twist(p2, p3, lean);
+    vec3 moved1 = vec3(1.5 * moved.x, moved.x + moved.y, 1.5 * moved.y) + (t0 + 2.0 * t1) / 3.0;
+    vec3 moved2 = vec3(1.5 * moved.w, moved.w + moved.z, 1.5 * moved.z) + (2.0 * t1 + t2) / 3.0;
+    mat3x4 u0 = along_u(p0, lean, t0);
+    mat3x4 u1 = 3.0 * along_u(p1, lean, moved1);
+    mat3x4 u2 = 3.0 * along_u(p2, lean, moved2);
+    mat3x4 u3 = along_u(p3, lean, t2);
+    mat4 v0 = along_v(p0, p1, lean, vec4(0.0, 1.5 * moved.xy, 0.0) + elevated(t0));
+    mat4 v1 = 2.0 * along_v(p1, p2, lean, vec4(0.0, moved.xy + moved.wz, 0.0) + elevated(t1));
+    mat4 v2 = along_v(p2, p3, lean, vec4(0.0, 1.5 * moved.wz, 0.0) + elevated(t2));
+    return below_zero(v0 * u0) && below_zero(v0 * u1 + v1 * u0) && below_zero(v0 * u2 + v1 * u1 + v2 * u0)
+        && below_zero(v0 * u3 + v1 * u2 + v2 * u1) && below_zero(v1 * u3 + v2 * u2) && below_zero(v2 * u3);
 }
 #endif
 
-// Whether the patch can be left out.
-bool is_culled() {
+// Whether the patch can be left out, whose triangles are `step` long in its parameters at most.
+bool is_culled(float step) {
     uint beyond = outside[0] & outside[1] & outside[2];
     vec4 box = vec4(min(min(pixel_box[0].xy, pixel_box[1].xy), pixel_box[2].xy),
                     max(max(pixel_box[0].zw, pixel_box[1].zw), pixel_box[2].zw));
@@ -147,7 +201,7 @@ bool is_culled() {
     bool culled = (DRAW_FLAGS & CULL_FRUSTUM_FLAG) != 0u && beyond != 0u;
     culled = culled || ((DRAW_FLAGS & CULL_SMALL_FLAG) != 0u && reach() == 0.0 && between_pixels(box));
 #ifndef TRIANGLE
-    culled = culled || ((DRAW_FLAGS & CULL_BACK_FLAG) != 0u && faces_away());
+    culled = culled || ((DRAW_FLAGS & CULL_BACK_FLAG) != 0u && faces_away(step));
 #endif
     return culled;
 }
@@ -155,7 +209,7 @@ bool is_culled() {
 void examine_corner() {
 }
 
-bool is_culled() {
+bool is_culled(float step) {
     return false;
 }
 #endif
