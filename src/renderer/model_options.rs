@@ -122,7 +122,7 @@ pub struct ModelOptions {
     /// Where the tessellator puts its vertices along an edge.
     pub spacing: Spacing,
     /// Give neighbouring patches the same normals along their edges and at their corners, to the last bit: positions are the
-    /// same in any case. Costs table memory and some 10 % of the geometry's time; displacement needs it.
+    /// same in any case. Costs table memory and 10 to 25 % of the geometry's time; displacement needs it.
     ///
     /// For schemes that are watertight ([`Scheme::is_watertight`]).
     pub shared_normals: bool,
