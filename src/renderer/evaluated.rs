@@ -141,9 +141,7 @@ impl Model {
             (Factor::Uniform(factor), None) => factor.ceil() as u32,
             (_, None) => return Err(Error::NotUniform { id, evaluation, factor }),
             // Vertices may have been evaluated before the draw, too late to scale factors.
-            (Factor::Edges(scale), Some(largest)) if scale == 1.0 => {
-                kept.map_or(largest.ceil() as u32, |lattice| lattice.segments)
-            }
+            (Factor::Edges(1.0), Some(largest)) => kept.map_or(largest.ceil() as u32, |lattice| lattice.segments),
             (_, Some(_)) => return Err(Error::NotOfEdges { id, evaluation, factor }),
         };
         if evaluation.needs_segments() {
