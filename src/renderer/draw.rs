@@ -99,8 +99,7 @@ impl Renderer {
 
     /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor (but each
     /// level of [`Evaluation::Subdivision`] has its own). Those for [`Factor::Uniform`] (level 0) with [`Cull::NONE`] are there
-    /// when the model is added; others are made by the first draw that
-    /// needs them, unless this was called before.
+    /// when the model is added; others are made by the first draw that needs them, unless this was called before.
     ///
     /// # Errors
     /// [`Error::NoSuchModel`]; failed Vulkan calls.

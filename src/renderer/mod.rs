@@ -18,9 +18,9 @@
 //! | GS, two passes | as compute, cached | control points of models that are [`Evaluation::GeometryTwoPass`], if the vertices moved |
 //! | VS, instanced | control points | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
 //! | GS | vertices and weights of the patch, positions; or control points | strips of models that are [`Evaluation::Geometry`], which have only VS (the number of a tile) and FS besides |
-//! | VS, two-stage | patch corners, rings and their weights, positions | limit point and tangent frame, for each patch corner |
+//! | VS, two-stage | patch corners, rings and their weights, positions | what a corner of a patch takes from its ring: limit point, edge vectors, transversals and the like, what it shares |
 //! | VS, stencil and cached | nothing | the number of the patch, for each patch |
-//! | TCS, two-stage | the frames of its corners, their rings, positions | control points, factors |
+//! | TCS, two-stage | what its corners took from their rings | control points, factors |
 //! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
 //! | TCS, cached | control points | control points, factors |
 //! | GS of models that are [`Evaluation::Subdivision`] | fans and their weights, positions | position, normal, texture coordinate; no TCS and TES |
