@@ -1,4 +1,5 @@
-// Evaluation without the tessellation stages: each patch on a lattice with the same number of segments along every side.
+// Evaluation without the tessellation stages: each patch on a lattice with the same number of segments along every side; but
+// edges with factors of their own have fewer.
 // Rust twins: src/table/lattice.rs, and `grid_parameters` in src/table/cpu.rs for the order.
 #ifndef LATTICE_GLSL
 #define LATTICE_GLSL

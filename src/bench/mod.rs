@@ -97,9 +97,14 @@ impl Path {
         }
     }
 
+    /// Whether [`Bench::recording`] knows it.
+    pub fn is_recorded(self) -> bool {
+        matches!(self, Self::Tessellation | Self::Compute)
+    }
+
     /// Whether it does less than draw the surface from control vertices that move: what the others cannot get below.
     pub fn is_floor(self) -> bool {
-        matches!(self, Self::Bilinear | Self::VertexBuffer)
+        self.evaluation().is_none()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::drawable::timed;
 use super::scene::Scene;
-use super::{Bench, BenchError, Camera, Contestant, Path, Subject};
+use super::{Bench, BenchError, Camera, Contestant, Subject};
 use crate::renderer::{DrawItem, Evaluation, ModelId, ModelTables, Options, Renderer, Style, Target};
 
 /// What the models of a frame are.
@@ -54,7 +54,7 @@ impl Bench<'_> {
         if models == 0 {
             return Err(BenchError::BadOption { what: "models", given: models, least: 1 });
         }
-        if !matches!(contestant.path, Path::Tessellation | Path::Compute) {
+        if !contestant.path.is_recorded() {
             return Err(BenchError::NotRecorded { path: contestant.path.name() });
         }
         let lane = self.lane(subject);

@@ -35,8 +35,8 @@ impl Construction {
 
 /// What evaluates the patches.
 ///
-/// All but the tessellation stages and subdivision evaluate on a lattice with the same number of segments along every edge, from 1 to 1024:
-/// they are for [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), or for factors of edges
+/// All but the tessellation stages and subdivision evaluate on a lattice with the same number of segments along every edge,
+/// from 1 to 1024: they are for [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), or for factors of edges
 /// ([`ModelOptions::edge_factors`]) of which the largest holds inside patches, and so far without displacement and shared
 /// normals. Nothing is culled. Where patches share positions to the last bit, they do so here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

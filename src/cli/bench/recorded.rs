@@ -4,7 +4,7 @@ use super::super::error::CliError;
 use super::super::output::Progress;
 use super::facts::LeftOut;
 use super::results::{Results, Times, Who};
-use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Path, Recording, Subject};
+use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Recording, Subject};
 use ash_subdiv::headless::Headless;
 use serde::{Deserialize, Serialize};
 
@@ -48,7 +48,7 @@ pub(super) fn record(
     models: u32,
     results: &mut Results,
 ) -> Result<(), CliError> {
-    let recorded = |contestant: &&Contestant| matches!(contestant.path, Path::Tessellation | Path::Compute);
+    let recorded = |contestant: &&Contestant| contestant.path.is_recorded();
     let contestants: Vec<Contestant> = contestants.iter().filter(recorded).copied().collect();
     let progress = Progress::bar("recording", (subjects.len() * contestants.len()) as u64);
     let bench = Bench::new(headless, options.clone())?;
