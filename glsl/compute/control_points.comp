@@ -1,16 +1,99 @@
-// The cached construction, once a frame: the control points that each corner of each patch owns. One invocation for each
-// corner.
-// variants: OWNED=4, OWNED=5, OWNED=6, OWNED=8
+// The cached construction, once a frame, after glsl/compute/frames.comp: what the corners of a patch own and share. The two stages
+// of the two-stage construction in one invocation for each patch.
+// variants: GREGORY, GREGORY+TRIANGLE, ACC, PM, PM+TRIANGLE, PM+PENTAGON
+// variants: SHARED, GREGORY+SHARED, GREGORY+TRIANGLE+SHARED, DISPLACED, GREGORY+DISPLACED, GREGORY+TRIANGLE+DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "control_points.glsl"
+#ifdef DISPLACED
+#define SHARED
+#endif
+#define KEPT_FRAMES
+#define MAKES_POINTS
+#include "cached.glsl"
+#include "corner.glsl"
+#include "invocation.glsl"
 
-layout(local_size_x = 64) in;
+#ifdef TRIANGLE
+const uint CORNERS = 3u;
+#elif defined(PENTAGON)
+const uint CORNERS = 5u;
+#else
+const uint CORNERS = 4u;
+#endif
+
+#ifdef GREGORY
+#define OWNED 5
+#elif defined(ACC)
+#define OWNED 8
+#elif defined(PM)
+#define OWNED 6
+#else
+#define OWNED 4
+#endif
+
+// What the two stages hand on, by corner.
+vec3 in_centre[CORNERS];
+vec4 in_limit[CORNERS];
+vec3 in_plus[CORNERS];
+vec3 in_minus[CORNERS];
+#ifdef INNER
+vec3 in_inner[CORNERS][INNER];
+#endif
+vec3 owned[CORNERS][OWNED];
+#define OWNED_BY(k) owned[k]
+
+#ifdef GREGORY
+#include "gregory_points.glsl"
+#elif defined(ACC)
+#include "acc_points.glsl"
+#elif defined(PM)
+vec3 centre_share[CORNERS];
+vec3 b112_sum[CORNERS];
+#include "pm_points.glsl"
+#else
+#include "bicubic_points.glsl"
+#endif
+
+#define EACH_CORNER(f) for (uint k = 0u; k < CORNERS; ++k) { f(k); }
 
 void main() {
-    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    uint i = group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
-    if (i < patches.invocations) {
-        make_control_points(i);
+    uint index = invocation_number();
+    if (index >= invocations.count) {
+        return;
+    }
+    uint first = invocations.first_corner + index * CORNERS;
+    for (uint k = 0u; k < CORNERS; ++k) {
+        Corner corner = corner_of_patch(first + k);
+        in_centre[k] = corner.centre;
+        in_limit[k] = corner.limit;
+        in_plus[k] = corner.plus;
+        in_minus[k] = corner.minus;
+#ifdef INNER
+        in_inner[k] = corner.inner;
+#endif
+#ifdef SHARED
+        for (uint i = 0u; i < SHARED_VECTORS; ++i) {
+            keep_vector(first + k, OWNED + i, corner.with[i]);
+        }
+#endif
+    }
+#ifdef GREGORY
+    EACH_CORNER(gregory_points)
+#elif defined(ACC)
+    EACH_CORNER(acc_points)
+#elif defined(PM)
+    EACH_CORNER(pm_outer_points)
+    EACH_CORNER(pm_points_beside)
+#ifdef PENTAGON
+    EACH_CORNER(pm_sum_inside)
+#endif
+    EACH_CORNER(pm_point_inside)
+#else
+    EACH_CORNER(bicubic_points)
+#endif
+    for (uint k = 0u; k < CORNERS; ++k) {
+        for (uint i = 0u; i < OWNED; ++i) {
+            keep_vector(first + k, i, owned[k][i]);
+        }
     }
 }

@@ -1,5 +1,4 @@
-// Second stage of the two-stage construction: an ACC patch from its corners' rings. Each corner owns b at the corner, along
-// its plus and minus edge and inside, then t+, t-, x+, x-. Rust twin: `acc_points` in src/patch/acc.rs.
+// Second stage of the two-stage construction: an ACC patch from its corners' rings.
 // variants: CAPTURE, CAPTURE_POINTS, TEXCOORD
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -9,30 +8,11 @@
 #define INNER 5
 #include "control.glsl"
 #include "frames.glsl"
-
-// x+ or x-: `near` and `far` are the geometry's points along the edge, `middle` is that between its faces.
-vec3 acc_across(vec3 inner, vec3 middle, vec3 near, vec3 far, vec3 tangent, float cos_near, float cos_far) {
-    return 2.0 * cos_near * (far - near) - (cos_far / 3.0) * tangent + 3.0 * (inner - middle);
-}
+#include "acc_points.glsl"
 
 void main() {
     uint k = uint(gl_InvocationID);
-    uint next = (k + 1u) & 3u;
-    uint before = (k + 3u) & 3u;
-    vec3 inner = in_inner[k][0], along_plus = in_inner[k][3], along_minus = in_inner[k][4];
-    vec3 t_plus = 3.0 * in_plus[k];
-    vec3 t_minus = 3.0 * in_minus[k];
-    owned[gl_InvocationID][0] = in_limit[k].xyz;
-    owned[gl_InvocationID][1] = along_plus;
-    owned[gl_InvocationID][2] = along_minus;
-    owned[gl_InvocationID][3] = inner;
-    owned[gl_InvocationID][4] = t_plus;
-    owned[gl_InvocationID][5] = t_minus;
-    float cosine = in_limit[k].w;
-    owned[gl_InvocationID][6] = acc_across(inner, in_inner[k][1], along_plus, in_inner[next][4], t_plus, cosine,
-                                           in_limit[next].w);
-    owned[gl_InvocationID][7] = acc_across(inner, in_inner[k][2], along_minus, in_inner[before][3], t_minus, cosine,
-                                           in_limit[before].w);
+    acc_points(k);
     finish_framed_corner(k);
     barrier();
     finish_patch(in_patch_number[0]);

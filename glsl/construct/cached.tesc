@@ -22,23 +22,33 @@
 #define HULL 0
 #endif
 #include "control.glsl"
-#include "cached.glsl"
 #ifdef SHARED
-#include "shared.glsl"
+#include "write_shared.glsl"
 #endif
 
-layout(location = 4) in uint in_patch_number[];
+layout(location = 0) in vec3 in_owned[][OWNED];
+layout(location = 8) in uint in_patch_number[];
+#ifdef SHARED
+layout(location = 7) in uint in_shared_bits[];
+layout(location = 9) in vec3 in_shared_with[][SHARED_VECTORS];
+#ifdef DISPLACED
+layout(location = 6) in float in_shared_lod[];
+#endif
+#endif
 
 void main() {
-    uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
-    uint at = corner_points(corner);
     for (uint i = 0u; i < OWNED; ++i) {
-        uint x = at + 3u * i;
-        owned[gl_InvocationID][i] = vec3(control_points[x], control_points[x + 1u], control_points[x + 2u]);
+        owned[gl_InvocationID][i] = in_owned[gl_InvocationID][i];
     }
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
-    write_shared(corner, share_corner(corner));
+    uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
+#ifdef DISPLACED
+    float lod = in_shared_lod[gl_InvocationID];
+#else
+    float lod = 0.0;
+#endif
+    write_shared(corner, in_shared_with[gl_InvocationID], in_shared_bits[gl_InvocationID], lod);
 #endif
     barrier();
     finish_patch(in_patch_number[0]);

@@ -1,15 +1,32 @@
 // Conversion by the geometry shader, the first of two passes (Ni et al. 2008): the control points that each corner of each patch
-// owns, to where the cached construction keeps them. Draws nothing.
+// owns, with the weights of the stencil table, to where the cached construction keeps them. Draws nothing.
 // variants: OWNED=4, OWNED=5, OWNED=6, OWNED=8
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "control_points.glsl"
+#ifndef OWNED
+#define OWNED 4
+#endif
+#define MAKES_POINTS
+#include "stencils.glsl"
+#include "cached.glsl"
 
 layout(points) in;
 layout(points, max_vertices = 1) out;
 
+// The patches of one kind. Rust twin: `Patches` in src/renderer/conversion.rs.
+layout(push_constant, std430) uniform Patches {
+    uint first_patch;
+    uint first_corner;
+    uint corners;  // of a patch
+} patches;
+
 layout(location = 0) in uint corner_number[];
 
 void main() {
-    make_control_points(corner_number[0]);
+    uint i = corner_number[0];
+    vec3 points[OWNED];
+    stencil_points(patches.first_patch + i / patches.corners, i % patches.corners, patches.corners, points);
+    for (uint k = 0u; k < OWNED; ++k) {
+        keep_vector(patches.first_corner + i, k, points[k]);
+    }
 }

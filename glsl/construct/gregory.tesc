@@ -1,5 +1,4 @@
 // Second stage of the two-stage construction: the control points of a Gregory patch from the frames of its corners.
-// Each corner owns p and, as seen from there, e+, e-, f+, f-. Rust twin: `gregory_points` in src/patch/gregory.rs.
 // variants: CAPTURE, CAPTURE_POINTS, TEXCOORD, SHARED, SHARED+CAPTURE, SHARED+TEXCOORD, DISPLACED, DISPLACED+CAPTURE
 // variants: TRIANGLE, TRIANGLE+CAPTURE, TRIANGLE+CAPTURE_POINTS, TRIANGLE+TEXCOORD, TRIANGLE+SHARED, TRIANGLE+SHARED+CAPTURE, TRIANGLE+SHARED+TEXCOORD, TRIANGLE+DISPLACED, TRIANGLE+DISPLACED+CAPTURE
 #version 460
@@ -8,27 +7,11 @@
 #define INNER 2
 #include "control.glsl"
 #include "frames.glsl"
-
-// f+ or f- as seen from the corner: `near` and `far` are the edge points, `side` the transversal as seen from this face.
-vec3 face_point(vec3 near, vec3 far, float cos_near, float cos_far, vec3 side) {
-    const float d = CORNERS == 4u ? 3.0 : 4.0;
-    return ((d - 2.0 * cos_near - cos_far) * near + (2.0 * cos_near) * far + side) / d;
-}
+#include "gregory_points.glsl"
 
 void main() {
     uint k = uint(gl_InvocationID);
-    uint next = k + 1u == CORNERS ? 0u : k + 1u;
-    uint before = k == 0u ? CORNERS - 1u : k - 1u;
-    vec4 limit = in_limit[k], limit_next = in_limit[next], limit_before = in_limit[before];
-    vec3 plus = in_plus[k], minus = in_minus[k];
-    vec3 far_plus = (limit_next.xyz - limit.xyz) + in_minus[next];
-    vec3 far_minus = (limit_before.xyz - limit.xyz) + in_plus[before];
-    owned[gl_InvocationID][0] = limit.xyz;
-    owned[gl_InvocationID][1] = plus;
-    owned[gl_InvocationID][2] = minus;
-    owned[gl_InvocationID][3] = face_point(plus, far_plus, limit.w, limit_next.w, in_inner[k][0]);
-    // The face lies on the right of its minus edge.
-    owned[gl_InvocationID][4] = face_point(minus, far_minus, limit.w, limit_before.w, -in_inner[k][1]);
+    gregory_points(k);
     finish_framed_corner(k);
     barrier();
     finish_patch(in_patch_number[0]);

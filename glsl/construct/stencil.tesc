@@ -25,6 +25,7 @@
 #include "stencils.glsl"
 #ifdef SHARED
 #include "shared.glsl"
+#include "write_shared.glsl"
 #endif
 
 layout(location = 4) in uint in_patch_number[];
@@ -38,7 +39,15 @@ void main() {
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
     uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
-    write_shared(corner, share_corner(corner));
+    uvec2 place = patch_corners[corner];
+    FramedRing own = framed_ring(place.x), speaker = own;
+    float lod = 0.0;
+#ifdef DISPLACED
+    speaker = corner_speaker(corner, own);
+    lod = corner_lod(corner, speaker);
+#endif
+    SharedEdge plus = shared_edge(own, place.y), minus = shared_edge(own, edge_after(own.ring, place.y));
+    write_shared(corner, share_corner(corner, own, speaker, plus, minus), corner_bits(corner), lod);
 #endif
     barrier();
     finish_patch(in_patch_number[0]);

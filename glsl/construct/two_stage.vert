@@ -8,16 +8,9 @@
 #define SHARED
 #endif
 #include "draw.glsl"
-#include "corner_faces.glsl"
-#ifdef GREGORY
-#define INNER 2
-#elif defined(ACC)
-#include "corner_acc.glsl"
-#elif defined(PM)
-#include "corner_pm.glsl"
-#endif
-#ifdef SHARED
-#include "shared.glsl"
+#include "corner.glsl"
+#ifdef DISPLACED
+#include "shared_lookup.glsl"
 #endif
 
 layout(constant_id = 0) const uint CORNERS = 4u;
@@ -43,40 +36,20 @@ void main() {
     uint vertex = uint(gl_VertexIndex);
     uint first = uint(gl_InstanceIndex) * draw.patches_per_instance;
     patch_number = first + vertex / CORNERS;
-    uint corner = draw.first_corner + first * CORNERS + vertex;
-    uvec2 place = patch_corners[corner];
-    Ring ring = ring_at(place.x);
-    uint minus_edge = edge_after(ring, place.y);
-    centre = vertex_position(ring.vertex);
-    vec3 p, a, b;
-    ring_frame(ring, centre, p, a, b);
-    limit = vec4(p, ring_cosine(ring));
-    vec3 here = edge_neighbour(ring, place.y), next = edge_neighbour(ring, minus_edge);
-    plus = edge_vector(ring, place.y, centre, here, a, b);
-    minus = edge_vector(ring, minus_edge, centre, next, a, b);
-#if defined(INNER) || defined(SHARED)
-    CornerFaces faces = corner_faces(ring, place.y, minus_edge, centre, here, next);
-#endif
-#if defined(GREGORY) || defined(SHARED)
-    vec3 r[2] = transversals(ring, place.y, minus_edge, faces, a, b);
-#endif
-#ifdef GREGORY
-    inner = r;
-#elif defined(ACC)
-    inner = acc_corner(ring, faces, p, plus, minus);
-#elif defined(PM)
-    inner = pm_corner(faces);
+    uint number = draw.first_corner + first * CORNERS + vertex;
+    Corner corner = corner_of_patch(number);
+    centre = corner.centre;
+    limit = corner.limit;
+    plus = corner.plus;
+    minus = corner.minus;
+#ifdef INNER
+    inner = corner.inner;
 #endif
 #ifdef SHARED
-    vec3 e_before = edge_vector(ring, edge_before(ring, place.y), centre, faces.before, a, b);
-    vec3 e_after = edge_vector(ring, edge_after(ring, minus_edge), centre, faces.after, a, b);
-    SharedEdge own_plus = SharedEdge(across(ring, place.y, e_before, plus, minus), r[0]);
-    SharedEdge own_minus = SharedEdge(across(ring, minus_edge, plus, minus, e_after), r[1]);
-    SharedCorner with = share_corner(corner, FramedRing(place.x, ring, centre, p, a, b), own_plus, own_minus);
-    shared_with = with.vectors;
-    shared_bits = with.bits;
+    shared_with = corner.with;
+    shared_bits = corner_bits(number);
 #ifdef DISPLACED
-    shared_lod = with.lod;
+    shared_lod = corner_lod(number, corner.speaker);
 #endif
 #endif
 }

@@ -1,19 +1,34 @@
-// The control points of the cached construction, corner by corner. Rust twin: `ModelTables::control_point_bytes` in
-// src/renderer/tables.rs.
+// What the cached construction keeps of each corner: the control points that it owns and, after them, what it shares. Rust twin:
+// `ModelTables::kept_bytes` in src/renderer/tables.rs.
 #ifndef CACHED_GLSL
 #define CACHED_GLSL
 
-// Control points that a corner has room for: as many as the corners of any patch of the model own.
+// Vectors that a corner has room for: as many as the corners of any patch of the model need.
 layout(constant_id = 3) const uint STRIDE = 8u;
 
-#ifndef CACHED_ACCESS
-#define CACHED_ACCESS readonly
+#ifdef MAKES_POINTS
+layout(set = 1, binding = 12, std430) writeonly buffer ControlPoints { float control_points[]; };
+#else
+layout(set = 1, binding = 12, std430) readonly buffer ControlPoints { float control_points[]; };
 #endif
-layout(set = 1, binding = 12, std430) CACHED_ACCESS buffer ControlPoints { float control_points[]; };
 
-// Where the points of a corner start; `corner` counts through all patches.
-uint corner_points(uint corner) {
-    return 3u * STRIDE * corner;
+// Where vector i of a corner starts; `corner` counts through all patches.
+uint kept_at(uint corner, uint i) {
+    return 3u * (STRIDE * corner + i);
 }
+
+#ifdef MAKES_POINTS
+void keep_vector(uint corner, uint i, vec3 x) {
+    uint at = kept_at(corner, i);
+    control_points[at] = x.x;
+    control_points[at + 1u] = x.y;
+    control_points[at + 2u] = x.z;
+}
+#else
+vec3 kept_vector(uint corner, uint i) {
+    uint at = kept_at(corner, i);
+    return vec3(control_points[at], control_points[at + 1u], control_points[at + 2u]);
+}
+#endif
 
 #endif

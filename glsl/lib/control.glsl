@@ -28,6 +28,8 @@ layout(vertices = 4) out;
 #endif
 
 layout(location = 0) out vec3 owned[][OWNED];
+// To write to: of the corner of this invocation.
+#define OWNED_BY(k) owned[gl_InvocationID]
 #ifdef TEXCOORD
 layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
 layout(location = 8) out vec2 texcoord[];

@@ -4,7 +4,7 @@
 #define FRAMES_GLSL
 
 #ifdef SHARED
-#include "shared.glsl"
+#include "write_shared.glsl"
 #endif
 
 layout(location = 0) in vec3 in_centre[];
@@ -27,13 +27,12 @@ layout(location = 15) in float in_shared_lod[];
 void finish_framed_corner(uint k) {
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
-    SharedCorner with;
-    with.vectors = in_shared_with[k];
-    with.bits = in_shared_bits[k];
 #ifdef DISPLACED
-    with.lod = in_shared_lod[k];
+    float lod = in_shared_lod[k];
+#else
+    float lod = 0.0;
 #endif
-    write_shared(draw.first_corner + in_patch_number[0] * CORNERS + k, with);
+    write_shared(draw.first_corner + in_patch_number[0] * CORNERS + k, in_shared_with[k], in_shared_bits[k], lod);
 #endif
 }
 

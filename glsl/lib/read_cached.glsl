@@ -8,10 +8,8 @@
 // Those of a patch whose first corner this is.
 void read_cached(uint first_corner) {
     for (uint k = 0u; k < CORNERS; ++k) {
-        uint from = corner_points(first_corner + k);
         for (uint i = 0u; i < OWNED; ++i) {
-            uint x = from + 3u * i;
-            owned[k][i] = vec3(control_points[x], control_points[x + 1u], control_points[x + 2u]);
+            owned[k][i] = kept_vector(first_corner + k, i);
         }
     }
 }

@@ -6,45 +6,49 @@ use super::stages::PatchStages;
 use crate::gpu::{
     ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout, shaders,
 };
-use crate::table::{PatchGroup, PatchPlan};
+use crate::table::PatchPlan;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Invocations in a workgroup of `glsl/compute/control_points.comp`.
+/// Invocations in a workgroup of `glsl/lib/invocation.glsl`.
 const GROUP: u32 = 64;
 /// Every Vulkan device has as many workgroups along an axis.
 const MAX_GROUPS: u32 = 65_535;
 
-/// The corners of the patches of a group, as push constants. GLSL twin: `Patches` in `glsl/lib/control_points.glsl`.
+/// Push constants. GLSL twin: `glsl/lib/invocation.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct Corners {
-    first_patch: u32,
+struct Invocations {
+    count: u32,
+    /// Of the patches.
     first_corner: u32,
-    corners: u32,
-    pub invocations: u32,
 }
 
-impl Corners {
-    pub(super) fn new(group: &PatchGroup) -> Self {
-        let corners = group.kind.corners() as u32;
-        Self {
-            first_patch: group.patches.start as u32,
-            first_corner: group.first_corner as u32,
-            corners,
-            invocations: group.patches.len() as u32 * corners,
-        }
+/// What pipelines are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Step {
+    Frames {
+        /// Whether rings may have pentagons.
+        pentagons: bool,
+    },
+    /// By [`PatchStages::construction`].
+    Points(PatchStages),
+}
+
+impl Step {
+    fn frames(stages: PatchStages) -> Self {
+        Self::Frames { pentagons: stages.scheme.has_pentagons() }
     }
 }
 
-/// Pipelines by [`PatchStages::cached_key`].
+/// The pipelines of the cached construction.
 pub(super) struct CachedPipelines {
     context: Arc<DeviceContext>,
     layout: Owned<vk::PipelineLayout>,
     cache: vk::PipelineCache,
-    made: HashMap<[u32; 2], Owned<vk::Pipeline>>,
+    made: HashMap<Step, Owned<vk::Pipeline>>,
 }
 
 impl CachedPipelines {
@@ -54,7 +58,7 @@ impl CachedPipelines {
         sets: [vk::DescriptorSetLayout; 2],
         cache: vk::PipelineCache,
     ) -> Result<Self, GpuError> {
-        let size = size_of::<Corners>() as u32;
+        let size = size_of::<Invocations>() as u32;
         let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
         // SAFETY: the set layouts are of this device.
         let layout = unsafe { pipeline_layout(context, "subdiv control points", &sets, &constants)? };
@@ -63,52 +67,85 @@ impl CachedPipelines {
 
     /// Makes what patches need.
     pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
-        let key = stages.cached_key();
-        if self.made.contains_key(&key) {
+        let stages = stages.construction();
+        let most = self.context.properties().max_tessellation_level as f32;
+        let constants = stages.specialization(0, most);
+        self.make_one(Step::frames(stages), shaders::COMPUTE_FRAMES_COMP, &constants)?;
+        self.make_one(Step::Points(stages), shaders::named(&stages.control_points())?, &constants)
+    }
+
+    fn make_one(&mut self, step: Step, code: &[u32], constants: &[Specialization]) -> Result<(), GpuError> {
+        if self.made.contains_key(&step) {
             return Ok(());
         }
-        let [owned, stride] = key;
-        let name = format!("COMPUTE_CONTROL_POINTS_COMP_OWNED_{owned}");
-        let stride = [Specialization::uint(3, stride)];
         let desc = ComputePipelineDesc {
-            name: &format!("subdiv control points, {owned} a corner"),
+            name: &format!("subdiv {step:?}"),
             layout: self.layout.raw(),
-            shader: Shader::compute(shaders::named(&name)?).specialized(&stride),
+            shader: Shader::compute(code).specialized(constants),
             cache: self.cache,
         };
         // SAFETY: the shader is ours and matches the layout.
         let pipeline = unsafe { desc.create(&self.context)? };
-        self.made.insert(key, pipeline);
+        self.made.insert(step, pipeline);
         Ok(())
+    }
+
+    /// Records the dispatch for so many rings of a model, whose set this is.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering; the pipelines of `stages` were made.
+    pub(super) unsafe fn cmd_frames(
+        &self,
+        cmd: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        stages: &[PatchStages],
+        rings: u32,
+    ) {
+        let Some(&stages) = stages.first().filter(|_| rings > 0) else { return };
+        // SAFETY: as the caller promises.
+        unsafe {
+            self.cmd_bind(cmd, set);
+            self.cmd_dispatch(cmd, Step::frames(stages), Invocations { count: rings, first_corner: 0 });
+        }
     }
 
     /// Records the dispatches for all patches of a model, whose set this is.
     ///
     /// # Safety
-    /// `cmd` is being recorded, outside rendering; the pipelines of `stages` were made.
-    pub(super) unsafe fn cmd_compute(
+    /// As [`CachedPipelines::cmd_frames`]; the frames are there.
+    pub(super) unsafe fn cmd_points(
         &self,
         cmd: vk::CommandBuffer,
         set: vk::DescriptorSet,
         stages: &[PatchStages],
         plan: &PatchPlan,
     ) {
-        let (device, layout) = (self.context.device(), self.layout.raw());
+        // SAFETY: as the caller promises.
+        unsafe { self.cmd_bind(cmd, set) };
+        for (&stages, group) in stages.iter().zip(plan.groups()) {
+            let (count, first_corner) = (group.patches.len() as u32, group.first_corner as u32);
+            // SAFETY: as the caller promises.
+            unsafe { self.cmd_dispatch(cmd, Step::Points(stages.construction()), Invocations { count, first_corner }) };
+        }
+    }
+
+    unsafe fn cmd_bind(&self, cmd: vk::CommandBuffer, set: vk::DescriptorSet) {
         let point = vk::PipelineBindPoint::COMPUTE;
         // SAFETY: as the caller promises.
-        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[set], &[]) };
-        for (&stages, group) in stages.iter().zip(plan.groups()) {
-            let Some(pipeline) = self.made.get(&stages.cached_key()) else { continue };
-            let corners = Corners::new(group);
-            let groups = corners.invocations.div_ceil(GROUP);
-            let rows = groups.div_ceil(MAX_GROUPS);
-            // SAFETY: as the caller promises.
-            unsafe {
-                device.cmd_bind_pipeline(cmd, point, pipeline.raw());
-                let stage = vk::ShaderStageFlags::COMPUTE;
-                device.cmd_push_constants(cmd, layout, stage, 0, bytemuck::bytes_of(&corners));
-                device.cmd_dispatch(cmd, groups.div_ceil(rows), rows, 1);
-            }
+        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 1, &[set], &[]) };
+    }
+
+    unsafe fn cmd_dispatch(&self, cmd: vk::CommandBuffer, step: Step, invocations: Invocations) {
+        let Some(pipeline) = self.made.get(&step) else { return };
+        let groups = invocations.count.div_ceil(GROUP);
+        let rows = groups.div_ceil(MAX_GROUPS);
+        let device = self.context.device();
+        // SAFETY: as the caller promises.
+        unsafe {
+            device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, pipeline.raw());
+            let (stage, bytes) = (vk::ShaderStageFlags::COMPUTE, bytemuck::bytes_of(&invocations));
+            device.cmd_push_constants(cmd, self.layout.raw(), stage, 0, bytes);
+            device.cmd_dispatch(cmd, groups.div_ceil(rows), rows, 1);
         }
     }
 }
@@ -125,10 +162,6 @@ impl Renderer {
         if !models.values().any(Model::is_stale) {
             return;
         }
-        for model in models.values_mut().filter(|model| model.is_stale()) {
-            // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
-            unsafe { model.cmd_construct(pipelines, cmd) };
-        }
         use vk::PipelineStageFlags as Stage;
         let makers = readers & (Stage::COMPUTE_SHADER | Stage::GEOMETRY_SHADER);
         let written = [vk::MemoryBarrier::default()
@@ -136,8 +169,17 @@ impl Renderer {
             .dst_access_mask(vk::AccessFlags::SHADER_READ)];
         let none = vk::DependencyFlags::empty();
         let device = context.device();
-        // SAFETY: as the caller promises.
-        unsafe { device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]) };
+        // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
+        unsafe {
+            for model in models.values().filter(|model| model.is_stale()) {
+                model.cmd_frames(pipelines, cmd);
+            }
+            device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]);
+            for model in models.values().filter(|model| model.is_stale()) {
+                model.cmd_points(pipelines, cmd);
+            }
+            device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]);
+        }
         for model in models.values_mut().filter(|model| model.is_stale()) {
             // SAFETY: as above, after the control points.
             unsafe { model.cmd_evaluate(&pipelines.lattice, cmd) };

@@ -1,6 +1,5 @@
 //! Control points made by the geometry shader, in a pass of their own before the draws (Ni et al. 2008).
 
-use super::cached::Corners;
 use super::stages::PatchStages;
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Specialization, VkResultExt,
@@ -8,12 +7,22 @@ use crate::gpu::{
 };
 use crate::table::PatchPlan;
 use ash::vk;
+use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 const NAME: &str = "subdiv conversion";
 
-/// Pipelines by [`PatchStages::cached_key`], and a pass without attachments to run them in.
+/// The patches of one kind, as push constants. GLSL twin: `Patches` in `glsl/construct/convert.geom`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Patches {
+    first_patch: u32,
+    first_corner: u32,
+    corners: u32,
+}
+
+/// Pipelines by how many control points a corner owns and has room for, and a pass without attachments to run them in.
 pub(super) struct Conversion {
     context: Arc<DeviceContext>,
     layout: Owned<vk::PipelineLayout>,
@@ -21,6 +30,10 @@ pub(super) struct Conversion {
     pass: Owned<vk::RenderPass>,
     framebuffer: Owned<vk::Framebuffer>,
     made: HashMap<[u32; 2], Owned<vk::Pipeline>>,
+}
+
+fn key(stages: PatchStages) -> [u32; 2] {
+    [stages.scheme.owned(stages.kind) as u32, stages.stride]
 }
 
 impl Conversion {
@@ -33,7 +46,7 @@ impl Conversion {
         let constants = [vk::PushConstantRange {
             stage_flags: vk::ShaderStageFlags::GEOMETRY,
             offset: 0,
-            size: size_of::<Corners>() as u32,
+            size: size_of::<Patches>() as u32,
         }];
         let subpass = [vk::SubpassDescription::default().pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)];
         let pass = vk::RenderPassCreateInfo::default().subpasses(&subpass);
@@ -52,7 +65,7 @@ impl Conversion {
 
     /// Makes what patches need.
     pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
-        let key = stages.cached_key();
+        let key = key(stages);
         if self.made.contains_key(&key) {
             return Ok(());
         }
@@ -99,14 +112,16 @@ impl Conversion {
             device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[set], &[]);
         }
         for (&stages, group) in stages.iter().zip(plan.groups()) {
-            let Some(pipeline) = self.made.get(&stages.cached_key()) else { continue };
-            let corners = Corners::new(group);
+            let Some(pipeline) = self.made.get(&key(stages)) else { continue };
+            let corners = group.kind.corners() as u32;
+            let (first_patch, first_corner) = (group.patches.start as u32, group.first_corner as u32);
+            let patches = Patches { first_patch, first_corner, corners };
             // SAFETY: as above.
             unsafe {
                 device.cmd_bind_pipeline(cmd, point, pipeline.raw());
                 let stage = vk::ShaderStageFlags::GEOMETRY;
-                device.cmd_push_constants(cmd, layout, stage, 0, bytemuck::bytes_of(&corners));
-                device.cmd_draw(cmd, corners.invocations, 1, 0, 0);
+                device.cmd_push_constants(cmd, layout, stage, 0, bytemuck::bytes_of(&patches));
+                device.cmd_draw(cmd, group.patches.len() as u32 * corners, 1, 0, 0);
             }
         }
         // SAFETY: as above.

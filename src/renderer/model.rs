@@ -6,13 +6,16 @@ use super::pipelines::{MODEL_BUFFERS, Pipelines};
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
 use super::{
-    Construction, DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables,
+    DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables,
     Options,
 };
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::table::PatchGroup;
 use ash::vk;
 use std::sync::Arc;
+
+/// Of set 1: frames are in the place of the stencil table, which the cached construction does without.
+const FRAMES_BINDING: usize = 5;
 
 /// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
@@ -32,8 +35,9 @@ pub(super) struct Model {
     /// The factor of each patch corner's plus edge, if edges are to have their own.
     corner_factors: Option<Streamed>,
     largest_edge_factor: f32,
-    /// What the cached construction keeps.
+    /// What the cached construction keeps of corners, and of rings.
     control_points: Option<Buffer>,
+    frames: Option<Buffer>,
     pub evaluation: Evaluation,
     /// What is drawn instead of patches, once it is known how finely.
     pub lattice: Option<Lattice>,
@@ -111,20 +115,20 @@ impl Model {
 
         let position_bytes = 12 * tables.stored_vertices() as u64;
         check("positions", position_bytes)?;
-        let frames = options.frames_in_flight;
-        let bytes = tables.control_point_bytes();
-        check("control points", bytes)?;
-        let control_points = match tables.construction() {
-            Construction::Cached => Some(device_buffer(context, &format!("{name}: control points"), bytes, storage)?),
-            _ => None,
+        let in_flight = options.frames_in_flight;
+        let kept = |what: &'static str, bytes: u64| -> Result<_, Error> {
+            check(what, bytes)?;
+            Ok((bytes > 0).then(|| device_buffer(context, &format!("{name}: {what}"), bytes, storage)).transpose()?)
         };
+        let [point_bytes, frame_bytes] = tables.kept_bytes();
+        let (control_points, frames) = (kept("control points", point_bytes)?, kept("frames", frame_bytes)?);
         let stored = tables.stored_positions(control);
-        let positions = Streamed::new(context, &format!("{name}: positions"), &stored, frames)?;
+        let positions = Streamed::new(context, &format!("{name}: positions"), &stored, in_flight)?;
         drop(stored);
         let corner_factors = match tables.edges() {
             Some(edges) => {
                 let ones = vec![1.0f32; edges.of_corners.len()];
-                Some(Streamed::new(context, &format!("{name}: factors of edges"), &ones, frames)?)
+                Some(Streamed::new(context, &format!("{name}: factors of edges"), &ones, in_flight)?)
             }
             None => None,
         };
@@ -152,12 +156,15 @@ impl Model {
         let mut buffers = vec![positions.descriptor()];
         let table = |&(offset, range)| vk::DescriptorBufferInfo { buffer: table_buffer.raw(), offset, range };
         buffers.extend(ranges.iter().map(table));
+        if let Some(frames) = &frames {
+            buffers[FRAMES_BINDING] = frames.descriptor();
+        }
         // Every descriptor has to be written; without factors of its own a model's edges never read any.
         buffers.push(corner_factors.as_ref().map_or(positions.descriptor(), Streamed::descriptor));
         buffers.push(control_points.as_ref().map_or(positions.descriptor(), Buffer::descriptor));
         write_set(context, set, &buffers, map);
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
-        let (sharing, stride, has_speakers) = (tables.sharing(), tables.cached_stride(), tables.has_speakers());
+        let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_vectors(), tables.has_speakers());
         // The control shader knows by its flags.
         let edge_factors = tables.edges().is_some() && evaluation != Evaluation::Tessellation;
         let stages = |group: &PatchGroup| {
@@ -176,6 +183,7 @@ impl Model {
             corner_factors,
             largest_edge_factor: 1.0,
             control_points,
+            frames,
             evaluation,
             lattice: None,
             stale: false,
@@ -271,11 +279,20 @@ impl Model {
         }
     }
 
-    /// Records what makes the control points.
+    /// Records what makes the frames of the rings, if they are kept.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after the copies; `pipelines` have those of the model's kinds.
-    pub(super) unsafe fn cmd_construct(&self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
+    pub(super) unsafe fn cmd_frames(&self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
+        // SAFETY: as the caller promises.
+        unsafe { pipelines.cached.cmd_frames(cmd, self.set, &self.stages, self.tables.kept_frames()) };
+    }
+
+    /// Records what makes the control points.
+    ///
+    /// # Safety
+    /// As [`Model::cmd_frames`], after these.
+    pub(super) unsafe fn cmd_points(&self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
         let (set, stages, plan) = (self.set, &self.stages, &self.tables.plan);
         // SAFETY: as the caller promises.
         unsafe {
@@ -283,7 +300,7 @@ impl Model {
                 Some(conversion) if self.evaluation == Evaluation::GeometryTwoPass => {
                     conversion.cmd_convert(cmd, set, stages, plan);
                 }
-                _ => pipelines.cached.cmd_compute(cmd, set, stages, plan),
+                _ => pipelines.cached.cmd_points(cmd, set, stages, plan),
             }
         }
     }
@@ -314,7 +331,7 @@ impl Model {
         let [positions, staged_positions] = self.positions.bytes();
         let [factors, staged_factors] = self.corner_factors.as_ref().map_or([0; 2], Streamed::bytes);
         usage.positions += positions + factors;
-        usage.control_points += self.control_points.as_ref().map_or(0, Buffer::size);
+        usage.control_points += self.control_points.iter().chain(&self.frames).map(Buffer::size).sum::<u64>();
         usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
         let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
         let [vertices, staged_indices] = self.lattice.as_ref().map_or([0; 2], Lattice::bytes);

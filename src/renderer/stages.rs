@@ -20,7 +20,7 @@ pub(super) struct PatchStages {
     pub has_speakers: bool,
     /// Whether edges of a lattice have factors of their own.
     pub edge_factors: bool,
-    /// Control points that a corner has room for where they are cached, else 0.
+    /// Vectors that a corner has room for where they are kept between draws, else 0.
     pub stride: u32,
 }
 
@@ -34,6 +34,15 @@ pub(super) enum Sharing {
 }
 
 impl Sharing {
+    /// How many vectors a corner shares. GLSL twin: `SHARED_VECTORS` in `glsl/lib/shared_bits.glsl`.
+    pub(super) fn vectors(self) -> u32 {
+        match self {
+            Self::Positions => 0,
+            Self::Normals => 5,
+            Self::Displacement => 6,
+        }
+    }
+
     /// At the end of a shader's name.
     fn suffix(self, capture: Capture) -> &'static str {
         match self {
@@ -64,8 +73,8 @@ impl PatchStages {
     /// Control points that go into the control shader: one a corner, or one a patch that only says which patch it is.
     pub(super) fn input_points(self) -> u32 {
         match self.construction {
-            Construction::TwoStage => self.kind.corners() as u32,
-            Construction::Stencil | Construction::Cached => 1,
+            Construction::TwoStage | Construction::Cached => self.kind.corners() as u32,
+            Construction::Stencil => 1,
         }
     }
 
@@ -79,21 +88,43 @@ impl PatchStages {
         }
     }
 
-    /// What tells apart the pipelines that make cached control points: those that a corner owns, and those it has room for.
-    pub(super) fn cached_key(self) -> [u32; 2] {
-        [self.scheme.owned(self.kind) as u32, self.stride]
+    /// What tells apart the pipelines that make cached control points: what is of no concern to them is as usual.
+    pub(super) fn construction(self) -> Self {
+        Self { evaluation: Evaluation::Tessellation, spacing: Spacing::Equal, edge_factors: false, ..self }
+    }
+
+    /// The name of the shader that makes control points for all draws of a frame.
+    pub(super) fn control_points(self) -> String {
+        let [file, _] = files(self.scheme, self.kind);
+        let scheme = if file == "REGULAR" { String::new() } else { format!("_{file}") };
+        let sharing = self.sharing.suffix(Capture::Off);
+        format!("COMPUTE_CONTROL_POINTS_COMP{scheme}{}{sharing}", self.domain_suffix())
+    }
+
+    /// Of shaders that are not of quads.
+    fn domain_suffix(self) -> &'static str {
+        match self.kind {
+            PatchKind::Triangle => "_TRIANGLE",
+            PatchKind::Pentagon => "_PENTAGON",
+            PatchKind::Regular | PatchKind::IrregularQuad => "",
+        }
     }
 
     /// The name of the vertex shader.
     pub(super) fn vertex(self, capture: Capture) -> String {
-        if self.input_points() == 1 {
-            return "CONSTRUCT_STENCIL_VERT".to_owned();
+        let sharing = self.sharing.suffix(capture);
+        match self.construction {
+            Construction::TwoStage => {}
+            Construction::Stencil => return "CONSTRUCT_STENCIL_VERT".to_owned(),
+            Construction::Cached => {
+                return format!("CONSTRUCT_CACHED_VERT_OWNED_{}{sharing}", self.scheme.owned(self.kind));
+            }
         }
         let inner = match files(self.scheme, self.kind)[0] {
             "REGULAR" => String::new(),
             scheme => format!("_{scheme}"),
         };
-        format!("CONSTRUCT_TWO_STAGE_VERT{inner}{}", self.sharing.suffix(capture))
+        format!("CONSTRUCT_TWO_STAGE_VERT{inner}{sharing}")
     }
 
     /// What the vertex and the control shader of draws with these flags are specialized to. `most` is the largest factor of
@@ -119,11 +150,7 @@ impl PatchStages {
             Construction::Stencil => format!("CONSTRUCT_STENCIL_TESC_OWNED_{}", self.scheme.owned(self.kind)),
             Construction::Cached => format!("CONSTRUCT_CACHED_TESC_OWNED_{}", self.scheme.owned(self.kind)),
         };
-        name += match self.kind {
-            PatchKind::Triangle => "_TRIANGLE",
-            PatchKind::Pentagon => "_PENTAGON",
-            PatchKind::Regular | PatchKind::IrregularQuad => "",
-        };
+        name += self.domain_suffix();
         name += self.sharing.suffix(capture);
         name += match capture {
             Capture::Points => "_CAPTURE_POINTS",
@@ -218,7 +245,7 @@ mod tests {
                     stride: 8,
                 };
                 for (capture, texcoords) in modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]) {
-                    let made = [stages.vertex(capture), stages.control(capture, texcoords)];
+                    let made = [stages.vertex(capture), stages.control(capture, texcoords), stages.control_points()];
                     let watched = match evaluation {
                         Evaluation::Tessellation => true,
                         Evaluation::Compute => capture == Capture::Off,

@@ -16,16 +16,16 @@ use std::borrow::Cow;
 #[derive(Debug, Clone)]
 pub struct ModelTables {
     pub(super) plan: PatchPlan,
-    /// Of the two-stage construction, and wherever normals are shared.
+    construction: Construction,
+    pub(super) evaluation: Evaluation,
+    /// Of the two-stage and the cached construction, and wherever normals are shared.
     rings: Option<RingTable>,
-    /// Of the stencil construction.
+    /// Of the stencil construction, and of conversion by the geometry shader.
     stencils: Option<StencilTable>,
     /// Of subdivision.
     fans: Option<SubdivisionTable>,
     /// Where normals are shared.
     shared: Option<SharedTable>,
-    /// Whether control points are kept between draws, and how many a corner has room for then.
-    cached: Option<usize>,
     pub(super) texcoords: Option<Vec<[f32; 2]>>,
     edges: Option<Edges>,
     /// Pairs of control vertices: the edges of the caller's mesh.
@@ -69,6 +69,9 @@ impl Edges {
     }
 }
 
+/// Bytes of a frame of a ring. GLSL twin: `glsl/lib/kept_frames.glsl`.
+const FRAME_BYTES: u64 = 4 * 12;
+
 /// Bytes of a table by its name.
 pub type TableBytes = (&'static str, u64);
 
@@ -87,12 +90,11 @@ impl ModelTables {
         };
         let topology = Topology::new(&prepared.mesh);
         let fans = subdivides.then(|| SubdivisionTable::new(&topology, &plan)).transpose()?;
+        let converts = options.evaluation == Evaluation::GeometryTwoPass;
         // The stencil table puts the patches in its own order, so it comes first.
-        let stencils = match options.construction {
-            _ if subdivides => None,
-            Construction::TwoStage => None,
-            Construction::Stencil | Construction::Cached => Some(StencilTable::new(&topology, &mut plan)?),
-        };
+        let stencils = (options.construction == Construction::Stencil && !subdivides || converts)
+            .then(|| StencilTable::new(&topology, &mut plan))
+            .transpose()?;
         let shared = match (options.displacement, options.shared_normals) {
             (Some(_), _) => Some(SharedTable::with_texcoords(&topology, &plan).ok_or(TableError::NoTexcoords)?),
             (None, true) => Some(SharedTable::new(&topology, &plan)),
@@ -102,19 +104,18 @@ impl ModelTables {
             return Err(TableError::NothingShared { scheme });
         }
         let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(&topology, &plan));
-        let most_owned = plan.groups().iter().map(|group| group.scheme.owned(group.kind)).max().unwrap_or(0);
-        let cached = (options.construction == Construction::Cached && !subdivides).then_some(most_owned);
         Ok(Self {
             texcoords: plan.texcoords(&topology),
             edges: options.edge_factors.then(|| Edges::new(&topology, &plan)),
             origins: prepared.origins(&plan),
             notices: prepared.notices(&topology, &plan),
             plan,
+            construction: options.construction,
+            evaluation: options.evaluation,
             rings,
             stencils,
             fans,
             shared,
-            cached,
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
@@ -175,16 +176,23 @@ impl ModelTables {
     }
 
     pub(super) fn construction(&self) -> Construction {
-        match self.stencils {
-            None => Construction::TwoStage,
-            Some(_) if self.cached.is_some() => Construction::Cached,
-            Some(_) => Construction::Stencil,
-        }
+        self.construction
     }
 
-    /// How many control points a corner has room for, where they are kept between draws; else 0.
-    pub(super) fn cached_stride(&self) -> u32 {
-        self.cached.unwrap_or(0) as u32
+    /// How many vectors a corner has room for, where what it owns and shares is kept between draws; else 0. GLSL twin:
+    /// `glsl/lib/cached.glsl`.
+    pub(super) fn kept_vectors(&self) -> u32 {
+        if self.construction != Construction::Cached || self.evaluation == Evaluation::Subdivision {
+            return 0;
+        }
+        let owned = self.plan.groups().iter().map(|group| group.scheme.owned(group.kind)).max().unwrap_or(0);
+        owned as u32 + self.sharing().vectors()
+    }
+
+    /// How many rings have frames that are kept between draws.
+    pub(super) fn kept_frames(&self) -> u32 {
+        let frames = self.kept_vectors() > 0 && self.evaluation != Evaluation::GeometryTwoPass;
+        self.rings.as_ref().filter(|_| frames).map_or(0, |rings| rings.headers.len() as u32)
     }
 
     /// What the evaluation takes from other patches.
@@ -196,10 +204,10 @@ impl ModelTables {
         }
     }
 
-    /// Bytes of the control points that the cached construction keeps.
-    pub(super) fn control_point_bytes(&self) -> u64 {
+    /// Bytes of what the cached construction keeps of corners, and of frames.
+    pub(super) fn kept_bytes(&self) -> [u64; 2] {
         let corners: usize = self.plan.patches().iter().map(|patch| patch.kind.corners()).sum();
-        12 * self.cached.unwrap_or(0) as u64 * corners as u64
+        [12 * u64::from(self.kept_vectors()) * corners as u64, FRAME_BYTES * u64::from(self.kept_frames())]
     }
 
     /// How many patches of a kind there are.
@@ -220,8 +228,8 @@ impl ModelTables {
     pub fn bytes(&self) -> Vec<TableBytes> {
         let positions = ("positions", 12 * self.stored_vertices() as u64);
         let tables = self.bindings().into_iter().filter(|(name, array)| *name != "texcoords" && !array.is_empty());
-        let cached = self.cached.map(|_| ("control_points", self.control_point_bytes()));
-        std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).chain(cached).collect()
+        let kept = ["control_points", "frames"].into_iter().zip(self.kept_bytes()).filter(|&(_, bytes)| bytes > 0);
+        std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).chain(kept).collect()
     }
 
     /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need

@@ -1,0 +1,52 @@
+// The cached construction, in each draw: what a corner of a patch owns and shares, as glsl/compute/control_points.comp left it.
+// Compiled for patches whose corners own 4, 5 .. control points. One invocation for each corner of each patch.
+// variants: OWNED=4, OWNED=5, OWNED=6, OWNED=8, OWNED=4+SHARED, OWNED=5+SHARED, OWNED=4+DISPLACED, OWNED=5+DISPLACED
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#ifndef OWNED
+#define OWNED 4
+#endif
+#ifdef DISPLACED
+#define SHARED
+#endif
+#define KEPT_FRAMES
+#include "draw.glsl"
+#include "cached.glsl"
+#ifdef SHARED
+#include "shared.glsl"
+#endif
+#ifdef DISPLACED
+#include "shared_lookup.glsl"
+#endif
+
+layout(constant_id = 0) const uint CORNERS = 4u;
+
+layout(location = 0) out vec3 owned[OWNED];
+layout(location = 8) out uint patch_number;
+#ifdef SHARED
+layout(location = 7) out uint shared_bits;
+layout(location = 9) out vec3 shared_with[SHARED_VECTORS];
+#ifdef DISPLACED
+layout(location = 6) out float shared_lod;
+#endif
+#endif
+
+void main() {
+    // Not gl_PrimitiveID: lavapipe restarts it (bug B).
+    uint vertex = uint(gl_VertexIndex);
+    uint first = uint(gl_InstanceIndex) * draw.patches_per_instance;
+    patch_number = first + vertex / CORNERS;
+    uint corner = draw.first_corner + first * CORNERS + vertex;
+    for (uint i = 0u; i < OWNED; ++i) {
+        owned[i] = kept_vector(corner, i);
+    }
+#ifdef SHARED
+    for (uint i = 0u; i < SHARED_VECTORS; ++i) {
+        shared_with[i] = kept_vector(corner, OWNED + i);
+    }
+    shared_bits = corner_bits(corner);
+#ifdef DISPLACED
+    shared_lod = corner_lod(corner, corner_speaker(corner, framed_ring(patch_corners[corner].x)));
+#endif
+#endif
+}

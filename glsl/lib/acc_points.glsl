@@ -1,0 +1,29 @@
+// The control points that corner k of an ACC patch owns: b at the corner, along its plus and minus edge and inside, then t+,
+// t-, x+, x-. Rust twin: `acc_points` in src/patch/acc.rs.
+#ifndef ACC_POINTS_GLSL
+#define ACC_POINTS_GLSL
+
+// x+ or x-: `near` and `far` are the geometry's points along the edge, `middle` is that between its faces.
+vec3 acc_across(vec3 inner, vec3 middle, vec3 near, vec3 far, vec3 tangent, float cos_near, float cos_far) {
+    return 2.0 * cos_near * (far - near) - (cos_far / 3.0) * tangent + 3.0 * (inner - middle);
+}
+
+void acc_points(uint k) {
+    uint next = (k + 1u) & 3u;
+    uint before = (k + 3u) & 3u;
+    vec3 inner = in_inner[k][0], along_plus = in_inner[k][3], along_minus = in_inner[k][4];
+    vec3 t_plus = 3.0 * in_plus[k];
+    vec3 t_minus = 3.0 * in_minus[k];
+    OWNED_BY(k)[0] = in_limit[k].xyz;
+    OWNED_BY(k)[1] = along_plus;
+    OWNED_BY(k)[2] = along_minus;
+    OWNED_BY(k)[3] = inner;
+    OWNED_BY(k)[4] = t_plus;
+    OWNED_BY(k)[5] = t_minus;
+    float cosine = in_limit[k].w;
+    OWNED_BY(k)[6] = acc_across(inner, in_inner[k][1], along_plus, in_inner[next][4], t_plus, cosine, in_limit[next].w);
+    OWNED_BY(k)[7] =
+        acc_across(inner, in_inner[k][2], along_minus, in_inner[before][3], t_minus, cosine, in_limit[before].w);
+}
+
+#endif

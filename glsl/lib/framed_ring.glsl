@@ -1,0 +1,54 @@
+// A ring with its limit point and tangent frame: made from the control vertices or, with KEPT_FRAMES, read from where
+// glsl/compute/frames.comp keeps them.
+#ifndef FRAMED_RING_GLSL
+#define FRAMED_RING_GLSL
+
+#include "patch.glsl"
+#include "rings.glsl"
+
+#ifdef KEPT_FRAMES
+#include "kept_frames.glsl"
+#endif
+
+struct FramedRing {
+    uint index;
+    Ring ring;
+    vec3 centre, p, a, b;
+};
+
+FramedRing framed_ring(uint index) {
+    Ring ring = ring_at(index);
+    FramedRing framed = FramedRing(index, ring, vertex_position(ring.vertex), vec3(0.0), vec3(0.0), vec3(0.0));
+#ifdef KEPT_FRAMES
+    framed.p = kept_frame_vector(index, LIMIT);
+    framed.a = kept_frame_vector(index, TANGENT_A);
+    framed.b = kept_frame_vector(index, TANGENT_B);
+#else
+    ring_frame(ring, framed.centre, framed.p, framed.a, framed.b);
+#endif
+    return framed;
+}
+
+// The normal at the vertex of a ring; without a tangent plane, the mean normal of the faces around it.
+vec3 ring_normal(FramedRing at) {
+#ifdef KEPT_FRAMES
+    return kept_frame_vector(at.index, NORMAL);
+#else
+    vec3 normal = unit_normal(at.a, at.b, vec3(0.0));
+    if (normal != vec3(0.0)) {
+        return normal;
+    }
+    precise vec3 sum = vec3(0.0);
+    precise vec3 before = edge_neighbour(at.ring, 0u) - at.centre;
+    uint count = at.ring.faces + at.ring.edges;
+    for (uint i = 1u; i <= 2u * at.ring.faces; ++i) {
+        uint entry = at.ring.entries + (i < count ? i : 0u);
+        precise vec3 next = vertex_position(ring_entries[entry] & ~TRIANGLE_BIT) - at.centre;
+        sum += exact_cross(before, next);
+        before = next;
+    }
+    return unit(sum);
+#endif
+}
+
+#endif

@@ -1,0 +1,27 @@
+// The control points that corner k of a Gregory patch owns: p and, as seen from there, e+, e-, f+, f-. Rust twin:
+// `gregory_points` in src/patch/gregory.rs.
+#ifndef GREGORY_POINTS_GLSL
+#define GREGORY_POINTS_GLSL
+
+// f+ or f- as seen from the corner: `near` and `far` are the edge points, `side` the transversal as seen from this face.
+vec3 face_point(vec3 near, vec3 far, float cos_near, float cos_far, vec3 side) {
+    const float d = CORNERS == 4u ? 3.0 : 4.0;
+    return ((d - 2.0 * cos_near - cos_far) * near + (2.0 * cos_near) * far + side) / d;
+}
+
+void gregory_points(uint k) {
+    uint next = k + 1u == CORNERS ? 0u : k + 1u;
+    uint before = k == 0u ? CORNERS - 1u : k - 1u;
+    vec4 limit = in_limit[k], limit_next = in_limit[next], limit_before = in_limit[before];
+    vec3 plus = in_plus[k], minus = in_minus[k];
+    vec3 far_plus = (limit_next.xyz - limit.xyz) + in_minus[next];
+    vec3 far_minus = (limit_before.xyz - limit.xyz) + in_plus[before];
+    OWNED_BY(k)[0] = limit.xyz;
+    OWNED_BY(k)[1] = plus;
+    OWNED_BY(k)[2] = minus;
+    OWNED_BY(k)[3] = face_point(plus, far_plus, limit.w, limit_next.w, in_inner[k][0]);
+    // The face lies on the right of its minus edge.
+    OWNED_BY(k)[4] = face_point(minus, far_minus, limit.w, limit_before.w, -in_inner[k][1]);
+}
+
+#endif

@@ -1,0 +1,19 @@
+// Which of many things an invocation of a compute shader is about.
+#ifndef INVOCATION_GLSL
+#define INVOCATION_GLSL
+
+layout(local_size_x = 64) in;
+
+// Rust twin: `Invocations` in src/renderer/cached.rs.
+layout(push_constant, std430) uniform Invocations {
+    uint count;
+    uint first_corner;  // of the patches
+} invocations;
+
+// Of those below `count`; groups are laid out in rows, as there are no more than 65 535 along an axis.
+uint invocation_number() {
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    return group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+}
+
+#endif
