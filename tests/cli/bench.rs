@@ -26,12 +26,13 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
     );
     assert!(results["command"].as_str().unwrap().starts_with("subdiv bench --size 32x32"), "{results}");
     assert_eq!(results["options"]["frames"], 6);
-    // A torus in 5 schemes and 3 constructions, a tetrahedron in 3; each in 2 floors, 2 spacings and 2 factors.
-    // Left out: 2 schemes without triangles in 3 constructions, and 5 ways to evaluate lattices of 5 schemes, which have no
+    // A torus in 5 schemes and 3 constructions and in ACC as published, a tetrahedron in 3 schemes; each in 2 floors, 2 spacings
+    // and 2 factors.
+    // Left out: 2 schemes without triangles in 3 constructions, ACC as published among them, and 5 ways to evaluate lattices of 5 schemes, which have no
     // such spacing.
     let rows = results["rows"].as_array().unwrap();
     // Subdivision has no factor 3.
-    let patches = ((5 * 3 + 2 + 3 * 3 + 2) * 4, 2 * 3 * 2 + 5 * 2 * 5 * 2);
+    let patches = ((5 * 3 + 1 + 2 + 3 * 3 + 2) * 4, (2 * 3 + 1) * 2 + 5 * 2 * 5 * 2);
     assert_eq!((rows.len(), length(&results["left_out"])), (patches.0 + 2 * 2, patches.1 + 2 * 2));
     for row in rows {
         assert_eq!(
@@ -336,7 +337,7 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths magic",
         2,
-        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, compute, instanced, geometry, geometry-two-pass, subdivision, bilinear, vertex-buffer]",
+        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, acc-published, compute, instanced, geometry, geometry-two-pass, subdivision, bilinear, vertex-buffer]",
     );
     fails(
         "bench --results x.json --factors 1",
@@ -346,7 +347,12 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths compute,geometry --constructions two-stage",
         2,
-        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached, geometry goes with stencil and cached; shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)",
+        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached; geometry goes with stencil and cached; shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)",
+    );
+    fails(
+        "bench --paths acc-published,subdivision --schemes gregory --normals shared",
+        2,
+        "none of --paths, --constructions, --schemes and --normals go together: acc-published goes with acc and two-stage; shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)",
     );
     fails("bench --view far", 2, "invalid value 'far' for '--view <WHERE>' [possible values: fit, clipped]");
     fails("bench --passes 1,0", 2, "invalid value '0' for '--passes <N>': 0 is not in 1..=64");
