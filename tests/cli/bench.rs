@@ -317,6 +317,12 @@ fn presets_set_published_figures_beside() {
     let text = run(&format!("bench {SMALL} --shape cube --preset antal2007 --paths subdivision"));
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(text.contains("\nAntal et al. 2007") && text.contains("18.8 frames/s"), "{text}");
+    let converted =
+        json(&format!("bench {SMALL} --shape cube --preset ni2008-table4 --paths geometry-two-pass --factors 4"));
+    let lines = converted["published"].as_array().unwrap();
+    // This is none of the sword, the head and the frog, and so beside each.
+    assert_eq!((lines.len(), &lines[0]["construction"], &lines[0]["figure"]), (3, &json!("cached"), &json!(965.0)));
+    assert_eq!(lines[0]["ms"], converted["rows"][0]["gpu_ms"]["median"]);
     let none = json(&format!("bench {SMALL} --shape cube --preset ni2008-table5 --factors 1 --paths tessellation"));
     assert_eq!((&none["options"]["instances"], none.get("published")), (&json!(9), None));
 }
