@@ -1,10 +1,12 @@
 //! `subdiv bench`.
 
+mod findings;
+mod reports;
+
 use crate::{fails, folder, json, keys, length, run};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 const SMALL: &str = "--size 32x32 --frames 6 --warm-up 0";
 
@@ -142,70 +144,6 @@ fn bench_measures_normals_culling_and_views_beside_each_other() {
     assert!((view["gpu"]["value"].as_f64().unwrap() - expected).abs() < 1e-9, "{view}");
 }
 
-/// What `bench` finds in rows with these times.
-fn found(name: &str, arguments: &str, times: impl Fn(&Value) -> f64) -> (Value, String) {
-    let folder = folder(name);
-    let (path, mut results) = measured(&folder, arguments);
-    for row in results["rows"].as_array_mut().unwrap() {
-        let ms = times(row);
-        let frames: Vec<f64> = (0..9).map(|i| ms * (1.0 + f64::from(i) / 1000.0)).collect();
-        row["frames_ms"] = json!({ "gpu": frames, "geometry": frames });
-    }
-    fs::write(&path, results.to_string()).unwrap();
-    let report = folder.join("report");
-    let output = run(&format!("bench --results {} --report {}", path.display(), report.display()));
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).unwrap();
-    let page = fs::read_to_string(report.join("index.html")).unwrap();
-    for title in ["time grows as patches^", "compute wins from so many passes on"] {
-        assert_eq!(text.contains(title), page.contains(title), "{title}");
-    }
-    (json(&format!("bench --results {}", path.display())), text)
-}
-
-#[test]
-fn bench_finds_from_how_many_passes_on_compute_wins() {
-    let few = "--shape cube --factors 2,3,4 --schemes gregory --constructions two-stage,cached --passes 1,2,4 --paths";
-    // Compute costs 5 and 1 a pass; tessellation 3 a pass, so that they meet at 2.5, but at factor 3 much less and at
-    // factor 4 much more.
-    let times = |row: &Value| {
-        let passes = row["passes"].as_f64().unwrap();
-        let a_pass = [3.0, 0.5, 9.0][row["factor"].as_f64().unwrap() as usize - 2];
-        if row["path"] == "compute" { 5.0 + passes } else { a_pass * passes }
-    };
-    let (results, text) = found("bench-passes", &format!("{few} tessellation,compute"), times);
-    let found = results["break_even"].as_array().unwrap();
-    let line = |factor: f64, construction: &str| {
-        found.iter().find(|f| f["factor"] == factor && f["construction"] == construction).unwrap()
-    };
-    assert_eq!(found.len(), 6);
-    for construction in ["two-stage", "cached"] {
-        let [even, never, always] = [2.0, 3.0, 4.0].map(|factor| &line(factor, construction)["geometry"]);
-        assert!((even["value"].as_f64().unwrap() - 2.5).abs() < 0.02, "{even}");
-        assert!(even["low"].as_f64() < even["value"].as_f64() && even["value"].as_f64() < even["high"].as_f64());
-        assert_eq!(*never, json!({ "value": null, "low": null, "high": null }));
-        assert_eq!(*always, json!({ "value": 1.0, "low": 1.0, "high": 1.0 }));
-    }
-    assert!(text.contains("\ncompute wins from so many passes on ") && text.contains("more (more to more)"), "{text}");
-    assert_eq!(results["options"]["passes"], json!([1, 2, 4]));
-    // One count says nothing of others.
-    let one = json(&format!("bench {SMALL} --shape cube --factors 1 --schemes gregory --paths tessellation,compute"));
-    assert_eq!(one.get("break_even"), None);
-}
-
-#[test]
-fn bench_finds_how_time_and_bytes_grow() {
-    let few =
-        "--shape cube --factors 1 --schemes gregory --constructions two-stage --paths tessellation --replicate 1,2,4";
-    let (results, text) = found("bench-growth", few, |row| row["patches"].as_f64().unwrap().powf(1.25));
-    let found = results["growth"].as_array().unwrap();
-    assert_eq!((found.len(), &found[0]["mesh"]), (1, &json!("cube x4")));
-    assert!((found[0]["gpu"]["value"].as_f64().unwrap() - 1.25).abs() < 1e-9, "{}", found[0]);
-    let bytes = found[0]["bytes"].as_f64().unwrap();
-    assert!(bytes > 0.5 && bytes < 1.05, "{bytes}");
-    assert!(text.contains("  1.25 (1.25 to 1.25)  "), "{text}");
-}
-
 #[test]
 fn bench_records_crowds() {
     let few = "--shape tetrahedron --recording 4 --schemes gregory,acc --constructions two-stage,cached";
@@ -260,74 +198,6 @@ fn bench_draws_subsets_and_files() {
 }
 
 #[test]
-fn bench_tells_what_changed() {
-    let folder = folder("bench-compare");
-    let few = "--shape cube --factors 2 --paths tessellation,bilinear --schemes gregory --constructions stencil";
-    let (old, results) = measured(&folder, few);
-    let of = |results: &Value, name: &str, scale: f64| {
-        let mut results = results.clone();
-        for row in results["rows"].as_array_mut().unwrap() {
-            // Every frame its own, so that ranks are clear.
-            let frames: Vec<f64> = (0..15).map(|i| scale * (1.0 + f64::from(i) / 50.0)).collect();
-            row["frames_ms"] = json!({ "gpu": frames, "geometry": frames.iter().rev().collect::<Vec<_>>() });
-        }
-        let path = folder.join(name);
-        fs::write(&path, results.to_string()).unwrap();
-        path
-    };
-    let [one, same, slow] =
-        [("one", 1.0), ("same", 1.001), ("slow", 1.5)].map(|(name, scale)| of(&results, name, scale));
-    let verdicts = |new: &Path, old: &Path| {
-        let text = run(&format!("bench --results {} --compare {}", new.display(), old.display()));
-        let text = String::from_utf8(text.stdout).unwrap();
-        ["faster", "slower", "the same"].map(|verdict| text.matches(&format!(" %  {verdict}\n")).count())
-    };
-    assert_eq!(verdicts(&slow, &one), [0, 4, 0]);
-    assert_eq!(verdicts(&one, &slow), [4, 0, 0]);
-    assert_eq!(verdicts(&same, &one), [0, 0, 4]);
-    let changes = json(&format!("bench --results {} --compare {}", slow.display(), one.display()))["changes"].clone();
-    assert!((changes[0]["ratio"]["value"].as_f64().unwrap() - 1.5).abs() < 0.1, "{changes}");
-    assert!(changes[0]["confidence"].as_f64().unwrap() > 0.99);
-
-    let (other, _) = measured(&crate::folder("bench-other"), "--shape torus --factors 2 --paths bilinear");
-    fails(
-        &format!("bench --results {} --compare {}", other.display(), old.display()),
-        1,
-        "the results to compare with have no row in common with these: measure the same meshes and factors",
-    );
-}
-
-#[test]
-fn presets_set_published_figures_beside() {
-    let results = json(&format!("bench {SMALL} --shape cube --preset loop2009-table1"));
-    let lines = results["published"].as_array().unwrap();
-    assert_eq!(lines.len(), 6);
-    assert_eq!((&lines[0]["published_ratio"], &lines[0]["ratio"]), (&json!(1.0), &json!(1.0)));
-    let pm = lines.iter().find(|line| line["scheme"] == "pm").unwrap();
-    assert!((pm["published_ratio"].as_f64().unwrap() - 0.1327 / 0.1047).abs() < 1e-12);
-    let row = |line: &Value| {
-        let keys = ["scheme", "construction", "factor"];
-        let rows = results["rows"].as_array().unwrap().iter();
-        rows.clone().find(|row| row["path"] == "tessellation" && keys.iter().all(|key| row[key] == line[key])).unwrap()
-    };
-    let ratio =
-        row(pm)["geometry_ms"]["median"].as_f64().unwrap() / row(&lines[0])["geometry_ms"]["median"].as_f64().unwrap();
-    assert!((pm["ratio"].as_f64().unwrap() - ratio).abs() < 1e-9);
-
-    let text = run(&format!("bench {SMALL} --shape cube --preset antal2007 --paths subdivision"));
-    let text = String::from_utf8(text.stdout).unwrap();
-    assert!(text.contains("\nAntal et al. 2007") && text.contains("18.8 frames/s"), "{text}");
-    let converted =
-        json(&format!("bench {SMALL} --shape cube --preset ni2008-table4 --paths geometry-two-pass --factors 4"));
-    let lines = converted["published"].as_array().unwrap();
-    // This is none of the sword, the head and the frog, and so beside each.
-    assert_eq!((lines.len(), &lines[0]["construction"], &lines[0]["figure"]), (3, &json!("cached"), &json!(965.0)));
-    assert_eq!(lines[0]["ms"], converted["rows"][0]["gpu_ms"]["median"]);
-    let none = json(&format!("bench {SMALL} --shape cube --preset ni2008-table5 --factors 1 --paths tessellation"));
-    assert_eq!((&none["options"]["instances"], none.get("published")), (&json!(9), None));
-}
-
-#[test]
 fn bench_says_what_is_wrong() {
     fails(
         "bench --frames 5",
@@ -371,71 +241,4 @@ fn bench_says_what_is_wrong() {
     let output = run("bench --shape tetrahedron --schemes acc --paths tessellation");
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(stderr.ends_with("error: nothing could be measured: face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as fallback\n"), "{stderr}");
-}
-
-/// A report of a run with everything in it.
-fn report(name: &str) -> PathBuf {
-    let folder = folder(name);
-    let few = "--shape cube,tetrahedron --factors 6,10 --constructions two-stage --preset loop2009-table1";
-    let (old, _) = measured(&folder, few);
-    let folder = folder.join("made");
-    let output = run(&format!("bench {SMALL} {few} --compare {} --report {}", old.display(), folder.display()));
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    folder
-}
-
-#[test]
-fn reports_need_nothing_but_themselves() {
-    let folder = report("bench-report");
-    let page = fs::read_to_string(folder.join("index.html")).unwrap();
-    for outside in ["http:", "https:", "<script", "<link", "url("] {
-        let found = page.replace("http://www.w3.org/2000/svg", "").contains(outside);
-        assert!(!found, "{outside}");
-    }
-    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 2);
-    // Of each mesh, time with and without pixels and the error; and growth, since the meshes differ in size.
-    assert_eq!(page.matches("<figure class=\"plot\">").count(), 2 * 3 + 2);
-    assert!(page.contains("What changed") && page.contains("Published figures") && page.contains("Left out"));
-    let results: Value = serde_json::from_slice(&fs::read(folder.join("results.json")).unwrap()).unwrap();
-    let csv = fs::read_to_string(folder.join("results.csv")).unwrap();
-    assert_eq!(csv.lines().count(), 1 + length(&results["rows"]));
-    // The same page from the numbers alone.
-    let again = folder.join("again");
-    run(&format!("bench --results {} --report {}", folder.join("results.json").display(), again.display()));
-    let page_again = fs::read_to_string(again.join("index.html")).unwrap();
-    assert_eq!(page_again.matches("<circle").count(), page.matches("<circle").count());
-}
-
-fn chromium() -> Option<PathBuf> {
-    let named = std::env::var_os("CHROMIUM").map(PathBuf::from);
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let names = ["chromium", "chromium-browser", "chromium-headless-shell", "google-chrome"];
-    let found =
-        || std::env::split_paths(&path).flat_map(|folder| names.map(|name| folder.join(name))).find(|p| p.exists());
-    named.or_else(found)
-}
-
-#[test]
-fn reports_open_in_a_browser() {
-    let Some(chromium) = chromium() else {
-        eprintln!("not run: there is no Chromium in the path, and CHROMIUM does not name one");
-        return;
-    };
-    let folder = report("bench-browser");
-    let page = folder.join("index.html");
-    let output = Command::new(chromium)
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--dump-dom"])
-        .arg(format!("file://{}", page.display()))
-        .output()
-        .unwrap();
-    let (dom, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "{log}");
-    // What a page complains of is logged as its console's.
-    assert!(!log.contains(":CONSOLE"), "{log}");
-    let rows =
-        length(&serde_json::from_slice::<Value>(&fs::read(folder.join("results.json")).unwrap()).unwrap()["rows"]);
-    // Parsed as pictures within the page, with a point for each row in two plots at least.
-    let svg: usize = dom.split("<figure class=\"plot\">").skip(1).map(|plot| plot.matches("<circle").count()).sum();
-    assert!(svg >= 2 * rows, "{svg} points, {rows} rows");
-    assert!(dom.contains("</html>") && dom.matches("<figure class=\"plot\">").count() == 8);
 }
