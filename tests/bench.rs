@@ -62,6 +62,26 @@ fn a_vertex_buffer_is_the_same_surface() {
 }
 
 #[test]
+fn acc_as_published_is_the_same_surface() {
+    let headless = headless();
+    let acc = |path| Contestant::new(path, Some((Scheme::Acc, Construction::TwoStage)));
+    let bench = Bench::new(&headless, options()).unwrap();
+    for name in ["creature", "valences", "cloth"] {
+        let subject = subject(name);
+        let [ours, published] = [Path::Tessellation, Path::AccPublished].map(|path| {
+            let pixels = bench.picture(&subject, acc(path), 4.0).unwrap();
+            assert!(covered(&pixels) > 1500, "{name}");
+            pixels
+        });
+        // Rounding of the normals only.
+        let most = ours.iter().zip(&published).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(most <= Some(1), "{name}: {most:?}");
+    }
+    drop(bench);
+    headless.finish_silent();
+}
+
+#[test]
 fn the_bilinear_floor_is_the_control_mesh() {
     let headless = headless();
     let bench = Bench::new(&headless, options()).unwrap();
@@ -88,7 +108,7 @@ fn a_race_counts_what_was_drawn() {
         let n = row.factor as u64;
         assert_eq!((row.contestant, row.patches), (*contestant, 36));
         assert_eq!(row.triangles, Some(36 * 2 * n * n));
-        let tessellated = matches!(contestant.path, Path::Tessellation | Path::Bilinear);
+        let tessellated = matches!(contestant.path, Path::Tessellation | Path::AccPublished | Path::Bilinear);
         let evaluations = if tessellated { 36 * (n + 1) * (n + 1) } else { 0 };
         assert_eq!(row.evaluations, Some(evaluations));
         let vertices = match contestant.path {
@@ -109,7 +129,9 @@ fn a_race_counts_what_was_drawn() {
             _ => None,
         };
         assert!(kept.is_none() || vertices == kept, "{vertices:?}");
-        assert_eq!(row.traffic.control_points, 12 * 4 * points * 36);
+        // Six vectors of each corner, and its cosine.
+        let bytes = if contestant.path == Path::AccPublished { 6 * 12 + 4 } else { 12 * points };
+        assert_eq!(row.traffic.control_points, 4 * bytes * 36);
         assert_eq!(row.construction.is_some(), !contestant.path.is_floor());
         for series in [&row.gpu, &row.geometry] {
             assert!(series.device.len() == 6 && series.device.iter().all(|&ms| ms > 0.0));
@@ -181,12 +203,14 @@ fn variants_are_of_what_can_be_combined() {
         all.iter().flat_map(|contestant| contestant.variants(normals, culls)).collect()
     };
     assert_eq!(variants(&[Normals::Own], &[Cull::NONE]), all);
+    let published = Contestant::all(&[Path::AccPublished], &Scheme::ALL, &Construction::ALL);
+    assert_eq!(published, [Contestant::new(Path::AccPublished, Some((Scheme::Acc, Construction::TwoStage)))]);
     let of = |variants: &[Contestant], path, scheme| {
         let is = |c: &&Contestant| c.path == path && c.patches.is_none_or(|(s, _)| s == scheme);
         variants.iter().filter(is).count()
     };
     let every = variants(&Normals::ALL, &[Cull::NONE, Cull::ALL]);
-    for path in Path::ALL {
+    for path in Path::ALL.into_iter().filter(|&path| path != Path::AccPublished) {
         let tessellates = path == Path::Tessellation;
         assert_eq!(of(&every, path, Scheme::Gregory), if tessellates { 4 } else { 1 }, "{path:?}");
         assert_eq!(of(&every, path, Scheme::Acc), if tessellates { 2 } else { 1 }, "{path:?}");

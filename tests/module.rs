@@ -328,6 +328,13 @@ fn what_a_device_lacks_is_named_at_once() {
         let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
         assert_eq!(error, format!("{what} of Options is 0: it must be at least 1"));
     }
+    let options = Options { shaders: vec![("EVALUATE_ACC".into(), Vec::new())], ..Options::default() };
+    // SAFETY: as above.
+    let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "Options::shaders: EVALUATE_ACC: there is no such shader to replace: gpu::shaders::ALL names those that there are"
+    );
     stage.finish();
 }
 

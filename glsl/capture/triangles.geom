@@ -1,5 +1,5 @@
 // Writes down the triangles that the tessellator made, three vertices each. Rust twin: `Captured::triangles` in
-// src/capture.rs.
+// src/capture/mod.rs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The evaluation shader has a buffer of its own.

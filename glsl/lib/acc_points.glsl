@@ -3,10 +3,7 @@
 #ifndef ACC_POINTS_GLSL
 #define ACC_POINTS_GLSL
 
-// x+ or x-: `near` and `far` are the geometry's points along the edge, `middle` is that between its faces.
-vec3 acc_across(vec3 inner, vec3 middle, vec3 near, vec3 far, vec3 tangent, float cos_near, float cos_far) {
-    return 2.0 * cos_near * (far - near) - (cos_far / 3.0) * tangent + 3.0 * (inner - middle);
-}
+#include "acc.glsl"
 
 void acc_points(uint k) {
     uint next = (k + 1u) & 3u;

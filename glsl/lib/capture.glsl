@@ -1,5 +1,5 @@
 // Writing what one stage computed into a buffer, for tests, `subdiv patches` and `subdiv sample`.
-// Rust twin: src/capture.rs.
+// Rust twin: src/capture/draws.rs.
 #ifndef CAPTURE_GLSL
 #define CAPTURE_GLSL
 

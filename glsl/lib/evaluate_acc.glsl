@@ -12,8 +12,11 @@
 #define inner(k) owned[k][3]
 #define t_plus(k) owned[k][4]
 #define t_minus(k) owned[k][5]
+// A shader that makes them itself says how.
+#ifndef x_plus
 #define x_plus(k) owned[k][6]
 #define x_minus(k) owned[k][7]
+#endif
 
 // A quadratic of a tangent patch whose middle point is the derivative of the geometry's from `near` to `far`.
 vec3 tangent(vec3 x0, vec3 near, vec3 far, vec3 x2, float t) {

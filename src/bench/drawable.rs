@@ -115,7 +115,7 @@ impl Contestant {
         Ok(match self.path {
             Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
             Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
-            _ => Box::new(super::surface::Surface::new(lane, self.model_options(lane), self.cull)?),
+            _ => Box::new(super::surface::Surface::new(lane, self)?),
         })
     }
 

@@ -22,6 +22,7 @@ mod drawable;
 mod error;
 mod floors;
 mod options;
+mod published;
 mod race;
 mod recording;
 mod row;
@@ -45,6 +46,9 @@ use crate::renderer::{Construction, Cull, Evaluation};
 pub enum Path {
     /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
     Tessellation,
+    /// The same with ACC as published (Loop and Schaefer 2008), where the evaluation shader makes the tangents: for the scheme
+    /// [`Scheme::Acc`] and [`Construction::TwoStage`], to compare with.
+    AccPublished,
     /// Evaluated by compute once a frame, and drawn as indexed triangles in each pass ([`Evaluation::Compute`]).
     Compute,
     /// Faces subdivided in a geometry shader ([`Evaluation::Subdivision`]): at factors 1, 2, 4 and 8.
@@ -64,8 +68,9 @@ pub enum Path {
 
 impl Path {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Tessellation,
+        Self::AccPublished,
         Self::Compute,
         Self::Instanced,
         Self::Geometry,
@@ -78,6 +83,7 @@ impl Path {
     /// As the program calls it.
     pub fn name(self) -> &'static str {
         match self {
+            Self::AccPublished => "acc-published",
             Self::Bilinear => "bilinear",
             Self::VertexBuffer => "vertex-buffer",
             _ => self.evaluation().map_or("", Evaluation::name),
@@ -87,13 +93,31 @@ impl Path {
     /// What evaluates; `None` for a floor.
     pub fn evaluation(self) -> Option<Evaluation> {
         match self {
-            Self::Tessellation => Some(Evaluation::Tessellation),
+            Self::Tessellation | Self::AccPublished => Some(Evaluation::Tessellation),
             Self::Compute => Some(Evaluation::Compute),
             Self::Instanced => Some(Evaluation::Instanced),
             Self::Geometry => Some(Evaluation::Geometry),
             Self::GeometryTwoPass => Some(Evaluation::GeometryTwoPass),
             Self::Subdivision => Some(Evaluation::Subdivision),
             Self::Bilinear | Self::VertexBuffer => None,
+        }
+    }
+
+    /// The schemes whose patches it draws; none if it draws no patches.
+    pub fn schemes(self) -> &'static [Scheme] {
+        match self {
+            Self::AccPublished => &[Scheme::Acc],
+            Self::Subdivision | Self::Bilinear | Self::VertexBuffer => &[],
+            _ => &Scheme::ALL,
+        }
+    }
+
+    /// The constructions that it goes with; none if it draws no patches.
+    pub fn constructions(self) -> &'static [Construction] {
+        match self {
+            Self::AccPublished => &[Construction::TwoStage],
+            Self::Subdivision => &[],
+            _ => self.evaluation().map_or(&[], Evaluation::constructions),
         }
     }
 
@@ -170,11 +194,12 @@ impl Contestant {
     /// The first that is no floor is what the others are compared with.
     pub fn all(paths: &[Path], schemes: &[Scheme], constructions: &[Construction]) -> Vec<Self> {
         let of_path = |&path: &Path| -> Vec<Self> {
-            if path.is_floor() || path == Path::Subdivision {
+            if path.schemes().is_empty() {
                 return vec![Self::new(path, None)];
             }
-            let fits = |c: &&Construction| path.evaluation().is_some_and(|e| e.constructions().contains(c));
-            let pairs = schemes.iter().flat_map(|&s| constructions.iter().filter(fits).map(move |&c| (s, c)));
+            let schemes = schemes.iter().filter(|scheme| path.schemes().contains(scheme));
+            let constructions = constructions.iter().filter(|construction| path.constructions().contains(construction));
+            let pairs = schemes.flat_map(|&scheme| constructions.clone().map(move |&c| (scheme, c)));
             pairs.map(|pair| Self::new(path, Some(pair))).collect()
         };
         paths.iter().flat_map(of_path).collect()

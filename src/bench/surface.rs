@@ -1,7 +1,7 @@
 //! The surface as the renderer draws it.
 
-use super::BenchError;
 use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
+use super::{BenchError, Contestant, Path, published};
 use crate::measure::statistics::Summary;
 use crate::renderer::{
     Cull, DrawItem, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Options, Renderer, Style,
@@ -25,15 +25,24 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    pub(super) fn new(lane: Lane, model_options: ModelOptions, cull: Cull) -> Result<Self, BenchError> {
+    pub(super) fn new(lane: Lane, contestant: Contestant) -> Result<Self, BenchError> {
         let Lane { headless, target, subject, passes, .. } = lane;
+        let model_options = contestant.model_options(lane);
         let ModelOptions { scheme, evaluation, .. } = model_options;
+        let as_published = contestant.path == Path::AccPublished;
         let (tables, tables_ms) = build_tables(lane, &model_options)?;
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
         let evaluations = vec![evaluation];
-        let options =
-            Options { frames_in_flight: 1, views_per_frame: passes, styles, evaluations, ..Options::default() };
+        let shaders = if as_published { published::shaders() } else { Vec::new() };
+        let options = Options {
+            frames_in_flight: 1,
+            views_per_frame: passes,
+            styles,
+            evaluations,
+            shaders,
+            ..Options::default()
+        };
         let render_target = Target::dynamic(target.color, target.depth, target.samples);
         let positions = subject.mesh.positions_f32();
         let spare = tables.clone();
@@ -46,9 +55,13 @@ impl Surface {
         // Once more, now that the pipelines are there.
         renderer.remove_model(first)?;
         let bytes = tables.bytes();
-        let points = |kind| u64::from(tables.patch_count(kind)) * 12 * scheme.points(kind) as u64;
+        let patch_bytes = |kind| match kind {
+            PatchKind::IrregularQuad if as_published => published::QUAD_BYTES,
+            _ => 12 * scheme.points(kind) as u64,
+        };
+        let bytes_of = |kind| u64::from(tables.patch_count(kind)) * patch_bytes(kind);
         let control_point_bytes = match evaluation {
-            Evaluation::Tessellation => PatchKind::ALL.map(points).iter().sum(),
+            Evaluation::Tessellation => PatchKind::ALL.map(bytes_of).iter().sum(),
             _ => 0,
         };
         let (model, upload) = timed(|| {
@@ -58,7 +71,7 @@ impl Surface {
             Ok::<_, Error>(model)
         })?;
         let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
-        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation, cull })
+        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation, cull: contestant.cull })
     }
 }
 

@@ -68,6 +68,10 @@ pub enum Error {
     OtherSegments { id: ModelId, factor: Factor, segments: u32 },
     #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
     BadGrid { given: u32, max: u32 },
+    #[error(
+        "Options::shaders: {name}: there is no such shader to replace: gpu::shaders::ALL names those that there are"
+    )]
+    NoSuchShader { name: String },
     #[error("{what} of Options is {given}: it must be at least 1")]
     BadOption { what: &'static str, given: u32 },
 }

@@ -2,7 +2,7 @@
 
 use super::pipelines::{CONTROL_COMPONENTS, MODEL_BUFFERS};
 use super::{Error, Evaluation};
-use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features};
+use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, shaders};
 use ash::vk;
 
 /// What the renderer draws into.
@@ -238,7 +238,7 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
 /// Tells whether a physical device can do what `options` ask.
 ///
 /// # Errors
-/// [`Error::Unsupported`] names everything that is missing at once.
+/// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::NoSuchShader`].
 ///
 /// # Safety
 /// `physical_device` comes from `instance`, whose version is at least 1.1.
@@ -290,6 +290,9 @@ pub(super) fn check_properties(
         if given == 0 {
             return Err(Error::BadOption { what, given });
         }
+    }
+    if let Some((name, _)) = options.shaders.iter().find(|(name, _)| shaders::find(name).is_none()) {
+        return Err(Error::NoSuchShader { name: name.clone() });
     }
     if missing.is_empty() { Ok(()) } else { Err(Error::Unsupported { device: properties.name.clone(), missing }) }
 }

@@ -72,17 +72,16 @@ impl BenchArgs {
         drop(progress);
         let contestants = self.contestants();
         if contestants.is_empty() {
-            let goes_with = |path: &Path| {
-                let names: Vec<_> = path.evaluation()?.constructions().iter().map(|c| c.name()).collect();
-                Some(format!("{} goes with {}", path.name(), names.join(" and ")))
+            let rule = |path: &Path| {
+                let schemes = Some(path.schemes()).filter(|&schemes| schemes != Scheme::ALL).unwrap_or_default();
+                let constructions = path.constructions().iter().map(|construction| construction.name());
+                let names: Vec<_> = schemes.iter().map(|scheme| scheme.name()).chain(constructions).collect();
+                (!names.is_empty()).then(|| format!("{} goes with {}", path.name(), names.join(" and ")))
             };
-            let paths: Vec<String> = self.paths.iter().filter_map(goes_with).collect();
-            let message = format!(
-                "none of --paths, --constructions, --schemes and --normals go together: {}; shared normals go with \
-                 tessellation and watertight schemes (gregory, gregory-fitted)",
-                paths.join(", ")
-            );
-            return Err(CliError::Usage(message));
+            let mut rules: Vec<String> = self.paths.iter().filter_map(rule).collect();
+            rules.push("shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)".into());
+            let message = "none of --paths, --constructions, --schemes and --normals go together";
+            return Err(CliError::Usage(format!("{message}: {}", rules.join("; "))));
         }
         let options = BenchOptions {
             factors: self.factors(),

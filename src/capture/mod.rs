@@ -2,22 +2,21 @@
 //! samples on a grid, every evaluated vertex, and the triangles between them. For tests, `subdiv patches`, `subdiv sample` and
 //! `subdiv screen`.
 
-use crate::gpu::{
-    Buffer, BufferDesc, DeviceContext, Domain, GpuError, MemoryLocation, Owned, VkResultExt, descriptor_set_layout,
-    tessellated_vertices,
-};
-use crate::headless::{Headless, Offscreen, OffscreenDesc};
+mod draws;
+
+use crate::gpu::{Domain, PatchBatch, tessellated_vertices};
+use crate::headless::Headless;
 use crate::mesh::ControlMesh;
 use crate::renderer::{
-    Capture, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Evaluation, Factor, ModelOptions, ModelTables,
-    Options, Renderer, STAGES, Style, Target, View,
+    Capture, Cull, DisplacementId, DisplacementMap, Error, Evaluation, Factor, ModelOptions, ModelTables, View,
 };
+#[cfg(doc)]
+use crate::renderer::{Options, Renderer};
 use crate::table::{MAX_SEGMENTS, lattice_vertices};
 use crate::topology::PatchKind;
-use ash::vk;
 use bytemuck::{Pod, Zeroable};
+use draws::{CONTROL_POINT_WORDS, EDGES_ONLY, FACTOR_WORDS, Head, RECORD_BYTES};
 use std::ops::Range;
-use std::sync::Arc;
 
 /// A vertex as the evaluation shader computed it, in object space.
 #[repr(C)]
@@ -32,30 +31,6 @@ pub struct CapturedVertex {
     /// Of length one, towards the side from which the patch is counter-clockwise.
     pub normal: [f32; 3],
 }
-
-/// The head of the buffer. GLSL twin: `glsl/lib/capture.glsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Head {
-    first_patch: u32,
-    patches: u32,
-    grid: u32,
-    capacity: u32,
-    count: u32,
-}
-
-const HEAD_BYTES: u64 = size_of::<Head>() as u64;
-const RECORD_BYTES: u64 = size_of::<CapturedVertex>() as u64;
-/// Words that the control points of a patch take, whatever its kind.
-const CONTROL_POINT_WORDS: usize = 96;
-/// Words that its factors take, after them.
-const FACTOR_WORDS: usize = 7;
-/// In the place of a grid's size: vertices on edges as they come.
-const EDGES_ONLY: u32 = u32::MAX;
-/// Larger captures are done in several draws, each of which keeps some of the patches.
-const MAX_BYTES: u64 = 128 << 20;
-
-const _: () = assert!(RECORD_BYTES == 40 && HEAD_BYTES == 20);
 
 /// Which vertices of a draw are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -266,7 +241,7 @@ impl<'h> Captured<'h> {
                 Which::OnEdges => 4 * (u64::from(segments) + 1),
             };
             // At worst a device shares nothing between the triangles of a patch.
-            let shares = tessellated && self.headless.properties().patch_batch == crate::gpu::PatchBatch::LAVAPIPE;
+            let shares = tessellated && self.headless.properties().patch_batch == PatchBatch::LAVAPIPE;
             if shares { vertices * RECORD_BYTES } else { 6 * vertices * RECORD_BYTES }
         };
         let mut vertices = Vec::new();
@@ -332,141 +307,5 @@ impl<'h> Captured<'h> {
             Factor::Uniform(factor) => Ok(factor),
             _ => Ok(self.factors(draw)?.iter().flat_map(|f| f.asked).fold(1.0, f32::max)),
         }
-    }
-
-    /// What [`Captured::capture_each`] captures, together.
-    fn capture(
-        &self,
-        mode: Capture,
-        draw: &CaptureDraw,
-        bytes: impl Fn(PatchKind) -> u64,
-        head: impl Fn(&Range<u32>) -> Head,
-    ) -> Result<Vec<(PatchKind, Vec<f32>)>, Error> {
-        let mut captured = Vec::new();
-        self.capture_each(mode, draw, bytes, head, |kind, words| {
-            captured.push((kind, words));
-            Ok(())
-        })?;
-        Ok(captured)
-    }
-
-    /// Draws all patches, as often as needed to keep what each of them writes. `bytes` is for one patch; the words
-    /// come by kind of patch, in the order of the patches.
-    fn capture_each(
-        &self,
-        mode: Capture,
-        draw: &CaptureDraw,
-        bytes: impl Fn(PatchKind) -> u64,
-        head: impl Fn(&Range<u32>) -> Head,
-        mut take: impl FnMut(PatchKind, Vec<f32>) -> Result<(), Error>,
-    ) -> Result<(), Error> {
-        let headless = self.headless;
-        let context = headless.context();
-        let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, STAGES)];
-        // Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
-        let mut idle = None;
-        if mode == Capture::Triangles {
-            bindings.push((vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::GEOMETRY));
-            let mut buffer = capture_buffer(context, HEAD_BYTES + RECORD_BYTES)?;
-            buffer.write(0, &[Head::zeroed()])?;
-            idle = Some(buffer);
-        }
-        let layout = descriptor_set_layout(context, "capture", &bindings)?;
-        let target = Offscreen::new(headless, &OffscreenDesc::new(4, 4))?;
-        let options = Options {
-            styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
-            set_layouts: vec![layout.raw()],
-            shaders: self.shaders.clone(),
-            evaluations: vec![self.options.evaluation],
-            ..Options::default()
-        };
-        let desc = target.desc();
-        let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
-        // SAFETY: the set layout is that of the capture buffer and outlives the renderer, which is dropped when idle:
-        // every submission is waited for.
-        let mut renderer = unsafe { Renderer::with_capture(context, &render_target, &options, mode)? };
-        if let Some(map) = self.displacement {
-            // SAFETY: as the caller of `displaced` promises.
-            unsafe { renderer.add_displacement(map) };
-        }
-        let model_options = ModelOptions { evaluation: self.evaluation(mode), ..self.options.clone() };
-        let model = renderer.add_tables(self.tables.clone(), &self.positions, &model_options)?;
-        if model_options.evaluation.needs_segments() {
-            let most = match draw.factor {
-                Factor::Uniform(factor) => factor,
-                _ => draw.edge_factors.iter().copied().fold(1.0, f32::max),
-            };
-            renderer.set_segments(model, most.ceil() as u32)?;
-        }
-        if let Factor::Edges(_) = draw.factor {
-            renderer.set_edge_factors(model, 0, &draw.edge_factors)?;
-        }
-        let CaptureDraw { factor, cull, displacement, .. } = *draw;
-        let item = DrawItem { factor, cull, displacement, ..DrawItem::new(model, 1.0) };
-
-        for kind in PatchKind::ALL {
-            let patches = self.tables.plan().range(kind);
-            let (patches, per_patch) = (patches.start as u32..patches.end as u32, bytes(kind));
-            let max = MAX_BYTES.min(headless.properties().max_storage_buffer_range) - HEAD_BYTES;
-            let step = (max / per_patch).max(1) as usize;
-            for first in patches.clone().step_by(step) {
-                let window = first..patches.end.min(first + step as u32);
-                let size = HEAD_BYTES + window.len() as u64 * per_patch;
-                let mut buffer = capture_buffer(context, size)?;
-                // What no shader writes is NaN.
-                buffer.write(0, &vec![f32::NAN; size as usize / 4])?;
-                let head = head(&window);
-                buffer.write(0, &[head])?;
-                let buffers: Vec<&Buffer> = idle.iter().chain([&buffer]).collect();
-                let (_pool, set) = capture_set(headless, layout.raw(), &buffers)?;
-                let pipeline_layout = renderer.pipeline_layout();
-                // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
-                headless.try_submit(|cmd| unsafe {
-                    renderer.cmd_prepare(cmd, 0)?;
-                    target.cmd_begin(cmd, [0.0; 4]);
-                    let point = vk::PipelineBindPoint::GRAPHICS;
-                    headless.device().cmd_bind_descriptor_sets(cmd, point, pipeline_layout, 2, &[set], &[]);
-                    renderer.cmd_draw(cmd, 0, &draw.view, &[item])?;
-                    target.cmd_end(cmd);
-                    Ok::<(), Error>(())
-                })?;
-                let words = if matches!(mode, Capture::Vertices | Capture::Triangles) {
-                    let Head { count, .. } = buffer.read::<Head>(0, 1)?[0];
-                    u64::from(count) * RECORD_BYTES / 4
-                } else {
-                    (size - HEAD_BYTES) / 4
-                };
-                take(kind, buffer.read(HEAD_BYTES, words as usize)?)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-fn capture_buffer(context: &Arc<DeviceContext>, size: u64) -> Result<Buffer, GpuError> {
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    Buffer::new(context, &BufferDesc { name: "capture", size, usage, location: MemoryLocation::Readback })
-}
-
-fn capture_set(
-    headless: &Headless,
-    layout: vk::DescriptorSetLayout,
-    buffers: &[&Buffer],
-) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    let ty = vk::DescriptorType::STORAGE_BUFFER;
-    let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: buffers.len() as u32 }];
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let (device, layouts) = (headless.device(), [layout]);
-    let infos: Vec<_> = buffers.iter().map(|buffer| [buffer.descriptor()]).collect();
-    // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
-    unsafe {
-        let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", "capture")?;
-        let pool = Owned::new(headless.context(), pool, "capture");
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-        let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", "capture")?[0];
-        let write = vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty);
-        let writes: Vec<_> = (0..).zip(&infos).map(|(i, info)| write.dst_binding(i).buffer_info(info)).collect();
-        device.update_descriptor_sets(&writes, &[]);
-        Ok((pool, set))
     }
 }

@@ -1,0 +1,125 @@
+//! What is asked for.
+
+use super::super::camera::CameraArgs;
+use super::super::cull::CullArgs;
+use super::super::displacement::DisplacementArgs;
+use super::super::error::CliError;
+use super::super::evaluation::EvaluationArgs;
+use super::super::parse::{self, Colour};
+use super::super::shading::Shading;
+use super::super::source::{DeviceArgs, MeshArgs};
+use ash_subdiv::renderer::{Cull, Factor};
+use ash_subdiv::{Construction, Spacing};
+use clap::Args;
+use std::path::PathBuf;
+
+/// How finely patches are cut, and which are left out.
+#[derive(Debug, Args)]
+pub(super) struct FactorArgs {
+    /// The tessellation factor of every patch, from 1 to 64.
+    #[arg(long, default_value_t = 8.0, value_parser = parse::factor)]
+    pub(super) factor: f32,
+    /// Factors such that segments are about this many pixels long, instead of one for all.
+    #[arg(long, value_parser = parse::positive, conflicts_with_all = ["factor", "bend"])]
+    pub(super) pixels: Option<f32>,
+    /// Factors such that edges stray from their curves by about this many pixels: more where they are bent.
+    #[arg(long, value_name = "PIXELS", value_parser = parse::positive, conflicts_with = "factor")]
+    pub(super) bend: Option<f32>,
+    /// Instead of drawing patches, subdivide each face this many times in a geometry shader.
+    #[arg(
+        long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(0..=3),
+        conflicts_with_all = ["factor", "pixels", "bend", "cull", "displacement", "evaluation", "construction", "scheme"]
+    )]
+    pub(super) level: Option<u32>,
+    #[command(flatten)]
+    pub(super) cull: CullArgs,
+}
+
+impl FactorArgs {
+    pub(super) fn factor(&self) -> Factor {
+        match (self.pixels, self.bend, self.level) {
+            (Some(pixels), ..) => Factor::Pixels(pixels),
+            (_, Some(pixels), _) => Factor::Curvature(pixels),
+            (.., Some(level)) => Factor::Uniform((1 << level) as f32),
+            _ => Factor::Uniform(self.factor),
+        }
+    }
+
+    /// In words.
+    pub(super) fn text(&self) -> String {
+        match self.factor() {
+            factor if self.level.is_some() => format!("subdivided into {0} x {0} a face", factor.value()),
+            Factor::Pixels(pixels) => format!("segments of {pixels} pixels"),
+            Factor::Curvature(pixels) => format!("bends within {pixels} pixels"),
+            factor => format!("factor {}", factor.value()),
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in super::super) struct RenderArgs {
+    #[command(flatten)]
+    pub(super) mesh: MeshArgs,
+    /// The picture, a PNG file. Missing folders are made.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) evaluation: EvaluationArgs,
+    #[command(flatten)]
+    pub(super) factor: FactorArgs,
+    /// Where the tessellator puts its vertices along an edge.
+    #[arg(long, default_value = "equal", value_parser = parse::spacing())]
+    pub(super) spacing: Spacing,
+    /// What the picture shows.
+    #[arg(long, value_enum, default_value_t = Shading::Lit)]
+    pub(super) shading: Shading,
+    /// The error at the top of the scale of --shading error-position (over the diagonal of the mesh's bounding box) or
+    /// error-normal (radians); if not given, a round number that 99 % of all samples are below.
+    #[arg(long, value_name = "ERROR", value_parser = parse::positive)]
+    pub(super) error_max: Option<f32>,
+    /// Width and height in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = parse::size)]
+    pub(super) size: [u32; 2],
+    /// Samples a pixel; 4 if not given, or what the device has.
+    #[arg(long, value_name = "COUNT")]
+    pub(super) samples: Option<u32>,
+    /// R,G,B from 0 to 255, #rrggbb, or transparent.
+    #[arg(long, value_name = "COLOUR", default_value = "#f3f1ec", value_parser = parse::colour)]
+    pub(super) background: Colour,
+    #[command(flatten)]
+    pub(super) camera: CameraArgs,
+    #[command(flatten, next_help_heading = "Displacement")]
+    pub(super) displacement: DisplacementArgs,
+    #[command(flatten, next_help_heading = "Device")]
+    pub(super) device: DeviceArgs,
+}
+
+const EXAMPLES: &str = "\
+JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, evaluation, construction,
+factor (null unless one for all), pixels, bend, level (null unless given), spacing, shading, samples, device,
+error{top, largest} (null unless an error is shown),
+statistics{patches_drawn, patches_culled, largest_factor, factors_clamped}: factors_clamped tells whether an
+edge asked for more segments than the device has.
+
+Examples:
+  subdiv render --shape creature -o creature.png
+  subdiv render model.obj --shading wireframe --factor 3.5 --spacing odd -o wires.png
+  subdiv render scene.glb --mesh-name Head --background transparent --yaw 40 -o head.png
+  subdiv render model.obj --scheme acc --shading error-normal --error-max 0.1 -o errors.png
+  subdiv render model.obj --level 2 --shading wireframe -o subdivided.png
+  subdiv render --shape creature --displacement scales --displacement-scale 0.01 --pixels 4 -o scales.png
+  subdiv render --shape cloth --eye 3,4,5 --target 0,0,0 --fov 25 --size 1920x1080 -o cloth.png";
+
+impl RenderArgs {
+    /// How control points are made; an error if the evaluation does not go with what was asked for.
+    pub(super) fn construction(&self) -> Result<Construction, CliError> {
+        self.evaluation.construction(&[
+            ("--pixels", self.factor.pixels.is_some()),
+            ("--bend", self.factor.bend.is_some()),
+            ("--cull", self.factor.cull.cull() != Cull::NONE),
+            ("--spacing", self.spacing != Spacing::Equal),
+            ("--displacement", self.displacement.is_given()),
+        ])
+    }
+}

@@ -1,0 +1,117 @@
+//! What the device does for a picture.
+
+use super::super::displacement::texture;
+use super::super::error::CliError;
+use super::super::error_map::{ErrorMap, ErrorSet};
+use super::{RenderArgs, StatisticsOut};
+use ash::vk;
+use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors};
+use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels};
+use ash_subdiv::renderer::{Cull, Factor, ModelTables};
+use ash_subdiv::{ControlMesh, DrawItem, ModelOptions, Options, Renderer, Target, View};
+
+/// What is drawn besides the model.
+pub(super) struct Picture<'p> {
+    /// In pixels, without the legend.
+    pub size: [u32; 2],
+    pub samples: u32,
+    pub view: View,
+    pub map: Option<&'p ErrorMap>,
+    pub texels: Option<&'p Texels>,
+}
+
+impl RenderArgs {
+    /// What the factors of the picture come to; none where the device cannot tell, or nothing was asked for.
+    pub(super) fn statistics(
+        &self,
+        headless: &Headless,
+        picture: &Picture,
+        mesh: &ControlMesh,
+        options: &ModelOptions,
+    ) -> Result<Option<StatisticsOut>, CliError> {
+        let (factor, cull) = (self.factor.factor(), self.factor.cull.cull());
+        let asked = cull != Cull::NONE || !matches!(factor, Factor::Uniform(_));
+        if !asked || !headless.context().features().vertex_stores {
+            return Ok(None);
+        }
+        let displacement = self.displacement.amount(mesh);
+        let draw = CaptureDraw { view: picture.view, cull, displacement, ..CaptureDraw::new(factor) };
+        let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
+        let captured = match &texture {
+            // SAFETY: the texture is ready to be read, and outlives what is captured.
+            Some(texture) => unsafe { Captured::displaced(headless, mesh, options, texture.into())? },
+            None => Captured::new(headless, mesh, options)?,
+        };
+        let factors = captured.factors(&draw)?;
+        let max = headless.properties().max_tessellation_level as f32;
+        let asked = |f: &CapturedFactors| f.asked.into_iter().fold(0.0, f32::max);
+        let culled = factors.iter().filter(|f| f.culled).count();
+        let largest = factors.iter().filter(|f| !f.culled).map(asked).fold(1.0, f32::max);
+        Ok(Some(StatisticsOut {
+            patches_drawn: factors.len() - culled,
+            patches_culled: culled,
+            largest_factor: largest.min(max),
+            factors_clamped: factors.iter().any(|f| asked(f) > max),
+        }))
+    }
+
+    /// Draws the picture: rows from the top, four bytes RGBA a pixel.
+    pub(super) fn draw(
+        &self,
+        headless: &Headless,
+        picture: &Picture,
+        tables: ModelTables,
+        mesh: &ControlMesh,
+        model_options: &ModelOptions,
+    ) -> Result<Vec<u8>, CliError> {
+        let samples = vk::SampleCountFlags::from_raw(picture.samples);
+        let [width, height] = picture.size;
+        let desc = OffscreenDesc { samples, color: self.shading.format(), ..OffscreenDesc::new(width, height) };
+        let target = Offscreen::new(headless, &desc)?;
+        let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
+        let errors = picture.map.map(|map| ErrorSet::new(headless.context(), map)).transpose()?;
+        let options = Options {
+            styles: self.shading.styles(),
+            texcoords: errors.is_some(),
+            evaluations: vec![model_options.evaluation],
+            set_layouts: errors.iter().map(|errors| errors.layout.raw()).collect(),
+            ..Options::default()
+        };
+        let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
+        // SAFETY: the layout outlives the renderer, whose shaders fit it; every submission is waited for, so the renderer
+        // is dropped when idle.
+        let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options)? };
+        if let Some(texture) = &texture {
+            // SAFETY: the texture is ready to be read, and outlives the renderer.
+            unsafe { renderer.add_displacement(texture.into()) };
+        }
+        let model = renderer.add_tables(tables, &mesh.positions_f32(), model_options)?;
+        if model_options.evaluation.needs_segments() {
+            renderer.set_segments(model, self.factor.factor.ceil() as u32)?;
+        }
+        let item = DrawItem {
+            cull: self.factor.cull.cull(),
+            displacement: self.displacement.amount(mesh),
+            ..DrawItem::new(model, self.factor.factor())
+        };
+        let draws = self.shading.draws(item);
+        // SAFETY: the command buffer is being recorded, outside rendering.
+        headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+        let record = |cmd| {
+            if let Some(errors) = &errors {
+                let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, renderer.pipeline_layout());
+                // SAFETY: the set is of the layout at this place, and outlives the submission.
+                unsafe {
+                    headless.context().device().cmd_bind_descriptor_sets(cmd, point, layout, 2, &[errors.set], &[]);
+                }
+            }
+            // SAFETY: inside rendering that fits the target, after the frame was prepared.
+            unsafe { renderer.cmd_draw(cmd, 0, &picture.view, &draws) }
+        };
+        let background = match desc.color {
+            vk::Format::R8G8B8A8_SRGB => self.background.linear(),
+            _ => self.background.0.map(|byte| f32::from(byte) / 255.0),
+        };
+        Ok(target.draw(headless, background, record)?)
+    }
+}

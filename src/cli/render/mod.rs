@@ -1,0 +1,208 @@
+//! `subdiv render`: a picture of a mesh. What is asked for is in `args`, what the device does for it in `draw`.
+
+mod args;
+mod draw;
+
+use super::error::CliError;
+use super::error_map::ErrorMap;
+use super::info::Patches;
+use super::legend::Legend;
+use super::output::{self, Progress, write_file};
+use super::parse;
+use super::picture::unpremultiply;
+use super::source::tell_notices;
+pub(super) use args::RenderArgs;
+use ash::vk;
+use ash_subdiv::gpu::DeviceProperties;
+use ash_subdiv::headless::{HeadlessError, Texels, save_png};
+use ash_subdiv::measure::Quantity;
+use ash_subdiv::renderer::{DisplacementId, Evaluation, Factor, ModelTables};
+use ash_subdiv::{ControlMesh, ModelOptions};
+use draw::Picture;
+use glam::DVec3;
+use serde::Serialize;
+
+#[derive(Serialize)]
+struct RenderOut<'a> {
+    file: &'a str,
+    size: [u32; 2],
+    patches: Patches,
+    evaluation: &'static str,
+    construction: &'static str,
+    factor: Option<f32>,
+    pixels: Option<f32>,
+    bend: Option<f32>,
+    level: Option<u32>,
+    spacing: &'static str,
+    shading: String,
+    samples: u32,
+    device: &'a str,
+    error: Option<ErrorOut>,
+    statistics: Option<StatisticsOut>,
+}
+
+/// What the control shader made of the factors.
+#[derive(Clone, Copy, Serialize)]
+struct StatisticsOut {
+    patches_drawn: usize,
+    patches_culled: usize,
+    largest_factor: f32,
+    factors_clamped: bool,
+}
+
+#[derive(Serialize)]
+struct ErrorOut {
+    top: f64,
+    largest: f64,
+}
+
+pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
+    let file = args.output.display().to_string();
+    let ending = args.output.extension().map(|ending| ending.to_ascii_lowercase());
+    if ending.is_none_or(|ending| ending != "png") {
+        return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
+    }
+    let construction = args.construction()?;
+    let legend = if args.shading.quantity().is_some() { Legend::height(args.size)? } else { 0 };
+    let progress = Progress::new("reading the mesh");
+    let mesh = args.mesh.load()?;
+    let map = args.error_map(&mesh, &progress)?;
+    progress.now("building tables");
+    let evaluation = args.factor.level.map_or(args.evaluation.evaluation, |_| Evaluation::Subdivision);
+    let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(construction) };
+    let texels = args.displacement.texels()?;
+    options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
+    let mut drawn = &mesh;
+    if let Some(map) = &map {
+        (drawn, options.refine) = (&map.mesh, 0);
+    }
+    let tables = ModelTables::new(drawn, &options)?;
+    if map.is_none() {
+        tell_notices(tables.notices(), &progress);
+    }
+    let patches = Patches::of(&tables);
+    let [width, height] = args.size;
+    let size = [width, height - legend];
+    let view = args.camera.view(&args.seen_points(&mesh, texels.as_ref())?, f64::from(size[0]) / f64::from(size[1]))?;
+    let view = view.sized(size[0], size[1]);
+    progress.now("drawing");
+    let (samples, device, mut pixels, statistics) = args.device.run(|headless| {
+        let samples = args.check_limits(headless.properties())?;
+        let picture = Picture { size, samples, view, map: map.as_ref(), texels: texels.as_ref() };
+        let statistics = args.statistics(headless, &picture, drawn, &options)?;
+        let pixels = args.draw(headless, &picture, tables, drawn, &options)?;
+        Ok((samples, headless.properties().name.clone(), pixels, statistics))
+    })?;
+    progress.now("writing the picture");
+    if args.background.is_transparent() {
+        unpremultiply(&mut pixels, args.shading.format() == vk::Format::R8G8B8A8_SRGB);
+    }
+    if let Some(map) = &map {
+        args.legend(map).add(args.size, args.background, &mut pixels)?;
+    }
+    write_file(&args.output, |part| match save_png(part, vk::Extent2D { width, height }, &pixels) {
+        Err(HeadlessError::Picture { message, .. }) => Err(message),
+        result => result.map_err(|error| error.to_string()),
+    })?;
+    drop(progress);
+    if json {
+        return output::json_pretty(&RenderOut {
+            file: &file,
+            size: args.size,
+            patches,
+            evaluation: options.evaluation.name(),
+            construction: options.construction.name(),
+            factor: Some(args.factor.factor()).filter(|f| matches!(f, Factor::Uniform(_))).map(Factor::value),
+            level: args.factor.level,
+            pixels: args.factor.pixels,
+            bend: args.factor.bend,
+            spacing: parse::spacing_name(args.spacing),
+            shading: args.shading.name(),
+            samples,
+            device: &device,
+            statistics,
+            error: map.map(|ErrorMap { top, largest, .. }| ErrorOut { top, largest }),
+        });
+    }
+    output::with_stdout(|out| {
+        let factor = args.factor.text();
+        writeln!(out, "{file}: {width} x {height}, {patches}, {factor}, {samples} samples, on {device}")?;
+        if let Some(ErrorMap { top, largest, .. }) = map {
+            let [top, largest] = [top, largest].map(output::short);
+            writeln!(out, "the scale ends at {top} (--error-max); the largest error is {largest}")?;
+        }
+        Ok(())
+    })
+}
+
+impl RenderArgs {
+    /// The errors to be shown, if any.
+    fn error_map(&self, mesh: &ControlMesh, progress: &Progress) -> Result<Option<ErrorMap>, CliError> {
+        let Some(quantity) = self.shading.quantity() else {
+            return match self.error_max {
+                None => Ok(None),
+                Some(_) => {
+                    let shading = self.shading.name();
+                    let message = format!(
+                        "--error-max: --shading {shading} shows no error: choose error-position or error-normal"
+                    );
+                    Err(CliError::Usage(message))
+                }
+            };
+        };
+        if self.factor.level.is_some() {
+            let message = "--level: the error is that of patches: leave one of both out";
+            return Err(CliError::Usage(message.into()));
+        }
+        if self.displacement.is_given() {
+            let message = "--displacement: the error of a displaced surface is not known: leave one of both out";
+            return Err(CliError::Usage(message.into()));
+        }
+        progress.now("measuring");
+        let surface = self.mesh.cpu_surface(mesh, progress)?;
+        let [low, high] = mesh.bounds();
+        Ok(Some(ErrorMap::new(&surface, quantity, low.distance(high), self.error_max)?))
+    }
+
+    fn legend(&self, map: &ErrorMap) -> Legend {
+        let what = match self.shading.quantity() {
+            Some(Quantity::Normal) => "normal error, radians",
+            _ => "position error / diagonal",
+        };
+        let title = format!("{}: {what}", self.mesh.scheme.name());
+        Legend { title, top: map.top, exceeded: map.largest > map.top }
+    }
+
+    /// Points around which everything is that the picture shows.
+    fn seen_points(&self, mesh: &ControlMesh, texels: Option<&Texels>) -> Result<Vec<DVec3>, CliError> {
+        let positions = &mesh.data().positions;
+        // Faces that are hardly subdivided are as large as the control mesh.
+        let shows_control_mesh = self.shading.shows_control_mesh() || self.factor.level.is_some();
+        if shows_control_mesh && !positions.is_empty() {
+            return Ok(positions.iter().copied().map(DVec3::from).collect());
+        }
+        let hull = self.mesh.hull(mesh)?;
+        let Some(texels) = texels else { return Ok(hull) };
+        // Wherever displacement moves them.
+        let reach = DVec3::splat(self.displacement.reach(mesh, texels));
+        Ok(hull.into_iter().flat_map(|point| [point - reach, point + reach]).collect())
+    }
+
+    /// Checks size and samples against the device; gives the samples.
+    fn check_limits(&self, properties: &DeviceProperties) -> Result<u32, CliError> {
+        let (device, max, [width, height]) = (&properties.name, properties.max_image_size, self.size);
+        if width.max(height) > max {
+            let message = format!("--size {width}x{height}: {device} draws at most {max} x {max} pixels");
+            return Err(CliError::Work(message));
+        }
+        let known = properties.sample_counts();
+        match self.samples {
+            Some(samples) if known.contains(&samples) => Ok(samples),
+            Some(samples) => {
+                let known: Vec<String> = known.iter().map(u32::to_string).collect();
+                Err(CliError::Work(format!("--samples {samples}: {device} has {}", known.join(", "))))
+            }
+            None => Ok(known.into_iter().filter(|&count| count <= 4).max().unwrap_or(1)),
+        }
+    }
+}

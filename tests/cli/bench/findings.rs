@@ -1,0 +1,139 @@
+//! What is made of rows: findings, changes, and what papers published.
+
+use super::{SMALL, measured};
+use crate::{fails, folder, json, run};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+
+/// What `bench` finds in rows with these times.
+fn found(name: &str, arguments: &str, times: impl Fn(&Value) -> f64) -> (Value, String) {
+    let folder = folder(name);
+    let (path, mut results) = measured(&folder, arguments);
+    for row in results["rows"].as_array_mut().unwrap() {
+        let ms = times(row);
+        let frames: Vec<f64> = (0..9).map(|i| ms * (1.0 + f64::from(i) / 1000.0)).collect();
+        row["frames_ms"] = json!({ "gpu": frames, "geometry": frames });
+    }
+    fs::write(&path, results.to_string()).unwrap();
+    let report = folder.join("report");
+    let output = run(&format!("bench --results {} --report {}", path.display(), report.display()));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let page = fs::read_to_string(report.join("index.html")).unwrap();
+    for title in ["time grows as patches^", "compute wins from so many passes on"] {
+        assert_eq!(text.contains(title), page.contains(title), "{title}");
+    }
+    (json(&format!("bench --results {}", path.display())), text)
+}
+
+#[test]
+fn bench_finds_from_how_many_passes_on_compute_wins() {
+    let few = "--shape cube --factors 2,3,4 --schemes gregory --constructions two-stage,cached --passes 1,2,4 --paths";
+    // Compute costs 5 and 1 a pass; tessellation 3 a pass, so that they meet at 2.5, but at factor 3 much less and at
+    // factor 4 much more.
+    let times = |row: &Value| {
+        let passes = row["passes"].as_f64().unwrap();
+        let a_pass = [3.0, 0.5, 9.0][row["factor"].as_f64().unwrap() as usize - 2];
+        if row["path"] == "compute" { 5.0 + passes } else { a_pass * passes }
+    };
+    let (results, text) = found("bench-passes", &format!("{few} tessellation,compute"), times);
+    let found = results["break_even"].as_array().unwrap();
+    let line = |factor: f64, construction: &str| {
+        found.iter().find(|f| f["factor"] == factor && f["construction"] == construction).unwrap()
+    };
+    assert_eq!(found.len(), 6);
+    for construction in ["two-stage", "cached"] {
+        let [even, never, always] = [2.0, 3.0, 4.0].map(|factor| &line(factor, construction)["geometry"]);
+        assert!((even["value"].as_f64().unwrap() - 2.5).abs() < 0.02, "{even}");
+        assert!(even["low"].as_f64() < even["value"].as_f64() && even["value"].as_f64() < even["high"].as_f64());
+        assert_eq!(*never, json!({ "value": null, "low": null, "high": null }));
+        assert_eq!(*always, json!({ "value": 1.0, "low": 1.0, "high": 1.0 }));
+    }
+    assert!(text.contains("\ncompute wins from so many passes on ") && text.contains("more (more to more)"), "{text}");
+    assert_eq!(results["options"]["passes"], json!([1, 2, 4]));
+    // One count says nothing of others.
+    let one = json(&format!("bench {SMALL} --shape cube --factors 1 --schemes gregory --paths tessellation,compute"));
+    assert_eq!(one.get("break_even"), None);
+}
+
+#[test]
+fn bench_finds_how_time_and_bytes_grow() {
+    let few =
+        "--shape cube --factors 1 --schemes gregory --constructions two-stage --paths tessellation --replicate 1,2,4";
+    let (results, text) = found("bench-growth", few, |row| row["patches"].as_f64().unwrap().powf(1.25));
+    let found = results["growth"].as_array().unwrap();
+    assert_eq!((found.len(), &found[0]["mesh"]), (1, &json!("cube x4")));
+    assert!((found[0]["gpu"]["value"].as_f64().unwrap() - 1.25).abs() < 1e-9, "{}", found[0]);
+    let bytes = found[0]["bytes"].as_f64().unwrap();
+    assert!(bytes > 0.5 && bytes < 1.05, "{bytes}");
+    assert!(text.contains("  1.25 (1.25 to 1.25)  "), "{text}");
+}
+
+#[test]
+fn bench_tells_what_changed() {
+    let folder = folder("bench-compare");
+    let few = "--shape cube --factors 2 --paths tessellation,bilinear --schemes gregory --constructions stencil";
+    let (old, results) = measured(&folder, few);
+    let of = |results: &Value, name: &str, scale: f64| {
+        let mut results = results.clone();
+        for row in results["rows"].as_array_mut().unwrap() {
+            // Every frame its own, so that ranks are clear.
+            let frames: Vec<f64> = (0..15).map(|i| scale * (1.0 + f64::from(i) / 50.0)).collect();
+            row["frames_ms"] = json!({ "gpu": frames, "geometry": frames.iter().rev().collect::<Vec<_>>() });
+        }
+        let path = folder.join(name);
+        fs::write(&path, results.to_string()).unwrap();
+        path
+    };
+    let [one, same, slow] =
+        [("one", 1.0), ("same", 1.001), ("slow", 1.5)].map(|(name, scale)| of(&results, name, scale));
+    let verdicts = |new: &Path, old: &Path| {
+        let text = run(&format!("bench --results {} --compare {}", new.display(), old.display()));
+        let text = String::from_utf8(text.stdout).unwrap();
+        ["faster", "slower", "the same"].map(|verdict| text.matches(&format!(" %  {verdict}\n")).count())
+    };
+    assert_eq!(verdicts(&slow, &one), [0, 4, 0]);
+    assert_eq!(verdicts(&one, &slow), [4, 0, 0]);
+    assert_eq!(verdicts(&same, &one), [0, 0, 4]);
+    let changes = json(&format!("bench --results {} --compare {}", slow.display(), one.display()))["changes"].clone();
+    assert!((changes[0]["ratio"]["value"].as_f64().unwrap() - 1.5).abs() < 0.1, "{changes}");
+    assert!(changes[0]["confidence"].as_f64().unwrap() > 0.99);
+
+    let (other, _) = measured(&crate::folder("bench-other"), "--shape torus --factors 2 --paths bilinear");
+    fails(
+        &format!("bench --results {} --compare {}", other.display(), old.display()),
+        1,
+        "the results to compare with have no row in common with these: measure the same meshes and factors",
+    );
+}
+
+#[test]
+fn presets_set_published_figures_beside() {
+    let results = json(&format!("bench {SMALL} --shape cube --preset loop2009-table1"));
+    let lines = results["published"].as_array().unwrap();
+    assert_eq!(lines.len(), 6);
+    assert_eq!((&lines[0]["published_ratio"], &lines[0]["ratio"]), (&json!(1.0), &json!(1.0)));
+    let pm = lines.iter().find(|line| line["scheme"] == "pm").unwrap();
+    assert!((pm["published_ratio"].as_f64().unwrap() - 0.1327 / 0.1047).abs() < 1e-12);
+    let row = |line: &Value| {
+        let keys = ["scheme", "construction", "factor"];
+        let rows = results["rows"].as_array().unwrap().iter();
+        rows.clone().find(|row| row["path"] == "tessellation" && keys.iter().all(|key| row[key] == line[key])).unwrap()
+    };
+    let ratio =
+        row(pm)["geometry_ms"]["median"].as_f64().unwrap() / row(&lines[0])["geometry_ms"]["median"].as_f64().unwrap();
+    assert!((pm["ratio"].as_f64().unwrap() - ratio).abs() < 1e-9);
+
+    let text = run(&format!("bench {SMALL} --shape cube --preset antal2007 --paths subdivision"));
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(text.contains("\nAntal et al. 2007") && text.contains("18.8 frames/s"), "{text}");
+    let converted =
+        json(&format!("bench {SMALL} --shape cube --preset ni2008-table4 --paths geometry-two-pass --factors 4"));
+    let lines = converted["published"].as_array().unwrap();
+    // This is none of the sword, the head and the frog, and so beside each.
+    assert_eq!((lines.len(), &lines[0]["construction"], &lines[0]["figure"]), (3, &json!("cached"), &json!(965.0)));
+    assert_eq!(lines[0]["ms"], converted["rows"][0]["gpu_ms"]["median"]);
+    let none = json(&format!("bench {SMALL} --shape cube --preset ni2008-table5 --factors 1 --paths tessellation"));
+    assert_eq!((&none["options"]["instances"], none.get("published")), (&json!(9), None));
+}

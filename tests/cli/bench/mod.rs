@@ -1,0 +1,244 @@
+//! `subdiv bench`.
+
+mod findings;
+mod reports;
+
+use crate::{fails, folder, json, keys, length, run};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const SMALL: &str = "--size 32x32 --frames 6 --warm-up 0";
+
+/// A run that was made once, as a file.
+fn measured(folder: &Path, arguments: &str) -> (PathBuf, Value) {
+    let results = json(&format!("bench {SMALL} {arguments}"));
+    let path = folder.join("results.json");
+    fs::write(&path, results.to_string()).unwrap();
+    (path, results)
+}
+
+#[test]
+fn bench_measures_every_path_on_every_kind_of_patch() {
+    let results =
+        json(&format!("bench {SMALL} --shape torus,tetrahedron --factors 3,1 --spacing odd,even --validation"));
+    assert_eq!(
+        keys(&results),
+        ["command", "device", "growth", "left_out", "measured", "meshes", "options", "program", "rows"]
+    );
+    assert!(results["command"].as_str().unwrap().starts_with("subdiv bench --size 32x32"), "{results}");
+    assert_eq!(results["options"]["frames"], 6);
+    // A torus in 5 schemes and 3 constructions and in ACC as published, a tetrahedron in 3 schemes; each in 2 floors, 2 spacings
+    // and 2 factors.
+    // Left out: 2 schemes without triangles in 3 constructions, ACC as published among them, and 5 ways to evaluate lattices of 5 schemes, which have no
+    // such spacing.
+    let rows = results["rows"].as_array().unwrap();
+    // Subdivision has no factor 3.
+    let patches = ((5 * 3 + 1 + 2 + 3 * 3 + 2) * 4, (2 * 3 + 1) * 2 + 5 * 2 * 5 * 2);
+    assert_eq!((rows.len(), length(&results["left_out"])), (patches.0 + 2 * 2, patches.1 + 2 * 2));
+    for row in rows {
+        assert_eq!(
+            keys(row),
+            [
+                "bytes",
+                "construction",
+                "construction_ms",
+                "cull",
+                "factor",
+                "fence_ms",
+                "first_frame_ms",
+                "frames_ms",
+                "geometry_ms",
+                "geometry_ratio",
+                "gpu_ms",
+                "gpu_ratio",
+                "mesh",
+                "normals",
+                "passes",
+                "patches",
+                "path",
+                "pipelines_ms",
+                "scheme",
+                "setup_ms",
+                "spacing",
+                "tables_ms",
+                "tes_invocations",
+                "traffic_bytes",
+                "triangles",
+                "upload_ms",
+                "view",
+                "visible_triangles",
+            ]
+        );
+        for times in [&row["gpu_ms"], &row["geometry_ms"]] {
+            assert_eq!(keys(times), ["mad", "max", "median", "min"]);
+            let [min, median, max] = ["min", "median", "max"].map(|key| times[key].as_f64().unwrap());
+            assert!(0.0 < min && min <= median && median <= max, "{row}");
+        }
+        assert!(row["bytes"]["total"].as_u64().unwrap() > 0 && row["triangles"].as_u64().unwrap() > 0);
+        assert_eq!(length(&row["frames_ms"]["gpu"]), 6);
+    }
+    // The first row of each group is what the others are compared with.
+    assert_eq!(rows[0]["gpu_ratio"], json!({ "value": 1.0, "low": 1.0, "high": 1.0 }));
+    assert_eq!((&rows[0]["factor"], &rows[0]["spacing"]), (&json!(1.0), &json!("odd")));
+    assert!(rows.iter().any(|row| row["path"] == "bilinear" && row["scheme"] == "none"));
+}
+
+#[test]
+fn bench_writes_tables_and_csv() {
+    let few = "--shape cube --factors 2 --schemes gregory --constructions two-stage";
+    let output = run(&format!("bench {SMALL} {few}"));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.starts_with("cube: 6 patches, factor 2, equal spacing\nscheme "), "{text}");
+    assert!(
+        text.contains("\ngregory  two-stage ") && text.contains("\nnone     none          vertex-buffer"),
+        "{text}"
+    );
+    assert!(output.stderr.is_empty());
+    let csv = String::from_utf8(run(&format!("bench {SMALL} {few} --replicate 1,4 --csv")).stdout).unwrap();
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
+    assert_eq!((lines.len(), lines[0][..3].join(" ")), (9, "mesh scheme construction".into()));
+    assert_eq!((lines[5][0], lines[5][10]), ("cube x4", "24"));
+    let text = run(&format!("bench {SMALL} {few} --replicate 1,4"));
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert_eq!(
+        text.split("\ntime grows as patches^").nth(1).map(|grown| grown.trim_end().lines().count()),
+        Some(5),
+        "{text}"
+    );
+}
+
+#[test]
+fn bench_measures_normals_culling_and_views_beside_each_other() {
+    let results = json(&format!(
+        "bench {SMALL} --shape creature --factors 2 --schemes gregory --constructions two-stage --paths \
+         tessellation,bilinear --normals own,shared --cull frustum,back --view fit,clipped"
+    ));
+    let rows = results["rows"].as_array().unwrap();
+    let named = |row: &Value| ["view", "path", "normals", "cull"].map(|key| row[key].as_str().unwrap().to_owned());
+    let of_view = |view: &str| {
+        [
+            ["tessellation", "own", "none"],
+            ["tessellation", "own", "back+frustum"],
+            ["tessellation", "shared", "none"],
+            ["tessellation", "shared", "back+frustum"],
+            ["bilinear", "own", "none"],
+        ]
+        .map(|[path, normals, cull]| [view, path, normals, cull].map(str::to_owned))
+    };
+    let expected: Vec<_> = ["fit", "clipped"].into_iter().flat_map(of_view).collect();
+    assert_eq!(rows.iter().map(named).collect::<Vec<_>>(), expected);
+    for rows in rows.chunks(5) {
+        assert_eq!(rows[0]["gpu_ratio"]["value"], 1.0);
+    }
+    let views = results["views"].as_array().unwrap();
+    assert_eq!(views.iter().map(named).collect::<Vec<_>>(), expected[5..]);
+    let (view, of) = (&views[0], |row: &Value| row["visible_triangles"].as_f64().unwrap());
+    let frames =
+        |row: &Value| row["frames_ms"]["gpu"].as_array().unwrap().iter().map(|ms| ms.as_f64().unwrap()).collect();
+    let (near, far): (Vec<f64>, Vec<f64>) = (frames(&rows[5]), frames(&rows[0]));
+    let mut ratios: Vec<f64> = near.iter().zip(&far).map(|(near, far)| near / far).collect();
+    ratios.sort_unstable_by(f64::total_cmp);
+    let expected = (ratios[2] + ratios[3]) / 2.0 * of(&rows[0]) / of(&rows[5]);
+    assert!((view["gpu"]["value"].as_f64().unwrap() - expected).abs() < 1e-9, "{view}");
+}
+
+#[test]
+fn bench_records_crowds() {
+    let few = "--shape tetrahedron --recording 4 --schemes gregory,acc --constructions two-stage,cached";
+    let results = json(&format!("bench {SMALL} {few}"));
+    // Gregory in three ways, three crowds each; ACC has no triangles, and floors are not recorded.
+    let recording = results["recording"].as_array().unwrap();
+    assert_eq!((recording.len(), length(&results["left_out"]), length(&results["rows"])), (9, 3, 0));
+    assert_eq!(
+        keys(&recording[0]),
+        [
+            "construction",
+            "crowd",
+            "cull",
+            "draw_ms",
+            "frame_ms",
+            "mesh",
+            "models",
+            "normals",
+            "path",
+            "prepare_ms",
+            "scheme"
+        ]
+    );
+    let crowds: Vec<_> = recording.iter().take(3).map(|r| r["crowd"].as_str().unwrap()).collect();
+    assert_eq!((crowds, &recording[0]["models"]), (vec!["instances", "models", "moving"], &json!(4)));
+    let [frame, draw] = ["frame_ms", "draw_ms"].map(|key| recording[2][key]["max"].as_f64().unwrap());
+    assert!(frame >= draw && draw > 0.0);
+    let report = folder("bench-recording");
+    let text = run(&format!("bench {SMALL} {few} --paths tessellation --report {}", report.display()));
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(text.starts_with("recorded ") && text.lines().count() == 7, "{text}");
+    let page = fs::read_to_string(report.join("index.html")).unwrap();
+    assert!(page.contains("What the host takes to record a frame"));
+    fails("bench --recording 0", 2, "invalid value '0' for '--recording <MODELS>': 0 is not in 1..=100000");
+    fails("bench --recording 1 --csv", 2, "the argument '--recording <MODELS>' cannot be used with '--csv'");
+}
+
+#[test]
+fn bench_draws_subsets_and_files() {
+    let cube = folder("bench-file").join("a cube, of mine.obj");
+    crate::subdiv().args(["shapes", "cube", "--obj"]).arg(&cube).output().unwrap();
+    let mut command = crate::subdiv();
+    command.args(
+        "bench --csv --factors 1 --paths tessellation --schemes acc --constructions stencil --patches irregular"
+            .split(' '),
+    );
+    let output = command.args(SMALL.split(' ')).arg(&cube).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    // Commas in names are quoted.
+    assert!(text.lines().nth(1).unwrap().starts_with("\"a cube, of mine.obj\",acc,stencil"), "{text}");
+    fails("bench --shape torus --patches irregular", 1, "torus: it has no irregular patches: choose others");
+}
+
+#[test]
+fn bench_says_what_is_wrong() {
+    fails(
+        "bench --frames 5",
+        2,
+        "invalid value '5' for '--frames <N>': it must be a whole number from 6 to 100000: with fewer there is no interval that holds the median",
+    );
+    fails("bench --factors 4,0", 2, "invalid value '0' for '--factors <FACTOR>': it must be a number from 1 to 64");
+    fails(
+        "bench --preset x",
+        2,
+        "invalid value 'x' for '--preset <NAME>' [possible values: loop2009-table1, loop2009-table2, ni2008-table4, ni2008-table5, antal2007]",
+    );
+    fails(
+        "bench --paths magic",
+        2,
+        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, acc-published, compute, instanced, geometry, geometry-two-pass, subdivision, bilinear, vertex-buffer]",
+    );
+    fails(
+        "bench --results x.json --factors 1",
+        2,
+        "the argument '--results <FILE.json>' cannot be used with '--factors <FACTOR>'",
+    );
+    fails(
+        "bench --paths compute,geometry --constructions two-stage",
+        2,
+        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached; geometry goes with stencil and cached; shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)",
+    );
+    fails(
+        "bench --paths acc-published,subdivision --schemes gregory --normals shared",
+        2,
+        "none of --paths, --constructions, --schemes and --normals go together: acc-published goes with acc and two-stage; shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)",
+    );
+    fails("bench --view far", 2, "invalid value 'far' for '--view <WHERE>' [possible values: fit, clipped]");
+    fails("bench --passes 1,0", 2, "invalid value '0' for '--passes <N>': 0 is not in 1..=64");
+    fails("bench --compare no.json", 1, "no.json: No such file or directory (os error 2)");
+    let results = folder("bench-bad").join("bad.json");
+    fs::write(&results, "{}").unwrap();
+    let name = results.display();
+    let message = format!("{name}: not what `subdiv bench --json` writes: missing field `program` at line 1 column 2");
+    fails(&format!("bench --results {name}"), 1, &message);
+    let output = run("bench --shape tetrahedron --schemes acc --paths tessellation");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(stderr.ends_with("error: nothing could be measured: face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as fallback\n"), "{stderr}");
+}
