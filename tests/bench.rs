@@ -6,6 +6,7 @@ mod common;
 use ash_subdiv::bench::{Bench, BenchOptions, Camera, Contestant, Crowd, Event, Normals, Path, Row, Subject, Subset};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::renderer::Cull;
+use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, Scheme, Spacing, shape};
 use common::headless;
 
@@ -183,15 +184,14 @@ fn cached_control_points_are_made_in_every_frame_that_is_timed() {
     let rows = race(&headless, BenchOptions { passes: 3, ..options() }, "creature-mixed", &[GREGORY, cached]);
     let points = |row: &Row| row.bytes.iter().find(|(name, _)| *name == "control_points").map(|(_, bytes)| *bytes);
     assert_eq!(points(&rows[0]), None);
-    let corners: u64 = {
-        use ash_subdiv::topology::PatchKind;
-        let subject = subject("creature-mixed");
-        PatchKind::ALL.map(|kind| u64::from(subject.patch_count(kind)) * kind.corners() as u64).iter().sum()
-    };
+    let subject = subject("creature-mixed");
+    let patches = PatchKind::ALL.map(|kind| u64::from(subject.patch_count(kind)));
+    let corners: u64 = patches.iter().zip(PatchKind::ALL).map(|(count, kind)| count * kind.corners() as u64).sum();
     assert_eq!(points(&rows[1]), Some(12 * 5 * corners));
-    // Once a frame, whatever the number of passes: 64 invocations a group.
+    // Every ring and every patch of three kinds once a frame, whatever the number of passes: 64 invocations a group.
+    let things = shape("creature-mixed").unwrap().vertex_count() as u64 + patches.iter().sum::<u64>();
     let counted = rows[1].computed.expect("lavapipe counts");
-    assert!(counted >= corners && counted < corners + 3 * 64, "{counted} for {corners}");
+    assert!(counted >= things && counted < things + 4 * 64, "{counted} for {things}");
     assert_eq!(rows[0].computed, Some(0));
     headless.finish_silent();
 }

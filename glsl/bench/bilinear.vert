@@ -1,6 +1,7 @@
 // A floor for the bench: a corner of a face as it is. One invocation for each corner of each patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define POSITION_TEXELS 2
 #include "draw.glsl"
 #include "positions.glsl"
 

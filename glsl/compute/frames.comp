@@ -12,8 +12,5 @@ void main() {
         return;
     }
     FramedRing ring = framed_ring(index);
-    keep_frame_vector(index, LIMIT, ring.p);
-    keep_frame_vector(index, TANGENT_A, ring.a);
-    keep_frame_vector(index, TANGENT_B, ring.b);
-    keep_frame_vector(index, NORMAL, ring_normal(ring));
+    keep_frame(index, KeptFrame(ring.p, ring.a, ring.b, ring_normal(ring)));
 }

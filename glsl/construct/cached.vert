@@ -46,7 +46,7 @@ void main() {
     }
     shared_bits = corner_bits(corner);
 #ifdef DISPLACED
-    shared_lod = corner_lod(corner, corner_speaker(corner, framed_ring(patch_corners[corner].x)));
+    shared_lod = corner_lod(corner, corner_speaker(corner, framed_ring(patch_corner(corner).x)));
 #endif
 #endif
 }

@@ -39,7 +39,7 @@ void main() {
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
     uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
-    uvec2 place = patch_corners[corner];
+    uvec2 place = patch_corner(corner);
     FramedRing own = framed_ring(place.x), speaker = own;
     float lod = 0.0;
 #ifdef DISPLACED

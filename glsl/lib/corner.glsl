@@ -33,7 +33,7 @@ struct Corner {
 
 // By its number among all corners.
 Corner corner_of_patch(uint number) {
-    uvec2 place = patch_corners[number];
+    uvec2 place = patch_corner(number);
     FramedRing own = framed_ring(place.x);
     Ring ring = own.ring;
     vec3 centre = own.centre, a = own.a, b = own.b;

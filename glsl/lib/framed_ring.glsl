@@ -14,17 +14,24 @@ struct FramedRing {
     uint index;
     Ring ring;
     vec3 centre, p, a, b;
+#ifdef KEPT_FRAMES
+    vec3 normal;
+#endif
 };
 
 FramedRing framed_ring(uint index) {
-    Ring ring = ring_at(index);
-    FramedRing framed = FramedRing(index, ring, vertex_position(ring.vertex), vec3(0.0), vec3(0.0), vec3(0.0));
+    FramedRing framed;
+    framed.index = index;
+    framed.ring = ring_at(index);
+    framed.centre = vertex_position(framed.ring.vertex);
 #ifdef KEPT_FRAMES
-    framed.p = kept_frame_vector(index, LIMIT);
-    framed.a = kept_frame_vector(index, TANGENT_A);
-    framed.b = kept_frame_vector(index, TANGENT_B);
+    KeptFrame kept = kept_frame(index);
+    framed.p = kept.p;
+    framed.a = kept.a;
+    framed.b = kept.b;
+    framed.normal = kept.normal;
 #else
-    ring_frame(ring, framed.centre, framed.p, framed.a, framed.b);
+    ring_frame(framed.ring, framed.centre, framed.p, framed.a, framed.b);
 #endif
     return framed;
 }
@@ -32,7 +39,7 @@ FramedRing framed_ring(uint index) {
 // The normal at the vertex of a ring; without a tangent plane, the mean normal of the faces around it.
 vec3 ring_normal(FramedRing at) {
 #ifdef KEPT_FRAMES
-    return kept_frame_vector(at.index, NORMAL);
+    return at.normal;
 #else
     vec3 normal = unit_normal(at.a, at.b, vec3(0.0));
     if (normal != vec3(0.0)) {
@@ -43,7 +50,7 @@ vec3 ring_normal(FramedRing at) {
     uint count = at.ring.faces + at.ring.edges;
     for (uint i = 1u; i <= 2u * at.ring.faces; ++i) {
         uint entry = at.ring.entries + (i < count ? i : 0u);
-        precise vec3 next = vertex_position(ring_entries[entry] & ~TRIANGLE_BIT) - at.centre;
+        precise vec3 next = vertex_position(ring_entry(entry) & ~TRIANGLE_BIT) - at.centre;
         sum += exact_cross(before, next);
         before = next;
     }

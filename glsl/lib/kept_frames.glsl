@@ -1,39 +1,34 @@
-// Where the cached construction keeps what glsl/compute/frames.comp makes of each ring. Rust twin: `FRAME_FLOATS` in
-// src/renderer/tables.rs.
+// Where the cached construction keeps what glsl/compute/frames.comp makes of each ring: three vectors, and the fourth in what the
+// others leave. Rust twin: `FRAME_BYTES` in src/renderer/tables.rs.
 #ifndef KEPT_FRAMES_GLSL
 #define KEPT_FRAMES_GLSL
 
+#include "positions.glsl"
+
+struct KeptFrame {
+    vec3 p, a, b, normal;
+};
+
+// The bindings of the stencil table, which the cached construction does without.
 #ifdef MAKES_FRAMES
-#define FRAMES_ACCESS writeonly
-#else
-#define FRAMES_ACCESS readonly
-#endif
-// The binding of the stencil table, which the cached construction does without.
-layout(set = 1, binding = 5, std430) FRAMES_ACCESS buffer Frames { float frames[]; };
+layout(set = 1, binding = 5, std430) writeonly buffer Frames { vec4 frames[]; };
 
-const uint FRAME_FLOATS = 12u;
-
-// What there is of a ring: its limit point, the vectors of its tangent frame and its normal.
-const uint LIMIT = 0u;
-const uint TANGENT_A = 1u;
-const uint TANGENT_B = 2u;
-const uint NORMAL = 3u;
-
-uint kept_frame(uint ring, uint number) {
-    return FRAME_FLOATS * ring + 3u * number;
-}
-
-#ifdef MAKES_FRAMES
-void keep_frame_vector(uint ring, uint number, vec3 x) {
-    uint at = kept_frame(ring, number);
-    frames[at] = x.x;
-    frames[at + 1u] = x.y;
-    frames[at + 2u] = x.z;
+void keep_frame(uint ring, KeptFrame frame) {
+    frames[3u * ring] = vec4(frame.p, frame.normal.x);
+    frames[3u * ring + 1u] = vec4(frame.a, frame.normal.y);
+    frames[3u * ring + 2u] = vec4(frame.b, frame.normal.z);
 }
 #else
-vec3 kept_frame_vector(uint ring, uint number) {
-    uint at = kept_frame(ring, number);
-    return vec3(frames[at], frames[at + 1u], frames[at + 2u]);
+layout(set = 1, binding = 5, std430) readonly buffer Frames { vec4 frames[]; };
+layout(set = 1, binding = 19) uniform samplerBuffer frame_texels;
+
+vec4 frame_vector(uint i) {
+    return READS_TEXELS ? texelFetch(frame_texels, int(i)) : frames[i];
+}
+
+KeptFrame kept_frame(uint ring) {
+    vec4 p = frame_vector(3u * ring), a = frame_vector(3u * ring + 1u), b = frame_vector(3u * ring + 2u);
+    return KeptFrame(p.xyz, a.xyz, b.xyz, vec3(p.w, a.w, b.w));
 }
 #endif
 

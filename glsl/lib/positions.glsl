@@ -1,11 +1,19 @@
-// The control vertices of a model, packed without gaps.
+// The control vertices of a model. Each takes four numbers, of which the last is unused.
 #ifndef POSITIONS_GLSL
 #define POSITIONS_GLSL
 
-layout(set = 1, binding = 0, std430) readonly buffer Positions { float positions[]; };
+// Whether tables are read as texel buffers, as devices do that have large ones: otherwise as the storage buffers that they are, too.
+// Rust twin: `DeviceProperties::reads_texels` in src/gpu/device.rs.
+layout(constant_id = 9) const bool READS_TEXELS = false;
+
+layout(set = 1, binding = 0, std430) readonly buffer Positions { vec4 positions[]; };
+#ifndef POSITION_TEXELS
+#define POSITION_TEXELS 14
+#endif
+layout(set = 1, binding = POSITION_TEXELS) uniform samplerBuffer position_texels;
 
 vec3 vertex_position(uint vertex) {
-    return vec3(positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]);
+    return READS_TEXELS ? texelFetch(position_texels, int(vertex)).xyz : positions[vertex].xyz;
 }
 
 #endif

@@ -6,8 +6,12 @@
 
 layout(set = 1, binding = 1, std430) readonly buffer RingHeaders { uvec4 ring_headers[]; };
 layout(set = 1, binding = 2, std430) readonly buffer RingEntries { uint ring_entries[]; };
-layout(set = 1, binding = 3, std430) readonly buffer RingTypes { float ring_types[]; };
+layout(set = 1, binding = 3, std430) readonly buffer RingTypes { vec4 ring_types[]; };
 layout(set = 1, binding = 4, std430) readonly buffer PatchCorners { uvec2 patch_corners[]; };
+layout(set = 1, binding = 15) uniform usamplerBuffer ring_header_texels;
+layout(set = 1, binding = 16) uniform usamplerBuffer ring_entry_texels;
+layout(set = 1, binding = 17) uniform samplerBuffer ring_type_texels;
+layout(set = 1, binding = 18) uniform usamplerBuffer patch_corner_texels;
 
 const uint TRIANGLE_BIT = 1u << 31;
 const uint PENTAGON_BIT = 1u << 30;
@@ -33,8 +37,21 @@ struct Ring {
     bool fitted;
 };
 
+uint ring_entry(uint i) {
+    return READS_TEXELS ? texelFetch(ring_entry_texels, int(i)).x : ring_entries[i];
+}
+
+vec4 ring_type(uint i) {
+    return READS_TEXELS ? texelFetch(ring_type_texels, int(i)) : ring_types[i];
+}
+
+// The ring of a corner by its number among all, and which of its edges is the corner's plus edge.
+uvec2 patch_corner(uint number) {
+    return READS_TEXELS ? texelFetch(patch_corner_texels, int(number)).xy : patch_corners[number];
+}
+
 Ring ring_at(uint index) {
-    uvec4 header = ring_headers[index];
+    uvec4 header = READS_TEXELS ? texelFetch(ring_header_texels, int(index)) : ring_headers[index];
     bool open = (header.w & OPEN_BIT) != 0u;
     uint faces = header.w & ~(OPEN_BIT | CONE_BIT | FALLBACK_BIT | FITTED_BIT);
     return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u,
@@ -43,51 +60,50 @@ Ring ring_at(uint index) {
 
 // cos_k: of the angle between neighbouring edges.
 float ring_cosine(Ring ring) {
-    return ring_types[ring.type];
+    return ring_type(ring.type).w;
 }
 
-// Cosine and sine of the direction of edge j.
-vec2 edge_direction(Ring ring, uint j) {
-    uint at = ring.type + 1u + 2u * j;
-    return vec2(ring_types[at], ring_types[at + 1u]);
+// Cosine and sine of the direction of edge j, and its transversal's weights where the ring is fitted.
+vec4 edge_type(Ring ring, uint j) {
+    return ring_type(ring.type + 1u + j);
 }
 
 // a_j, at the other end of edge j < edges + faces.
 vec3 edge_neighbour(Ring ring, uint j) {
     uint wrapped = j >= ring.edges ? j - ring.edges : j;
-    return vertex_position(ring_entries[ring.entries + 2u * wrapped]);
+    return vertex_position(ring_entry(ring.entries + 2u * wrapped));
 }
 
 // What a ring entry stands for: a vertex, or the middle of the far edge of a pentagon.
 vec3 entry_position(uint entry) {
     if (MAY_HAVE_PENTAGONS && (entry & PENTAGON_BIT) != 0u) {
         uint at = entry & ~PENTAGON_BIT;
-        return 0.5 * (vertex_position(ring_entries[at]) + vertex_position(ring_entries[at + 1u]));
+        return 0.5 * (vertex_position(ring_entry(at)) + vertex_position(ring_entry(at + 1u)));
     }
     return vertex_position(entry & ~TRIANGLE_BIT);
 }
 
 // Limit point and tangent frame.
 void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3 b_out) {
-    uint first = ring.type + 1u + 2u * ring.edges;
-    uint count = ring.faces + ring.edges;
+    uint first = ring.type + 1u + ring.edges;
+    uint last = ring.faces + ring.edges - 1u;
     // The first entry and the last before all else: at a crease these are its ends, which the ring on the other side has
     // the other way round, and so both get the same bits.
-    vec3 x0 = vertex_position(ring_entries[ring.entries]);
-    vec3 x1 = entry_position(ring_entries[ring.entries + count - 1u]);
-    uint last = first + 3u * count;
-    precise vec3 p = ring_types[first + 3u] * x0 + ring_types[last] * x1;
-    precise vec3 a = ring_types[first + 4u] * x0 + ring_types[last + 1u] * x1;
-    precise vec3 b = ring_types[first + 5u] * x0 + ring_types[last + 2u] * x1;
-    p += ring_types[first] * centre;
-    a += ring_types[first + 1u] * centre;
-    b += ring_types[first + 2u] * centre;
-    for (uint i = 1u; i + 1u < count; ++i) {
-        vec3 x = entry_position(ring_entries[ring.entries + i]);
-        uint weight = first + 3u + 3u * i;
-        p += ring_types[weight] * x;
-        a += ring_types[weight + 1u] * x;
-        b += ring_types[weight + 2u] * x;
+    vec3 x0 = vertex_position(ring_entry(ring.entries));
+    vec3 x1 = entry_position(ring_entry(ring.entries + last));
+    vec3 weights = ring_type(ring.type).xyz, weights0 = ring_type(first).xyz, weights1 = ring_type(first + last).xyz;
+    precise vec3 p = weights0.x * x0 + weights1.x * x1;
+    precise vec3 a = weights0.y * x0 + weights1.y * x1;
+    precise vec3 b = weights0.z * x0 + weights1.z * x1;
+    p += weights.x * centre;
+    a += weights.y * centre;
+    b += weights.z * centre;
+    for (uint i = 1u; i < last; ++i) {
+        vec3 x = entry_position(ring_entry(ring.entries + i));
+        weights = ring_type(first + i).xyz;
+        p += weights.x * x;
+        a += weights.y * x;
+        b += weights.z * x;
     }
     p_out = p;
     a_out = a;
@@ -96,7 +112,7 @@ void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3
 
 // e_j as seen from p.
 vec3 edge_vector(Ring ring, uint j, vec3 centre, vec3 here, vec3 a, vec3 b) {
-    vec2 direction = edge_direction(ring, j);
+    vec2 direction = edge_type(ring, j).xy;
     precise vec3 in_plane = direction.x * a + direction.y * b;
     precise vec3 straight = (here - centre) / 3.0;
     return ring.cone ? straight : in_plane;
@@ -109,7 +125,7 @@ struct Face {
 };
 
 Face ring_face(Ring ring, uint i) {
-    uint entry = ring_entries[ring.entries + 2u * i + 1u];
+    uint entry = ring_entry(ring.entries + 2u * i + 1u);
     return Face((entry & TRIANGLE_BIT) != 0u, entry_position(entry));
 }
 
@@ -141,10 +157,8 @@ vec3 transversal(Beside at) {
 vec3 scheme_transversal(Ring ring, uint j, Beside beside, vec3 a, vec3 b) {
     precise vec3 r = transversal(beside);
     if (MAY_BE_FITTED && ring.fitted) {
-        // After the ring's cosine, its edges' directions and its frame's weights.
-        uint at = ring.type + 1u + 2u * ring.edges + 3u * (1u + ring.edges + ring.faces) + 2u * j;
-        vec2 direction = edge_direction(ring, j);
-        r = ring_types[at] * r + ring_types[at + 1u] * (direction.x * b - direction.y * a);
+        vec4 type = edge_type(ring, j);
+        r = type.z * r + type.w * (type.x * b - type.y * a);
     }
     return r;
 }

@@ -25,6 +25,7 @@ mod errors;
 mod evaluation;
 mod info;
 mod legend;
+mod memory;
 mod obj;
 mod output;
 mod parse;
@@ -98,6 +99,7 @@ enum Command {
 
 /// Runs the program and says how it ended.
 pub(crate) fn main() -> ExitCode {
+    memory::keep_freed();
     let result = Cli::try_parse().map_err(CliError::from_clap).and_then(|cli| match cli.command {
         Command::Render(args) => render::run(&args, cli.json),
         Command::Info(args) => info::run(&args, cli.json),

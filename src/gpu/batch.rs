@@ -73,7 +73,7 @@ impl PatchBatch {
     /// **The workaround for lavapipe bugs A and B** (Mesa's llvmpipe driver, seen in 22.3.6): more than 65 536
     /// tessellation-evaluation vertices in an instance give a wrong picture without any error, an instance is cut every
     /// 4096 control points, and clipping costs the square of the patches in an instance.
-    pub const LAVAPIPE: Self = Self::Limited { max_vertices: 65_535, max_control_points: 4096, good_vertices: 300 };
+    pub const LAVAPIPE: Self = Self::Limited { max_vertices: 65_535, max_control_points: 4096, good_vertices: 600 };
 
     /// The rule for a driver.
     pub fn of_driver(driver: vk::DriverId) -> Self {

@@ -118,6 +118,28 @@ impl Buffer {
         vk::DescriptorBufferInfo { buffer: self.raw(), offset: 0, range: vk::WHOLE_SIZE }
     }
 
+    /// A view of some bytes from `offset` on as a texel buffer whose texels take so many bytes; it ends where the device sees no
+    /// more.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn texels(
+        &self,
+        format: vk::Format,
+        texel: u64,
+        offset: u64,
+        bytes: u64,
+    ) -> Result<Owned<vk::BufferView>, GpuError> {
+        let most = self.context.properties().max_texel_buffer_elements;
+        let range = (bytes / texel).clamp(1, most) * texel;
+        let info = vk::BufferViewCreateInfo::default().buffer(self.raw()).format(format).offset(offset).range(range);
+        // SAFETY: the buffer is of this device, and the view is taken over by `Owned`.
+        unsafe {
+            let raw = self.context.device().create_buffer_view(&info, None).of("vkCreateBufferView", &self.name)?;
+            Ok(Owned::new(&self.context, raw, &self.name))
+        }
+    }
+
     /// Copies `data` to `offset`, in bytes from the start of the buffer.
     ///
     /// # Errors

@@ -94,6 +94,13 @@ impl DeviceProperties {
         }
     }
 
+    /// Whether texel buffers are as large as tables may be, and shaders are to read these as such: on lavapipe that takes half as
+    /// long as reading storage buffers, and it costs nothing elsewhere. Every device has 65 536 elements; those
+    /// that have many more all have as many as here.
+    pub fn reads_texels(&self) -> bool {
+        self.max_texel_buffer_elements >= 1 << 27
+    }
+
     /// The sample counts in numbers, ascending.
     pub fn sample_counts(&self) -> Vec<u32> {
         (0..7).map(|bit| 1 << bit).filter(|&n| self.sample_counts.contains(vk::SampleCountFlags::from_raw(n))).collect()

@@ -68,8 +68,7 @@ impl CachedPipelines {
     /// Makes what patches need.
     pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
         let stages = stages.construction();
-        let most = self.context.properties().max_tessellation_level as f32;
-        let constants = stages.specialization(0, most);
+        let constants = stages.specialization(0, self.context.properties());
         self.make_one(Step::frames(stages), shaders::COMPUTE_FRAMES_COMP, &constants)?;
         self.make_one(Step::Points(stages), shaders::named(&stages.control_points())?, &constants)
     }

@@ -1,6 +1,6 @@
 //! Control points made by the geometry shader, in a pass of their own before the draws (Ni et al. 2008).
 
-use super::stages::PatchStages;
+use super::stages::{PatchStages, reads_texels};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Specialization, VkResultExt,
     pipeline_layout, shaders,
@@ -71,10 +71,10 @@ impl Conversion {
         }
         let [owned, stride] = key;
         let name = format!("CONSTRUCT_CONVERT_GEOM_OWNED_{owned}");
-        let stride = [Specialization::uint(3, stride)];
+        let constants = [Specialization::uint(3, stride), reads_texels(self.context.properties())];
         let shaders = [
             Shader::vertex(shaders::CONSTRUCT_CONVERT_VERT),
-            Shader::geometry(shaders::named(&name)?).specialized(&stride),
+            Shader::geometry(shaders::named(&name)?).specialized(&constants),
         ];
         let target = RenderTarget::RenderPass { render_pass: self.pass.raw(), subpass: 0, color_attachments: 0 };
         let desc = GraphicsPipelineDesc {

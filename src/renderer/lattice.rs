@@ -69,7 +69,7 @@ impl LatticePipelines {
             return Ok(());
         }
         let name = stages.evaluation(Capture::Off, self.texcoords);
-        let constants = stages.specialization(0, 0.0);
+        let constants = stages.specialization(0, self.context.properties());
         let desc = ComputePipelineDesc {
             name: &format!("subdiv {name}"),
             layout: self.layout.raw(),

@@ -64,7 +64,7 @@ pub(crate) use pipelines::STAGES;
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
-    stages::spaced,
+    stages::{reads_texels, spaced},
     subdivision::level as subdivision_level,
 };
 

@@ -5,14 +5,23 @@ use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::{MODEL_BUFFERS, Pipelines};
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
-use super::{
-    DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables,
-    Options,
-};
+use super::tables::POSITION_BYTES;
+use super::{DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::table::PatchGroup;
 use ash::vk;
 use std::sync::Arc;
+
+/// How shaders see the first storage buffers of set 1 as texel buffers, and the bytes of a texel: positions, rings, their
+/// entries, their types, corners of patches, frames. GLSL twins: `glsl/lib/positions.glsl`, `rings.glsl`, `kept_frames.glsl`.
+pub(super) const TEXELS: [(vk::Format, u64); 6] = [
+    (vk::Format::R32G32B32A32_SFLOAT, 16),
+    (vk::Format::R32G32B32A32_UINT, 16),
+    (vk::Format::R32_UINT, 4),
+    (vk::Format::R32G32B32A32_SFLOAT, 16),
+    (vk::Format::R32G32_UINT, 8),
+    (vk::Format::R32G32B32A32_SFLOAT, 16),
+];
 
 /// Of set 1: frames are in the place of the stencil table, which the cached construction does without.
 const FRAMES_BINDING: usize = 5;
@@ -28,10 +37,13 @@ pub(super) struct Model {
     /// What there are pipelines for, by [`Cut::bit`](super::factor::Cut::bit).
     pub made: u32,
     pub set: vk::DescriptorSet,
+    _texels: Vec<Owned<vk::BufferView>>,
     _pool: Owned<vk::DescriptorPool>,
     /// All tables of the construction and the texture coordinates, one after the other.
     table_buffer: Buffer,
     positions: Streamed,
+    /// To put the vertices in that are then written.
+    stored: Vec<[f32; 4]>,
     /// The factor of each patch corner's plus edge, if edges are to have their own.
     corner_factors: Option<Streamed>,
     largest_edge_factor: f32,
@@ -101,8 +113,8 @@ impl Model {
         let mut ranges = Vec::with_capacity(arrays.len());
         for (table, array) in &arrays {
             check(table, array.len() as u64)?;
-            // An empty table still gets a range, so that every descriptor is written.
-            let size = (array.len() as u64).max(4);
+            // An empty table still gets a range, so that every descriptor is written, and has a texel.
+            let size = (array.len() as u64).max(16);
             ranges.push((offset, size));
             offset = (offset + size).next_multiple_of(ALIGNMENT);
         }
@@ -110,10 +122,10 @@ impl Model {
         for ((_, array), (offset, _)) in arrays.iter().zip(&ranges) {
             staged_tables.write(*offset, array)?;
         }
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
         let table_buffer = device_buffer(context, &format!("{name}: tables"), offset, storage)?;
 
-        let position_bytes = 12 * tables.stored_vertices() as u64;
+        let position_bytes = POSITION_BYTES * tables.stored_vertices() as u64;
         check("positions", position_bytes)?;
         let in_flight = options.frames_in_flight;
         let kept = |what: &'static str, bytes: u64| -> Result<_, Error> {
@@ -122,9 +134,9 @@ impl Model {
         };
         let [point_bytes, frame_bytes] = tables.kept_bytes();
         let (control_points, frames) = (kept("control points", point_bytes)?, kept("frames", frame_bytes)?);
-        let stored = tables.stored_positions(control);
+        let mut stored = Vec::new();
+        tables.store_positions(control, &mut stored);
         let positions = Streamed::new(context, &format!("{name}: positions"), &stored, in_flight)?;
-        drop(stored);
         let corner_factors = match tables.edges() {
             Some(edges) => {
                 let ones = vec![1.0f32; edges.of_corners.len()];
@@ -153,16 +165,24 @@ impl Model {
         };
 
         let (pool, set) = descriptor_set(context, pipelines.model_layout.raw(), name)?;
-        let mut buffers = vec![positions.descriptor()];
+        let mut buffers = vec![positions.buffer().descriptor()];
         let table = |&(offset, range)| vk::DescriptorBufferInfo { buffer: table_buffer.raw(), offset, range };
         buffers.extend(ranges.iter().map(table));
         if let Some(frames) = &frames {
             buffers[FRAMES_BINDING] = frames.descriptor();
         }
         // Every descriptor has to be written; without factors of its own a model's edges never read any.
-        buffers.push(corner_factors.as_ref().map_or(positions.descriptor(), Streamed::descriptor));
-        buffers.push(control_points.as_ref().map_or(positions.descriptor(), Buffer::descriptor));
-        write_set(context, set, &buffers, map);
+        buffers.push(corner_factors.as_ref().unwrap_or(&positions).buffer().descriptor());
+        buffers.push(control_points.as_ref().unwrap_or(positions.buffer()).descriptor());
+        let table_ranges = ranges.iter().map(|&(offset, bytes)| (&table_buffer, offset, bytes));
+        let sources = std::iter::once((positions.buffer(), 0, positions.buffer().size())).chain(table_ranges);
+        let texels =
+            (0..).zip(TEXELS).zip(sources).map(|((binding, (format, texel)), (buffer, offset, bytes))| match &frames {
+                Some(frames) if binding == FRAMES_BINDING => frames.texels(format, texel, 0, frames.size()),
+                _ => buffer.texels(format, texel, offset, bytes),
+            });
+        let texels = texels.collect::<Result<Vec<_>, _>>()?;
+        write_set(context, set, &buffers, map, &texels);
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_vectors(), tables.has_speakers());
         // The control shader knows by its flags.
@@ -177,9 +197,11 @@ impl Model {
             made: 0,
             tables,
             set,
+            _texels: texels,
             _pool: pool,
             table_buffer,
             positions,
+            stored,
             corner_factors,
             largest_edge_factor: 1.0,
             control_points,
@@ -199,7 +221,8 @@ impl Model {
         if control.len() != needed {
             return Err(Error::PositionCount { id: self.id, given: control.len(), needed });
         }
-        Ok(self.positions.write(frame, &self.tables.stored_positions(control))?)
+        self.tables.store_positions(control, &mut self.stored);
+        Ok(self.positions.write(frame, &self.stored)?)
     }
 
     pub(super) fn set_edge_factors(&mut self, frame: u32, factors: &[f32]) -> Result<(), Error> {
@@ -364,6 +387,7 @@ fn descriptor_set(
     let sizes = [
         count(vk::DescriptorType::STORAGE_BUFFER, MODEL_BUFFERS as u32),
         count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1),
+        count(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, TEXELS.len() as u32),
     ];
     let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
     let layouts = [layout];
@@ -383,6 +407,7 @@ fn write_set(
     set: vk::DescriptorSet,
     buffers: &[vk::DescriptorBufferInfo],
     map: DisplacementMap,
+    texels: &[Owned<vk::BufferView>],
 ) {
     let image = [vk::DescriptorImageInfo { sampler: map.sampler, image_view: map.view, image_layout: map.layout }];
     let sampler = vk::WriteDescriptorSet::default()
@@ -390,6 +415,14 @@ fn write_set(
         .dst_binding(MODEL_BUFFERS as u32)
         .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
         .image_info(&image);
+    let views: Vec<_> = texels.iter().map(Owned::raw).collect();
+    let texels = (MODEL_BUFFERS as u32 + 1..).zip(views.chunks(1)).map(|(binding, view)| {
+        vk::WriteDescriptorSet::default()
+            .dst_set(set)
+            .dst_binding(binding)
+            .descriptor_type(vk::DescriptorType::UNIFORM_TEXEL_BUFFER)
+            .texel_buffer_view(view)
+    });
     let writes: Vec<_> = (0..)
         .zip(buffers.chunks(1))
         .map(|(binding, info)| {
@@ -400,6 +433,7 @@ fn write_set(
                 .buffer_info(info)
         })
         .chain([sampler])
+        .chain(texels)
         .collect();
     // SAFETY: the set is new, the buffers live as long as it, and the map as long as the renderer.
     unsafe { context.device().update_descriptor_sets(&writes, &[]) };

@@ -4,7 +4,8 @@ use super::cached::CachedPipelines;
 use super::conversion::Conversion;
 use super::factor::Cut;
 use super::lattice::{LatticePipelines, vertex_bytes};
-use super::stages::{PatchStages, Sharing, spaced};
+use super::model::TEXELS;
+use super::stages::{PatchStages, Sharing, reads_texels, spaced};
 use super::subdivision;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
@@ -81,7 +82,7 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 );
 
 /// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
-/// points. The displacement map comes after them.
+/// points. The displacement map comes after them, and the first buffers once more as texel buffers ([`TEXELS`]).
 pub(super) const MODEL_BUFFERS: usize = 13;
 
 /// Four for each location that the control shaders write to: the last is in `glsl/lib/culling.glsl`.
@@ -98,6 +99,7 @@ impl Pipelines {
         let model_stages = STAGES | vk::ShaderStageFlags::COMPUTE;
         let mut model = vec![(vk::DescriptorType::STORAGE_BUFFER, model_stages); MODEL_BUFFERS];
         model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, STAGES));
+        model.extend([(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, model_stages); TEXELS.len()]);
         let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
         let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;
         let mut sets = vec![view_layout.raw(), model_layout.raw()];
@@ -183,12 +185,14 @@ impl Pipelines {
             return Ok(());
         }
         let style = &self.styles[key.style];
+        let properties = self.context.properties();
+        let reads_texels = [reads_texels(properties)];
         let encode = [Specialization::bool(1, self.target.encoding == ColorEncoding::Srgb)];
         let pipeline = match key.geometry {
             GeometryKey::Control => {
                 let name = format!("subdiv style {} of the control mesh", key.style);
                 let stages = [
-                    Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT),
+                    Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT).specialized(&reads_texels),
                     fragment(style, Sharing::Positions, &encode),
                 ];
                 self.create(&name, key, &stages, 0)?
@@ -207,7 +211,7 @@ impl Pipelines {
                 let geometry = self.find(&subdivision::shader(level, self.capture, self.texcoords))?;
                 let stages = [
                     Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
-                    Shader::geometry(geometry),
+                    Shader::geometry(geometry).specialized(&reads_texels),
                     fragment(style, Sharing::Positions, &encode),
                 ];
                 self.create(&name, key, &stages, 0)?
@@ -216,8 +220,7 @@ impl Pipelines {
                 let name = format!("subdiv style {} {patch:?}", key.style);
                 let fragment = fragment(style, patch.sharing, &encode);
                 let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
-                let most = self.context.properties().max_tessellation_level as f32;
-                let constants = patch.specialization(cut.flags(), most);
+                let constants = patch.specialization(cut.flags(), properties);
                 match patch.evaluation {
                     Evaluation::Tessellation => {
                         self.create_tessellating(&name, key, patch, &constants, evaluation, fragment)?

@@ -3,7 +3,7 @@
 use super::factor::Cut;
 use super::pipelines::GeometryKey;
 use super::{Capture, Construction, Cull, Evaluation, Factor};
-use crate::gpu::{Spacing, Specialization};
+use crate::gpu::{DeviceProperties, Spacing, Specialization};
 use crate::patch::Scheme;
 use crate::topology::PatchKind;
 
@@ -127,18 +127,18 @@ impl PatchStages {
         format!("CONSTRUCT_TWO_STAGE_VERT{inner}{sharing}")
     }
 
-    /// What the vertex and the control shader of draws with these flags are specialized to. `most` is the largest factor of
-    /// the device.
-    pub(super) fn specialization(self, flags: u32, most: f32) -> [Specialization; 8] {
+    /// What the vertex and the control shader of draws with these flags are specialized to.
+    pub(super) fn specialization(self, flags: u32, device: &DeviceProperties) -> [Specialization; 9] {
         [
             Specialization::uint(0, self.kind.corners() as u32),
-            Specialization::float(2, most),
+            Specialization::float(2, device.max_tessellation_level as f32),
             Specialization::uint(3, self.stride),
             Specialization::uint(4, flags),
             Specialization::bool(5, self.scheme == Scheme::GregoryFitted),
             Specialization::bool(6, self.scheme.has_pentagons()),
             Specialization::bool(7, self.has_speakers),
             Specialization::bool(8, self.edge_factors),
+            reads_texels(device),
         ]
     }
 
@@ -185,6 +185,11 @@ impl PatchStages {
         };
         name
     }
+}
+
+/// What all shaders that read tables are specialized to. GLSL twin: `READS_TEXELS` in `glsl/lib/positions.glsl`.
+pub(crate) fn reads_texels(device: &DeviceProperties) -> Specialization {
+    Specialization::bool(9, device.reads_texels())
 }
 
 /// A tessellation evaluation shader with another spacing: the files all say `equal_spacing`.

@@ -24,14 +24,16 @@ impl Streamed {
         contents: &[T],
         frames: u32,
     ) -> Result<Self, GpuError> {
-        // A buffer of no bytes is no buffer.
-        let size = (size_of_val(contents) as u64).max(4);
+        // A buffer of no bytes is no buffer, and one of no texels no texel buffer.
+        let size = (size_of_val(contents) as u64).max(16);
         let buffer = Buffer::new(
             context,
             &BufferDesc {
                 name,
                 size,
-                usage: vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST,
+                usage: vk::BufferUsageFlags::STORAGE_BUFFER
+                    | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER
+                    | vk::BufferUsageFlags::TRANSFER_DST,
                 location: MemoryLocation::DeviceLocal,
             },
         )?;
@@ -76,8 +78,9 @@ impl Streamed {
         self.sent = true;
     }
 
-    pub(super) fn descriptor(&self) -> vk::DescriptorBufferInfo {
-        self.buffer.descriptor()
+    /// What is on the device.
+    pub(super) fn buffer(&self) -> &Buffer {
+        &self.buffer
     }
 
     /// Bytes on the device, and on the host.

@@ -10,7 +10,6 @@ use crate::table::{
 };
 use crate::topology::{PatchKind, Topology};
 use glam::Vec3;
-use std::borrow::Cow;
 
 /// Everything that a model's shaders read but its positions. Made without a device, on any thread.
 #[derive(Debug, Clone)]
@@ -69,6 +68,8 @@ impl Edges {
     }
 }
 
+/// Bytes of a stored vertex. GLSL twin: `glsl/lib/positions.glsl`.
+pub(super) const POSITION_BYTES: u64 = 16;
 /// Bytes of a frame of a ring. GLSL twin: `glsl/lib/kept_frames.glsl`.
 const FRAME_BYTES: u64 = 4 * 12;
 
@@ -158,16 +159,17 @@ impl ModelTables {
         self.stored_vertices() - self.control_vertices
     }
 
-    /// The stored vertices for these positions of the control vertices.
-    pub(super) fn stored_positions<'p>(&self, control: &'p [[f32; 3]]) -> Cow<'p, [[f32; 3]]> {
-        if self.steps.is_empty() {
-            return Cow::Borrowed(control);
+    /// Puts the stored vertices for these positions of the control vertices in the place of what is in `stored`: with a fourth
+    /// number each, as texel buffers have them.
+    pub(super) fn store_positions(&self, control: &[[f32; 3]], stored: &mut Vec<[f32; 4]>) {
+        let wide = |&[x, y, z]: &[f32; 3]| [x, y, z, 0.0];
+        stored.clear();
+        if let Some((first, rest)) = self.steps.split_first() {
+            let positions: Vec<Vec3> = control.iter().map(|&p| p.into()).collect();
+            let refined = rest.iter().fold(first.apply(&positions), |refined, step| step.apply(&refined));
+            stored.extend(refined.into_iter().map(|p| wide(&p.into())));
         }
-        let mut refined: Vec<Vec3> = control.iter().map(|&p| p.into()).collect();
-        for step in &self.steps {
-            refined = step.apply(&refined);
-        }
-        Cow::Owned(refined.into_iter().map(Into::into).chain(control.iter().copied()).collect())
+        stored.extend(control.iter().map(wide));
     }
 
     /// The patches, in the order of the tables.
@@ -226,7 +228,7 @@ impl ModelTables {
 
     /// Bytes of each table that drawing the surface reads.
     pub fn bytes(&self) -> Vec<TableBytes> {
-        let positions = ("positions", 12 * self.stored_vertices() as u64);
+        let positions = ("positions", POSITION_BYTES * self.stored_vertices() as u64);
         let tables = self.bindings().into_iter().filter(|(name, array)| *name != "texcoords" && !array.is_empty());
         let kept = ["control_points", "frames"].into_iter().zip(self.kept_bytes()).filter(|&(_, bytes)| bytes > 0);
         std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).chain(kept).collect()

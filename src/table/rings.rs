@@ -28,11 +28,11 @@ pub struct RingTable {
     /// Vertices around a ring: `a_0, d_0, a_1, d_1, ..`, and the last edge's `a` where the ring is open. After all rings the
     /// vertices of each pentagon, with the first once more at the end.
     pub entries: Vec<u32>,
-    /// For each type of ring: `cos_k`; cosine and sine of each edge's direction; then, for the vertex itself and
-    /// each entry, its weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame); then, for
-    /// rings with their `FITTED_BIT` set, two weights for each edge
-    /// ([`Fit::transversal_weights`](crate::patch::fitted::Fit::transversal_weights)).
-    pub types: Vec<f32>,
+    /// For each type of ring: the vertex's weights in `p`, `a` and `b` of the [`Frame`](crate::patch::Frame) and `cos_k`; for
+    /// each edge, cosine and sine of its direction and the two weights of its transversal
+    /// ([`Fit::transversal_weights`](crate::patch::fitted::Fit::transversal_weights)); for each entry, its weights in `p`, `a`
+    /// and `b`, and nought.
+    pub types: Vec<[f32; 4]>,
     /// How many types there are.
     pub type_count: usize,
     /// For each patch corner, its ring and the ring edge that is its plus edge.
@@ -60,7 +60,7 @@ impl RingTable {
         let pentagons = Pentagons::new(topology, entries);
         let mut entries = ring_entries(topology, &pentagons, entries as usize);
         entries.extend(&pentagons.vertices);
-        Self { entries, headers, types: types.words, type_count: types.count, corners: corners.collect() }
+        Self { entries, headers, types: types.vectors, type_count: types.count, corners: corners.collect() }
     }
 }
 
@@ -121,7 +121,7 @@ fn ring_entries(topology: &Topology, pentagons: &Pentagons, count: usize) -> Vec
 #[derive(Default)]
 struct RingTypes {
     scheme: Scheme,
-    words: Vec<f32>,
+    vectors: Vec<[f32; 4]>,
     count: usize,
     /// Rings of quads only, by kind, openness, faces and fallback: no need to look at their faces one by one.
     of_quads: HashMap<(RingKind, bool, u32, bool), (u32, u32)>,
@@ -148,20 +148,21 @@ impl RingTypes {
         if let Some(&found) = self.mixed.get(&shape) {
             return found;
         }
-        let start = self.words.len() as u32;
-        self.words.push(shape.cosine() as f32);
-        for j in 0..shape.edges() {
-            self.words.extend(shape.edge_direction(j).map(|x| x as f32));
-        }
+        let start = self.vectors.len() as u32;
         let frame = self.scheme.frame(&RingValues::unknowns(shape.clone()));
-        for entry in 0..=(shape.faces() + shape.edges()) as u32 {
-            self.words.extend([&frame.p, &frame.a, &frame.b].map(|row| row.weight(entry) as f32));
+        let weights = |entry, last: f64| {
+            let [p, a, b] = [&frame.p, &frame.a, &frame.b].map(|row| row.weight(entry));
+            [p, a, b, last].map(|x| x as f32)
+        };
+        self.vectors.push(weights(0, shape.cosine()));
+        let mut fitted = false;
+        for j in 0..shape.edges() {
+            let transversal = self.scheme.transversal_weights(&shape, j);
+            fitted |= transversal != [1.0, 0.0];
+            let ([cosine, sine], [r, turned]) = (shape.edge_direction(j), transversal);
+            self.vectors.push([cosine, sine, r, turned].map(|x| x as f32));
         }
-        let transversals: Vec<_> = (0..shape.edges()).map(|j| self.scheme.transversal_weights(&shape, j)).collect();
-        let fitted = transversals.iter().any(|&weights| weights != [1.0, 0.0]);
-        if fitted {
-            self.words.extend(transversals.iter().flatten().map(|&x| x as f32));
-        }
+        self.vectors.extend((1..=(shape.faces() + shape.edges()) as u32).map(|entry| weights(entry, 0.0)));
         self.count += 1;
         let bits = [
             (shape.open, OPEN_BIT),

@@ -5,7 +5,7 @@ use crate::bench::BenchError;
 use crate::bench::drawable::{Drawable, Frame, Lane, Setup, timed};
 use crate::gpu::{Buffer, Domain, Owned, Shader, Spacing, Specialization, shaders, tessellated_vertices};
 use crate::patch::{Fallback, Scheme};
-use crate::renderer::{DrawConstants, TableBytes, spaced};
+use crate::renderer::{DrawConstants, TableBytes, reads_texels, spaced};
 use crate::table::{PatchPlan, TableError, prepare};
 use crate::topology::{PatchKind, Topology};
 use ash::vk;
@@ -38,9 +38,10 @@ impl Bilinear {
             let corners = plan.corners(&topology).into_iter().map(|h| face_vertices[h as usize]);
             let corners: Vec<u32> = corners.collect();
             drop(topology);
-            Ok::<_, BenchError>((prepared.mesh.positions_f32(), corners, plan))
+            let positions: Vec<_> = prepared.mesh.positions_f32().iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+            Ok::<_, BenchError>((positions, corners, plan))
         })?;
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
         let ((positions, corners), upload) = timed(|| {
             let positions = device_buffer(headless, "bilinear positions", storage, &positions)?;
             Ok::<_, BenchError>((positions, device_buffer(headless, "bilinear corners", storage, &corners)?))
@@ -55,7 +56,7 @@ impl Bilinear {
             let kinds = all.into_iter().filter(|&(_, patches, _)| patches > 0);
             let kinds = kinds.map(|(kind, patches, first_corner)| {
                 let corners = kind.corners() as u32;
-                let specialization = [Specialization::uint(0, corners)];
+                let specialization = [Specialization::uint(0, corners), reads_texels(headless.properties())];
                 let [control, evaluation] = stages(kind);
                 let evaluation = spaced(evaluation, spacing);
                 let stages = [

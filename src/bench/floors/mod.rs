@@ -19,7 +19,7 @@ use ash::vk;
 use bytemuck::NoUninit;
 use std::sync::Arc;
 
-/// The storage buffers that a floor's shaders may read in set 1.
+/// The storage buffers that a floor's shaders may read in set 1. The first of them is there once more, as a texel buffer.
 const BINDINGS: usize = 2;
 
 /// What comes into the vertex stage, and what it hands on.
@@ -39,6 +39,7 @@ struct Kit {
     _pool: Owned<vk::DescriptorPool>,
     sets: [vk::DescriptorSet; 2],
     view: Buffer,
+    _position_texels: Owned<vk::BufferView>,
 }
 
 impl Kit {
@@ -46,10 +47,11 @@ impl Kit {
     fn new(headless: &Headless, storage: [&Buffer; BINDINGS]) -> Result<Self, GpuError> {
         const NAME: &str = "bench floor";
         let context = headless.context();
-        let (uniform, buffer) = (vk::DescriptorType::UNIFORM_BUFFER, vk::DescriptorType::STORAGE_BUFFER);
+        use vk::DescriptorType as Type;
+        let (uniform, buffer, texels) = (Type::UNIFORM_BUFFER, Type::STORAGE_BUFFER, Type::UNIFORM_TEXEL_BUFFER);
         let set_layouts = [
             descriptor_set_layout(context, NAME, &[(uniform, STAGES)])?,
-            descriptor_set_layout(context, NAME, &[(buffer, STAGES); BINDINGS])?,
+            descriptor_set_layout(context, NAME, &[(buffer, STAGES), (buffer, STAGES), (texels, STAGES)])?,
         ];
         let raw = [set_layouts[0].raw(), set_layouts[1].raw()];
         let size = size_of::<DrawConstants>() as u32;
@@ -63,6 +65,7 @@ impl Kit {
         let sizes = [
             vk::DescriptorPoolSize { ty: uniform, descriptor_count: 1 },
             vk::DescriptorPoolSize { ty: buffer, descriptor_count: BINDINGS as u32 },
+            vk::DescriptorPoolSize { ty: texels, descriptor_count: 1 },
         ];
         let pool_info = vk::DescriptorPoolCreateInfo::default().max_sets(2).pool_sizes(&sizes);
         let device = context.device();
@@ -77,10 +80,24 @@ impl Kit {
         let views = [view.descriptor()];
         let buffers = storage.map(Buffer::descriptor);
         let write = |set, ty| vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty);
-        let writes = [write(sets[0], uniform).buffer_info(&views), write(sets[1], buffer).buffer_info(&buffers)];
+        let position_texels = storage[0].texels(vk::Format::R32G32B32A32_SFLOAT, 16, 0, storage[0].size())?;
+        let texel_views = [position_texels.raw()];
+        let writes = [
+            write(sets[0], uniform).buffer_info(&views),
+            write(sets[1], buffer).buffer_info(&buffers),
+            write(sets[1], texels).dst_binding(BINDINGS as u32).texel_buffer_view(&texel_views),
+        ];
         // SAFETY: the sets are new, and the buffers live as long as they.
         unsafe { device.update_descriptor_sets(&writes, &[]) };
-        Ok(Self { context: context.clone(), layout, _set_layouts: set_layouts, _pool: pool, sets, view })
+        Ok(Self {
+            context: context.clone(),
+            layout,
+            _set_layouts: set_layouts,
+            _pool: pool,
+            sets,
+            view,
+            _position_texels: position_texels,
+        })
     }
 
     /// Pipelines for [`Pass::ALL`].

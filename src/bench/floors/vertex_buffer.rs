@@ -41,7 +41,8 @@ impl<'a> VertexBuffer<'a> {
         // Whichever the scheme, a vertex is a vertex.
         let surface = CpuSurface::new(&lane.subject.mesh, Scheme::Gregory, lane.subject.refine)?;
         let points = surface.control_points(|position| position.as_vec3());
-        let nothing = device_buffer::<u32>(lane.headless, "nothing", vk::BufferUsageFlags::STORAGE_BUFFER, &[])?;
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+        let nothing = device_buffer(lane.headless, "nothing", usage, &[[0.0f32; 4]])?;
         let kit = Kit::new(lane.headless, [&nothing, &nothing])?;
         let bindings = [vk::VertexInputBindingDescription::default().stride(size_of::<Vertex>() as u32)];
         let attribute = |location, offset| {
