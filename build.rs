@@ -21,7 +21,7 @@ use std::{env, fs, thread};
 
 const STAGES: [&str; 6] = ["vert", "tesc", "tese", "geom", "frag", "comp"];
 /// How many lines at the top of a shader are searched for `// variants:`.
-const HEADER_LINES: usize = 16;
+const HEADER_LINES: usize = 24;
 
 /// One compile: a shader file with a set of macros.
 struct Job {

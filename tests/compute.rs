@@ -4,7 +4,7 @@
 mod common;
 
 use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError};
-use ash_subdiv::renderer::{Evaluation, Factor};
+use ash_subdiv::renderer::{Evaluation, Factor, ModelTables};
 use ash_subdiv::topology::Topology;
 use ash_subdiv::{
     Construction, DeviceContext, DrawItem, Error, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style,
@@ -113,8 +113,8 @@ fn counts(options: &ModelOptions, moves: [bool; 3]) -> [[u64; 2]; 3] {
 #[test]
 fn several_passes_evaluate_once() {
     let moves = [true, false, true];
-    // 24 corners in a group of 64, and a group of 32 for each patch.
-    let points = 64;
+    // 8 rings in a group of 64, 6 patches in another, and a group of 32 for each patch.
+    let points = 64 + 64;
     let vertices = 6 * 32;
     let options = compute(Scheme::Gregory);
     assert_eq!(counts(&options, moves), [[points + vertices, 0], [0, 0], [points + vertices, 0]]);
@@ -130,19 +130,28 @@ fn wrong_use_is_told() {
     let mut renderer = stage.renderer(&Options { styles: vec![Style::default()], ..Options::default() });
     let mesh = shape("cube").expect("built in");
     let text = |error: Error| error.to_string();
-    let wrong = [
-        (ModelOptions { shared_normals: true, ..compute(Scheme::Gregory) }, "shared normals"),
-        (ModelOptions { spacing: Spacing::FractionalOdd, ..compute(Scheme::Gregory) }, "fractional spacing"),
-    ];
-    for (options, what) in wrong {
-        for evaluation in Evaluation::ALL.into_iter().filter(|e| !e.constructions().contains(&Construction::TwoStage)) {
-            let error = text(renderer.add_model(&mesh, &ModelOptions { evaluation, ..options.clone() }).unwrap_err());
-            let told = format!(
-                "model 0: Evaluation::{evaluation:?} does not go with {what}: do without, or choose Evaluation::Tessellation"
-            );
-            assert_eq!(error, told);
-        }
+    let fractional = ModelOptions { spacing: Spacing::FractionalOdd, ..compute(Scheme::Gregory) };
+    let shared = ModelOptions { shared_normals: true, ..compute(Scheme::Gregory) };
+    let of_stencils = ModelOptions { construction: Construction::Stencil, ..shared.clone() };
+    for (evaluation, options, what) in [
+        (Evaluation::Compute, &fractional, "fractional spacing"),
+        (Evaluation::Instanced, &fractional, "fractional spacing"),
+        (Evaluation::GeometryTwoPass, &fractional, "fractional spacing"),
+        (Evaluation::GeometryTwoPass, &shared, "shared normals"),
+        (Evaluation::Geometry, &of_stencils, "shared normals of Construction::Stencil"),
+    ] {
+        let error = text(renderer.add_model(&mesh, &ModelOptions { evaluation, ..options.clone() }).unwrap_err());
+        let told = format!(
+            "model 0: Evaluation::{evaluation:?} does not go with {what}: do without, or choose Evaluation::Tessellation"
+        );
+        assert_eq!(error, told);
     }
+    let tables = ModelTables::new(&mesh, &compute(Scheme::Gregory)).expect("tables");
+    let other = ModelOptions { evaluation: Evaluation::GeometryTwoPass, ..compute(Scheme::Gregory) };
+    assert_eq!(
+        text(renderer.add_tables(tables, &mesh.positions_f32(), &other).unwrap_err()),
+        "model 0: its tables were built for Evaluation::Compute, not for GeometryTwoPass: build them with the same options"
+    );
     let options = ModelOptions { construction: Construction::TwoStage, ..compute(Scheme::Gregory) };
     assert_eq!(
         text(renderer.add_model(&mesh, &options).unwrap_err()),

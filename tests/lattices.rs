@@ -8,7 +8,7 @@ use ash_subdiv::capture::{CaptureDraw, Captured, CapturedVertex, Which};
 use ash_subdiv::renderer::{Evaluation, Factor, Fragment, ModelTables};
 use ash_subdiv::table::{Patch, grid_parameters};
 use ash_subdiv::topology::{PatchKind, Topology};
-use ash_subdiv::{ControlMesh, DrawItem, Fallback, ModelOptions, Options, Scheme, Style, shape};
+use ash_subdiv::{Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Scheme, Style, shape};
 use common::edges::{bits, edge_parameters, shared_edges};
 use common::stage::{Stage, read_vertices};
 use glam::Vec3;
@@ -34,6 +34,15 @@ fn ways(scheme: Scheme) -> impl Iterator<Item = ModelOptions> {
         evaluation,
         ..ModelOptions::default()
     })
+}
+
+/// The same through the tessellation stages, with the patches in the same order: the stencil table has its own.
+fn tessellated(options: &ModelOptions) -> ModelOptions {
+    let construction = match options.evaluation {
+        Evaluation::GeometryTwoPass => Construction::Stencil,
+        _ => options.construction,
+    };
+    ModelOptions { construction, evaluation: Evaluation::Tessellation, ..options.clone() }
 }
 
 /// Each patch on its lattice, in the order of [`grid_parameters`], as the device evaluates it.
@@ -123,13 +132,10 @@ fn vertices_are_those_of_the_tessellation_stages() {
         let mesh = if name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
         for &scheme in schemes {
             for &segments in counts {
-                // The stencil construction and the cached one have the patches in the same order.
-                let tessellated =
-                    ModelOptions { evaluation: Evaluation::Tessellation, ..ways(scheme).next().expect("compute") };
-                let captured = Captured::new(&stage.headless, &mesh, &tessellated).expect("a model");
-                let vertices = captured.vertices(segments as f32).expect("a capture");
-                let grids = captured.grid(segments + 1).expect("a capture");
                 for options in ways(scheme) {
+                    let captured = Captured::new(&stage.headless, &mesh, &tessellated(&options)).expect("a model");
+                    let vertices = captured.vertices(segments as f32).expect("a capture");
+                    let grids = captured.grid(segments + 1).expect("a capture");
                     let lattices = lattices(&stage, &mesh, &options, segments);
                     let what = format!("{name} {scheme:?} {:?} {segments}", options.evaluation);
                     compare(captured.tables().plan().patches(), segments, &lattices, &vertices, &what);
@@ -169,6 +175,42 @@ fn compare(patches: &[Patch], segments: u32, lattices: &[Vec<Vertex>], tessellat
             assert!(turn < 1e-5, "{what} {uv:?}: {turn}");
         }
     }
+}
+
+/// Normals that patches share, along edges and inside, are those of the tessellation stages to the bit.
+#[test]
+fn shared_normals_are_those_of_the_tessellation_stages() {
+    let stage = Stage::new();
+    for (name, segments) in [("creature-mixed", 6), ("machine-part", 13), ("cloth", 5)] {
+        let mesh = shape(name).expect("built in");
+        let shared = ways(Scheme::Gregory).filter(|way| way.evaluation.shares(way.construction));
+        let shared: Vec<_> = shared.map(|way| ModelOptions { shared_normals: true, ..way }).collect();
+        assert_eq!(shared.len(), 3);
+        for options in shared {
+            let captured = Captured::new(&stage.headless, &mesh, &tessellated(&options)).expect("a model");
+            let patches = captured.tables().plan().patches();
+            let at: HashMap<_, CapturedVertex> = captured
+                .vertices(segments as f32)
+                .expect("a capture")
+                .into_iter()
+                .map(|v| (place(v.patch, [v.coordinate[0], v.coordinate[1]].map(f64::from), segments), v))
+                .collect();
+            let mut compared = 0;
+            for (i, lattice) in lattices(&stage, &mesh, &options, segments).into_iter().enumerate() {
+                for (uv, vertex) in grid_parameters(patches[i].kind, segments + 1).into_iter().zip(&lattice) {
+                    // Within triangles the tessellator has vertices elsewhere.
+                    let Some(other) = at.get(&place(i as u32, uv, segments)) else { continue };
+                    if patches[i].kind.is_triangular() && !on_edge(other) {
+                        continue;
+                    }
+                    assert_eq!(bits(normal(vertex)), bits(other.normal), "{name} {:?} {other:?}", options.evaluation);
+                    compared += 1;
+                }
+            }
+            assert!(compared > 20 * patches.len(), "{compared}");
+        }
+    }
+    stage.finish();
 }
 
 #[test]
@@ -300,8 +342,7 @@ fn edges_have_the_segments_of_their_own_factors() {
         let mesh = if name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
         for options in ways(scheme) {
             let options = ModelOptions { edge_factors: true, ..options };
-            let tessellated = ModelOptions { evaluation: Evaluation::Tessellation, ..options.clone() };
-            let captured = Captured::new(&stage.headless, &mesh, &tessellated).expect("a model");
+            let captured = Captured::new(&stage.headless, &mesh, &tessellated(&options)).expect("a model");
             let patches = captured.tables().plan().patches();
             // From below 1 up to 13, and some between whole numbers.
             let count = captured.tables().edges().expect("edges").vertices.len();

@@ -203,7 +203,7 @@ fn removed_models_stay_until_their_frames_are_done() {
     for round in 0..4 {
         let model = renderer.add_model(&creature, &ModelOptions::default()).unwrap();
         let used = renderer.memory_usage();
-        assert!(used.tables > 90_000 && used.positions == 12 * creature.vertex_count() as u64);
+        assert!(used.tables > 90_000 && used.positions == 16 * creature.vertex_count() as u64);
         assert_eq!(used.control_meshes, 4 * (2 * creature.edge_count() + 6 * creature.face_count()) as u64);
         stage.prepare(&mut renderer, round % 2);
         // Uploads are done; what is left is a copy of the positions for each frame.

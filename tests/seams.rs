@@ -8,7 +8,7 @@ use ash_subdiv::capture::{CaptureDraw, Captured, Which};
 use ash_subdiv::headless::{Headless, Texels, Texture};
 use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
 use ash_subdiv::mesh::FaceVarying;
-use ash_subdiv::renderer::{Cull, Factor};
+use ash_subdiv::renderer::{Cull, Evaluation, Factor};
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, ReadOptions, Spacing, View, read, shape, shapes};
 use common::random::{random_creased_mesh, random_mesh};
 use glam::Vec3;
@@ -97,6 +97,45 @@ fn shapes_are_watertight() {
         }
     }
     assert!(samples > 1_000_000, "{samples} pairs");
+    drop(texture);
+    headless.finish_silent();
+}
+
+/// Without the tessellation stages, too: with factors of edges and with one for all, displaced or not.
+#[test]
+fn lattices_are_watertight() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    let (mut samples, construction) = (0, Construction::Cached);
+    for name in ["creature-mixed", "machine-part", "valences", "cloth"] {
+        let mesh = with_texcoords(shape(name).expect("built in"));
+        for (evaluation, displaced) in
+            [Evaluation::Instanced, Evaluation::Geometry].into_iter().flat_map(|e| [(e, false), (e, true)])
+        {
+            let options = ModelOptions {
+                construction,
+                evaluation,
+                edge_factors: true,
+                shared_normals: true,
+                ..ModelOptions::default()
+            };
+            let captured = match displaced {
+                // SAFETY: the texture outlives what is captured.
+                true => unsafe { Captured::displaced(&headless, &mesh, &options, (&texture).into()) },
+                false => Captured::new(&headless, &mesh, &options),
+            };
+            let captured = captured.expect("a model");
+            let seams = Seams::new(&mesh, 0, captured.tables()).expect("small");
+            let edges = captured.tables().edges().expect("asked for").vertices.len();
+            let displacement = if displaced { [DISPLACEMENT * diagonal(&mesh), 0.0] } else { [0.0; 2] };
+            let edge_factors = random_factors(edges, 12.0, 3);
+            let draw = CaptureDraw { edge_factors, displacement, ..CaptureDraw::new(Factor::Edges(1.0)) };
+            let tally = compare(&captured, &seams, &draw, true).expect("a capture");
+            assert!(tally.is_watertight(), "{name} {evaluation:?} displaced {displaced}: {tally:?}");
+            samples += tally.samples;
+        }
+    }
+    assert!(samples > 20_000, "{samples} pairs");
     drop(texture);
     headless.finish_silent();
 }

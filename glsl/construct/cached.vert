@@ -16,7 +16,7 @@
 #include "shared.glsl"
 #endif
 #ifdef DISPLACED
-#include "shared_lookup.glsl"
+#include "corner_lod.glsl"
 #endif
 
 layout(constant_id = 0) const uint CORNERS = 4u;

@@ -27,6 +27,9 @@
 #include "shared.glsl"
 #include "write_shared.glsl"
 #endif
+#ifdef DISPLACED
+#include "corner_lod.glsl"
+#endif
 
 layout(location = 4) in uint in_patch_number[];
 

@@ -10,7 +10,7 @@
 #include "draw.glsl"
 #include "corner.glsl"
 #ifdef DISPLACED
-#include "shared_lookup.glsl"
+#include "corner_lod.glsl"
 #endif
 
 layout(constant_id = 0) const uint CORNERS = 4u;

@@ -5,11 +5,19 @@
 // variants: PM_QUAD+TEXCOORD, PM_TRIANGLE+TEXCOORD, PM_PENTAGON+TEXCOORD
 // variants: BICUBIC+CAPTURE, GREGORY_QUAD+CAPTURE, GREGORY_TRIANGLE+CAPTURE, ACC+CAPTURE
 // variants: PM_QUAD+CAPTURE, PM_TRIANGLE+CAPTURE, PM_PENTAGON+CAPTURE
+// variants: BICUBIC+SHARED, GREGORY_QUAD+SHARED, GREGORY_TRIANGLE+SHARED
+// variants: BICUBIC+SHARED+TEXCOORD, GREGORY_QUAD+SHARED+TEXCOORD, GREGORY_TRIANGLE+SHARED+TEXCOORD
+// variants: BICUBIC+DISPLACED, GREGORY_QUAD+DISPLACED, GREGORY_TRIANGLE+DISPLACED
+// variants: BICUBIC+SHARED+CAPTURE, GREGORY_QUAD+SHARED+CAPTURE, GREGORY_TRIANGLE+SHARED+CAPTURE
+// variants: BICUBIC+DISPLACED+CAPTURE, GREGORY_QUAD+DISPLACED+CAPTURE, GREGORY_TRIANGLE+DISPLACED+CAPTURE
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lattice.glsl"
 #include "read_cached.glsl"
 #include "draw.glsl"
+#ifdef DISPLACED
+#include "lattice_lod.glsl"
+#endif
 #ifdef CAPTURE
 #include "capture.glsl"
 #endif
@@ -25,7 +33,10 @@ void main() {
     uint first_corner = draw.first_corner + patch_number * CORNERS;
     read_cached(first_corner);
     vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()), first_corner);
-    Sample surface = sample_of(evaluate_surface(at));
+    LatticeSample surface = lattice_sample(at);
+#ifdef DISPLACED
+    surface.position = displace(surface.position, surface.direction, surface.texcoord, lattice_lod(surface.lod));
+#endif
 #ifdef CAPTURE
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
 #endif

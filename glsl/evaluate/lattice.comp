@@ -3,6 +3,9 @@
 // variants: BICUBIC, GREGORY_QUAD, GREGORY_TRIANGLE, ACC, PM_QUAD, PM_TRIANGLE, PM_PENTAGON
 // variants: BICUBIC+TEXCOORD, GREGORY_QUAD+TEXCOORD, GREGORY_TRIANGLE+TEXCOORD, ACC+TEXCOORD
 // variants: PM_QUAD+TEXCOORD, PM_TRIANGLE+TEXCOORD, PM_PENTAGON+TEXCOORD
+// variants: BICUBIC+SHARED, GREGORY_QUAD+SHARED, GREGORY_TRIANGLE+SHARED
+// variants: BICUBIC+SHARED+TEXCOORD, GREGORY_QUAD+SHARED+TEXCOORD, GREGORY_TRIANGLE+SHARED+TEXCOORD
+// variants: BICUBIC+DISPLACED, GREGORY_QUAD+DISPLACED, GREGORY_TRIANGLE+DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lattice.glsl"
@@ -13,7 +16,10 @@ layout(local_size_x = 32) in;
 // Vertices of a patch that a workgroup takes: enough that reading the control points is little beside them.
 const uint GROUP_VERTICES = 256u;
 
-#ifdef TEXCOORD
+// Rust twin: `vertex_bytes` in src/renderer/lattice.rs.
+#ifdef DISPLACED
+const uint VERTEX_WORDS = 14u;
+#elif defined(TEXCOORD)
 const uint VERTEX_WORDS = 8u;
 #else
 const uint VERTEX_WORDS = 6u;
@@ -42,7 +48,7 @@ void main() {
     uint end = min(start + GROUP_VERTICES, patches.vertices);
     for (uint i = start + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) {
         vec3 at = lattice_parameter(i, patches.segments, first_corner);
-        Sample surface = sample_of(evaluate_surface(at));
+        LatticeSample surface = lattice_sample(at);
         uint word = VERTEX_WORDS * (first_vertex + i);
         put(word, surface.position);
         put(word + 3u, surface.normal);
@@ -50,6 +56,10 @@ void main() {
         vec2 x = texcoord_at(first_corner, at);
         vertices[word + 6u] = x.x;
         vertices[word + 7u] = x.y;
+#endif
+#ifdef DISPLACED
+        put(word + 8u, surface.direction);
+        put(word + 11u, vec3(surface.texcoord, surface.lod));
 #endif
     }
 }

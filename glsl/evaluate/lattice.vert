@@ -1,7 +1,11 @@
 // A vertex that was evaluated by compute: see glsl/evaluate/lattice.comp.
-// variants: TEXCOORD
+// variants: TEXCOORD, DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef DISPLACED
+#define TEXCOORD
+#include "lattice_lod.glsl"
+#endif
 #include "draw.glsl"
 
 layout(location = 0) in vec3 position;
@@ -13,9 +17,17 @@ layout(location = 1) out vec3 world_normal;
 layout(location = 2) in vec2 texcoord;
 layout(location = 2) out vec2 out_texcoord;
 #endif
+#ifdef DISPLACED
+layout(location = 3) in vec3 direction;
+layout(location = 4) in vec3 lookup;  // xy: where in the map; z: see `lattice_lod`
+#endif
 
 void main() {
+#ifdef DISPLACED
+    world_position = to_world(displace(position, direction, lookup.xy, lattice_lod(lookup.z)));
+#else
     world_position = to_world(position);
+#endif
     world_normal = normal_to_world(normal);
     gl_Position = to_clip(world_position);
 #ifdef TEXCOORD

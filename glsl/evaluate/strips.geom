@@ -12,6 +12,11 @@
 // variants: PM_QUAD+CACHED+TEXCOORD, PM_TRIANGLE+CACHED+TEXCOORD, PM_PENTAGON+CACHED+TEXCOORD
 // variants: BICUBIC+CACHED+CAPTURE, GREGORY_QUAD+CACHED+CAPTURE, GREGORY_TRIANGLE+CACHED+CAPTURE, ACC+CACHED+CAPTURE
 // variants: PM_QUAD+CACHED+CAPTURE, PM_TRIANGLE+CACHED+CAPTURE, PM_PENTAGON+CACHED+CAPTURE
+// variants: BICUBIC+CACHED+SHARED, GREGORY_QUAD+CACHED+SHARED, GREGORY_TRIANGLE+CACHED+SHARED
+// variants: BICUBIC+CACHED+SHARED+TEXCOORD, GREGORY_QUAD+CACHED+SHARED+TEXCOORD, GREGORY_TRIANGLE+CACHED+SHARED+TEXCOORD
+// variants: BICUBIC+CACHED+DISPLACED, GREGORY_QUAD+CACHED+DISPLACED, GREGORY_TRIANGLE+CACHED+DISPLACED
+// variants: BICUBIC+CACHED+SHARED+CAPTURE, GREGORY_QUAD+CACHED+SHARED+CAPTURE, GREGORY_TRIANGLE+CACHED+SHARED+CAPTURE
+// variants: BICUBIC+CACHED+DISPLACED+CAPTURE, GREGORY_QUAD+CACHED+DISPLACED+CAPTURE, GREGORY_TRIANGLE+CACHED+DISPLACED+CAPTURE
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lattice.glsl"
@@ -20,6 +25,9 @@
 #include "read_cached.glsl"
 #else
 #include "stencils.glsl"
+#endif
+#ifdef DISPLACED
+#include "lattice_lod.glsl"
 #endif
 #ifdef CAPTURE
 #include "capture.glsl"
@@ -68,7 +76,10 @@ uint segments;
 void emit(uint row, uint place) {
     uint first_corner = draw.first_corner + patch_number * CORNERS;
     vec3 at = lattice_parameter(row, place, segments, first_corner);
-    Sample surface = sample_of(evaluate_surface(at));
+    LatticeSample surface = lattice_sample(at);
+#ifdef DISPLACED
+    surface.position = displace(surface.position, surface.direction, surface.texcoord, lattice_lod(surface.lod));
+#endif
 #ifdef CAPTURE
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
 #endif

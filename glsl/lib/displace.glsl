@@ -7,14 +7,14 @@
 //         $ash_subdiv/glsl/evaluate/gregory_quad.tese -o gregory_quad.spv     (one line)
 //
 // and give the SPIR-V to the renderer as `Options::shaders` under the name "EVALUATE_GREGORY_QUAD_TESE_DISPLACED"; the same
-// for `bicubic` and `gregory_triangle`. Light knows nothing of it: bring a fragment shader of your own.
+// for `bicubic` and `gregory_triangle`. Without the tessellation stages it is `lattice.vert` alone (evaluation by compute), or
+// `instanced.vert` with one of -DBICUBIC, -DGREGORY_QUAD, -DGREGORY_TRIANGLE. For the map include `displacement_map.glsl`. Light
+// knows nothing of it: bring a fragment shader of your own.
 #ifndef DISPLACE_GLSL
 #define DISPLACE_GLSL
 
+#include "displacement_map.glsl"
 #include "draw.glsl"
-
-// The model's map: heights in red, or vectors in object space.
-layout(set = 1, binding = 13) uniform sampler2D displacement_map;
 
 const uint VECTOR_FLAG = 1u;  // in draw.flags
 

@@ -32,14 +32,18 @@ layout(location = 2) out vec2 out_texcoord;
 #endif
 
 #ifdef SHARED
+#include "shared_bits.glsl"
+// What the corners of the patch share with others: see glsl/lib/shared.glsl.
+layout(location = 16) in vec3 shared_with[][SHARED_VECTORS];
+layout(location = 22) in uint shared_bits[];
+#ifdef DISPLACED
+layout(location = 23) in vec2 shared_texcoord[][3];
+layout(location = 26) in float shared_lod[];
+#endif
 #include "edges.glsl"
 #endif
 #ifdef DISPLACED
-#ifdef OWN_DISPLACE
-#include "own_displace.glsl"
-#else
-#include "displace.glsl"
-#endif
+#include "displaced.glsl"
 #endif
 
 #if defined(CAPTURE) || defined(CAPTURE_GRID)

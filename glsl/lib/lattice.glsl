@@ -4,19 +4,22 @@
 #ifndef LATTICE_GLSL
 #define LATTICE_GLSL
 
-#include "kinds.glsl"
-#include "patch.glsl"
+#ifdef DISPLACED
+#define SHARED
+#define TEXCOORD
+#endif
+#include "lattice_sample.glsl"
 
 #ifdef TEXCOORD
 layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
 
 // Of a patch whose first corner this is, at a point of it.
 vec2 texcoord_at(uint first_corner, vec3 at) {
-    vec2 texcoord[CORNERS];
+    vec2 of_corners[CORNERS];
     for (uint k = 0u; k < CORNERS; ++k) {
-        texcoord[k] = texcoords[first_corner + k];
+        of_corners[k] = texcoords[first_corner + k];
     }
-    return INTERPOLATED(texcoord, at);
+    return INTERPOLATED(of_corners, at);
 }
 #endif
 

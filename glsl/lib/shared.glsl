@@ -9,16 +9,6 @@
 // Whether any corner has another ring than its own speak for what it shares, as at creases.
 layout(constant_id = 7) const bool HAS_SPEAKERS = true;
 
-layout(set = 1, binding = 9, std430) readonly buffer SharedCorners { uint shared_corners[]; };
-
-const uint SHARED_WORDS = 5u;
-const uint EDGE_MASK = ~SHARP_EDGE_BIT;
-
-// Of a corner by its number among all.
-uint corner_bits(uint corner) {
-    return shared_corners[SHARED_WORDS * corner + 2u] & ~EDGE_MASK;
-}
-
 // An edge as the vertex of a ring sees it.
 struct SharedEdge {
     vec3 across;

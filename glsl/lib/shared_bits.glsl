@@ -12,4 +12,14 @@ const uint SHARP_EDGE_BIT = 1u << 30;    // the faces at it are lit with normals
 #define SHARED_VECTORS 5
 #endif
 
+layout(set = 1, binding = 9, std430) readonly buffer SharedCorners { uint shared_corners[]; };
+
+const uint SHARED_WORDS = 5u;
+const uint EDGE_MASK = ~SHARP_EDGE_BIT;
+
+// Of a corner by its number among all.
+uint corner_bits(uint corner) {
+    return shared_corners[SHARED_WORDS * corner + 2u] & ~EDGE_MASK;
+}
+
 #endif

@@ -4,7 +4,7 @@
 
 #include "shared_bits.glsl"
 #ifdef DISPLACED
-#include "shared_lookup.glsl"
+#include "shared_texcoords.glsl"
 #endif
 
 layout(location = 16) out vec3 shared_with[][SHARED_VECTORS];

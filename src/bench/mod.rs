@@ -176,13 +176,18 @@ impl Contestant {
     }
 
     /// The same with each of these normals and cullings that it can be combined with: the tessellation stages cull, and
-    /// share normals where the scheme is watertight. Floors stay as they are.
+    /// normals are shared where the scheme is watertight and [`Evaluation::shares`]. Floors stay as they are.
     pub fn variants(self, normals: &[Normals], culls: &[Cull]) -> Vec<Self> {
         if self.path.is_floor() {
             return vec![self];
         }
         let tessellates = self.path == Path::Tessellation;
-        let shares = tessellates && self.patches.is_some_and(|(scheme, _)| scheme.is_watertight());
+        let shares = match (self.path.evaluation(), self.patches) {
+            (Some(evaluation), Some((scheme, construction))) if self.path != Path::AccPublished => {
+                scheme.is_watertight() && evaluation.shares(construction)
+            }
+            _ => false,
+        };
         let normals = normals.iter().filter(|&&normals| normals == Normals::Own || shares);
         let culls = culls.iter().filter(|&&cull| cull == Cull::NONE || tessellates);
         let with = |&normals| culls.clone().map(move |&cull| Self { normals, cull, ..self });

@@ -305,6 +305,7 @@ impl<'h> Captured<'h> {
     fn largest_factor(&self, draw: &CaptureDraw) -> Result<f32, Error> {
         match draw.factor {
             Factor::Uniform(factor) => Ok(factor),
+            Factor::Edges(scale) => Ok(draw.edge_factors.iter().fold(1.0, |most, factor| (scale * factor).max(most))),
             _ => Ok(self.factors(draw)?.iter().flat_map(|f| f.asked).fold(1.0, f32::max)),
         }
     }

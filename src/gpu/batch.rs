@@ -155,10 +155,10 @@ mod tests {
             rule.patches_per_instance(10_000, points, vertices)
         };
         assert_eq!(k(64.0, 4), 1);
-        assert_eq!(k(16.0, 4), 1);
-        assert_eq!(k(8.0, 4), 3);
-        assert_eq!(k(1.0, 4), 75);
-        assert_eq!(k(1.0, 32), 75);
+        assert_eq!(k(16.0, 4), 2);
+        assert_eq!(k(8.0, 4), 7);
+        assert_eq!(k(1.0, 4), 150);
+        assert_eq!(k(1.0, 32), 128);
         // Limits hold whatever is asked of them.
         for vertices in [1, 3, 4, 9, 289, 4225, 65_535] {
             for points in [1, 3, 4, 16, 32] {

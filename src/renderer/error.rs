@@ -50,6 +50,8 @@ pub enum Error {
     NotEvaluatedBy { id: ModelId, evaluation: Evaluation, what: &'static str },
     #[error("model {}: Evaluation::{evaluation:?} goes with Construction::{}, not with {construction:?}", id.0, constructions(*evaluation))]
     NotConstructedBy { id: ModelId, evaluation: Evaluation, construction: Construction },
+    #[error("model {}: its tables were built for Evaluation::{built:?}, not for {evaluation:?}: build them with the same options", id.0)]
+    OtherTables { id: ModelId, built: Evaluation, evaluation: Evaluation },
     #[error("model {}: Evaluation::{evaluation:?} needs {}: name it in Options::evaluations and make the device with what requirements lists then, or choose another evaluation", id.0, missing.join(" and "))]
     EvaluationNeeds { id: ModelId, evaluation: Evaluation, missing: Vec<&'static str> },
     #[error("model {}: {factor:?}: Evaluation::{evaluation:?} has one factor for all edges: draw with a uniform one", id.0)]

@@ -21,20 +21,26 @@ pub(super) fn check_evaluation(
     if !missing.is_empty() {
         return Err(Error::EvaluationNeeds { id, evaluation, missing });
     }
+    let tables_of = |evaluation| [Evaluation::GeometryTwoPass, Evaluation::Subdivision].map(|own| evaluation == own);
+    if tables_of(tables.evaluation) != tables_of(evaluation) {
+        return Err(Error::OtherTables { id, built: tables.evaluation, evaluation });
+    }
     if !evaluation.constructions().contains(&construction) {
         return Err(Error::NotConstructedBy { id, evaluation, construction });
     }
     if evaluation == Evaluation::Tessellation {
         return Ok(());
     }
+    let shares = evaluation.shares(construction);
+    let stencils = evaluation == Evaluation::Geometry;
     let what = match tables.sharing() {
-        Sharing::Displacement => "displacement",
-        Sharing::Normals => "shared normals",
-        Sharing::Positions if evaluation == Evaluation::Subdivision && tables.edges().is_some() => "factors of edges",
-        // It has no spacing.
-        Sharing::Positions if evaluation == Evaluation::Subdivision => return Ok(()),
-        Sharing::Positions if options.spacing != Spacing::Equal => "fractional spacing",
-        Sharing::Positions => return Ok(()),
+        Sharing::Displacement if !shares && stencils => "displacement of Construction::Stencil",
+        Sharing::Displacement if !shares => "displacement",
+        Sharing::Normals if !shares && stencils => "shared normals of Construction::Stencil",
+        Sharing::Normals if !shares => "shared normals",
+        _ if evaluation != Evaluation::Subdivision && options.spacing != Spacing::Equal => "fractional spacing",
+        _ if evaluation == Evaluation::Subdivision && tables.edges().is_some() => "factors of edges",
+        _ => return Ok(()),
     };
     Err(Error::NotEvaluatedBy { id, evaluation, what })
 }
@@ -49,7 +55,9 @@ pub(super) fn check_evaluation(
 pub struct EvaluatedVertices {
     /// Patch by patch in the order of [`ModelTables::plan`], in each in the order of
     /// [`grid_parameters`](crate::table::grid_parameters): position and normal in object space, three `f32` each; two more for the texture
-    /// coordinate with [`Options::texcoords`](super::Options::texcoords).
+    /// coordinate with [`Options::texcoords`](super::Options::texcoords). With displacement the surface is not displaced yet: draws
+    /// do that, and there are always two for the texture coordinate, three for the direction in which it goes, two for where in
+    /// the map it looks, and one for `log2` of how long the edges are there over the map's longer side.
     pub buffer: vk::Buffer,
     /// Bytes of them all.
     pub size: u64,
@@ -84,7 +92,14 @@ impl Renderer {
         if model.lattice.as_ref().is_some_and(|lattice| lattice.segments == segments) {
             return Ok(());
         }
-        let lattice = Lattice::new(&self.pipelines.lattice, id, evaluation, &model.tables.plan, segments)?;
+        let lattice = Lattice::new(
+            &self.pipelines.lattice,
+            id,
+            evaluation,
+            model.tables.sharing(),
+            &model.tables.plan,
+            segments,
+        )?;
         if let Some(before) = model.set_lattice(lattice) {
             let frames = vec![true; self.options.frames_in_flight as usize];
             self.retired.push(Retired { frames, _what: RetiredObject::Lattice(Box::new(before)) });
@@ -105,7 +120,7 @@ impl Renderer {
         Ok(kept.map(|(lattice, vertices)| EvaluatedVertices {
             buffer: vertices.buffer.raw(),
             size: vertices.buffer.size(),
-            stride: vertex_bytes(self.options.texcoords),
+            stride: vertex_bytes(self.options.texcoords, model.tables.sharing()),
             segments: lattice.segments,
         }))
     }

@@ -1,7 +1,7 @@
 //! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
 
 use super::model::{device_buffer, upload_buffer};
-use super::stages::PatchStages;
+use super::stages::{PatchStages, Sharing};
 use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{
     Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
@@ -30,10 +30,25 @@ struct Dispatch {
     vertices: u32,
 }
 
-/// Bytes of a vertex: position, normal, and the texture coordinate if there is one.
-pub(super) fn vertex_bytes(texcoords: bool) -> u32 {
-    if texcoords { 32 } else { 24 }
+/// Bytes of a vertex: position, normal, and the texture coordinate if there is one. Where the surface is displaced there is one,
+/// and after it which way, where in the map, and how long edges are there. GLSL twin: `VERTEX_WORDS` in
+/// `glsl/evaluate/lattice.comp`.
+pub(super) fn vertex_bytes(texcoords: bool, sharing: Sharing) -> u32 {
+    match (sharing, texcoords) {
+        (Sharing::Displacement, _) => 56,
+        (_, true) => 32,
+        (_, false) => 24,
+    }
 }
+
+/// What the parts of a vertex are, and where, in the order of their locations: all that are not beyond its end.
+pub(super) const VERTEX_PARTS: [(u32, vk::Format); 5] = [
+    (0, vk::Format::R32G32B32_SFLOAT),
+    (12, vk::Format::R32G32B32_SFLOAT),
+    (24, vk::Format::R32G32_SFLOAT),
+    (32, vk::Format::R32G32B32_SFLOAT),
+    (44, vk::Format::R32G32B32_SFLOAT),
+];
 
 /// Pipelines by what they evaluate.
 pub(super) struct LatticePipelines {
@@ -120,6 +135,7 @@ impl Lattice {
         pipelines: &LatticePipelines,
         id: ModelId,
         evaluation: Evaluation,
+        sharing: Sharing,
         plan: &PatchPlan,
         segments: u32,
     ) -> Result<Self, Error> {
@@ -127,7 +143,7 @@ impl Lattice {
         let computed = evaluation == Evaluation::Compute;
         let max = context.properties().max_storage_buffer_range;
         let counts = plan.groups().iter().map(|g| g.patches.len() as u64 * lattice_vertices(g.kind, segments));
-        let bytes = counts.sum::<u64>() * u64::from(vertex_bytes(pipelines.texcoords));
+        let bytes = counts.sum::<u64>() * u64::from(vertex_bytes(pipelines.texcoords, sharing));
         if computed && bytes > max {
             return Err(Error::TableTooLarge { id, table: "evaluated vertices", bytes, max });
         }

@@ -91,6 +91,15 @@ impl Evaluation {
         }
     }
 
+    /// Whether patches that are made so can share more than positions: normals, and where they are displaced.
+    pub fn shares(self, construction: Construction) -> bool {
+        match self {
+            Self::Tessellation => true,
+            Self::Compute | Self::Instanced | Self::Geometry => construction == Construction::Cached,
+            Self::GeometryTwoPass | Self::Subdivision => false,
+        }
+    }
+
     /// Whether [`Renderer::set_segments`](super::Renderer::set_segments) has to say how many segments edges have.
     pub fn needs_segments(self) -> bool {
         matches!(self, Self::Compute | Self::Instanced | Self::GeometryTwoPass)

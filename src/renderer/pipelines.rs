@@ -3,7 +3,7 @@
 use super::cached::CachedPipelines;
 use super::conversion::Conversion;
 use super::factor::Cut;
-use super::lattice::{LatticePipelines, vertex_bytes};
+use super::lattice::{LatticePipelines, VERTEX_PARTS, vertex_bytes};
 use super::model::TEXELS;
 use super::stages::{PatchStages, Sharing, reads_texels, spaced};
 use super::subdivision;
@@ -45,7 +45,9 @@ pub(super) enum GeometryKey {
     /// Of draws with these flags ([`Cut`]), if they are of the tessellation stages.
     Patches(PatchStages, Cut),
     /// Patches of all kinds that were evaluated before.
-    Evaluated,
+    Evaluated {
+        displaced: bool,
+    },
     /// Faces that are subdivided this many times.
     Subdivision(u32),
     Control,
@@ -197,13 +199,14 @@ impl Pipelines {
                 ];
                 self.create(&name, key, &stages, 0)?
             }
-            GeometryKey::Evaluated => {
+            GeometryKey::Evaluated { displaced } => {
                 let name = format!("subdiv style {} of evaluated vertices", key.style);
-                let vertex = match self.texcoords {
-                    true => shaders::EVALUATE_LATTICE_VERT_TEXCOORD,
-                    false => shaders::EVALUATE_LATTICE_VERT,
+                let (vertex, sharing) = match (displaced, self.texcoords) {
+                    (true, _) => ("EVALUATE_LATTICE_VERT_DISPLACED", Sharing::Displacement),
+                    (false, true) => ("EVALUATE_LATTICE_VERT_TEXCOORD", Sharing::Positions),
+                    (false, false) => ("EVALUATE_LATTICE_VERT", Sharing::Positions),
                 };
-                let stages = [Shader::vertex(vertex), fragment(style, Sharing::Positions, &encode)];
+                let stages = [Shader::vertex(self.find(vertex)?), fragment(style, sharing, &encode)];
                 self.create(&name, key, &stages, 0)?
             }
             GeometryKey::Subdivision(level) => {
@@ -279,7 +282,11 @@ impl Pipelines {
         patch_control_points: u32,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
         let style = &self.styles[key.style];
-        let evaluated = key.geometry == GeometryKey::Evaluated;
+        let stride = match key.geometry {
+            GeometryKey::Evaluated { displaced: true } => vertex_bytes(self.texcoords, Sharing::Displacement),
+            GeometryKey::Evaluated { displaced: false } => vertex_bytes(self.texcoords, Sharing::Positions),
+            _ => 0,
+        };
         let target = match &self.target.pass {
             Pass::Dynamic { color, depth, stencil, view_mask } => {
                 RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: *view_mask }
@@ -297,18 +304,15 @@ impl Pipelines {
             _ if style.geometry == Geometry::ControlEdges => vk::PrimitiveTopology::LINE_LIST,
             _ => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
-        let stride = vertex_bytes(self.texcoords);
         let bindings = [vk::VertexInputBindingDescription { binding: 0, stride, ..Default::default() }];
-        let attributes =
-            [(0, vk::Format::R32G32B32_SFLOAT), (12, vk::Format::R32G32B32_SFLOAT), (24, vk::Format::R32G32_SFLOAT)];
-        let attributes = (0..).zip(attributes).map(|(location, (offset, format))| {
+        let attributes = (0..).zip(VERTEX_PARTS).map(|(location, (offset, format))| {
             vk::VertexInputAttributeDescription { location, binding: 0, format, offset }
         });
         let attributes: Vec<_> = attributes.filter(|attribute| attribute.offset < stride).collect();
         let desc = GraphicsPipelineDesc {
             patch_control_points,
-            vertex_bindings: if evaluated { &bindings } else { &[] },
-            vertex_attributes: if evaluated { &attributes } else { &[] },
+            vertex_bindings: if stride > 0 { &bindings } else { &[] },
+            vertex_attributes: &attributes,
             topology,
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,

@@ -81,7 +81,7 @@ impl PatchStages {
     /// What tells their pipelines apart in one style.
     pub(super) fn geometry(self, cut: Cut) -> GeometryKey {
         match self.evaluation {
-            Evaluation::Compute => GeometryKey::Evaluated,
+            Evaluation::Compute => GeometryKey::Evaluated { displaced: self.sharing == Sharing::Displacement },
             Evaluation::Tessellation => GeometryKey::Patches(self, cut),
             // Neither adaptive nor culled.
             _ => GeometryKey::Patches(self, Cut::new(Factor::Uniform(1.0), Cull::NONE)),
@@ -234,7 +234,7 @@ mod tests {
                 ways.flat_map(|way| [Sharing::Positions, Sharing::Normals, Sharing::Displacement].map(|s| (way, s)))
             {
                 let tessellates = evaluation == Evaluation::Tessellation;
-                if sharing != Sharing::Positions && !(scheme.is_watertight() && tessellates) {
+                if sharing != Sharing::Positions && !(scheme.is_watertight() && evaluation.shares(construction)) {
                     continue;
                 }
                 let spacing = Spacing::Equal;

@@ -97,7 +97,7 @@ fn info_counts() {
     let bytes = info["bytes"].as_object().unwrap();
     let total: u64 = bytes.iter().filter(|(name, _)| *name != "total").map(|(_, n)| n.as_u64().unwrap()).sum();
     assert_eq!(bytes["total"], total);
-    assert_eq!(bytes["positions"], 8 * 12);
+    assert_eq!(bytes["positions"], 8 * 16);
 
     let info = json("info --shape cube --refine 1 --construction stencil");
     assert_eq!(info["patches"]["irregular_quad"], 24);

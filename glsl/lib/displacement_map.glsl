@@ -1,0 +1,14 @@
+// The displacement map of a model.
+#ifndef DISPLACEMENT_MAP_GLSL
+#define DISPLACEMENT_MAP_GLSL
+
+// Heights in red, or vectors in object space.
+layout(set = 1, binding = 13) uniform sampler2D displacement_map;
+
+// Texels along its longer side.
+float displacement_texels() {
+    vec2 size = vec2(textureSize(displacement_map, 0));
+    return max(size.x, size.y);
+}
+
+#endif

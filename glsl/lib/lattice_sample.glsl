@@ -1,0 +1,32 @@
+// A vertex of a lattice: of the `owned` control points and, with SHARED, of what the corners of the patch share.
+#ifndef LATTICE_SAMPLE_GLSL
+#define LATTICE_SAMPLE_GLSL
+
+#include "kinds.glsl"
+
+#ifdef SHARED
+#include "shared_bits.glsl"
+vec3 shared_with[CORNERS][SHARED_VECTORS];
+uint shared_bits[CORNERS];
+#ifdef DISPLACED
+vec2 shared_texcoord[CORNERS][3];
+// How many of the map's longer side an edge takes, as a logarithm: see `lattice_lod`.
+float shared_lod[CORNERS];
+vec2 texcoord[CORNERS];
+#endif
+#include "edges.glsl"
+
+#define LatticeSample SharedSample
+
+LatticeSample lattice_sample(vec3 at) {
+    return share(evaluate_surface(at), at);
+}
+#else
+#define LatticeSample Sample
+
+LatticeSample lattice_sample(vec3 at) {
+    return sample_of(evaluate_surface(at));
+}
+#endif
+
+#endif
