@@ -292,6 +292,48 @@ fn pictures_follow_positions_and_segments() {
     stage.finish();
 }
 
+/// A displaced surface, with and without texture coordinates for the fragment shader.
+#[cfg(feature = "png")]
+#[test]
+fn displaced_pictures_are_those_of_the_tessellation_stages() {
+    use ash_subdiv::headless::{Texels, Texture};
+    let stage = Stage::new();
+    let mesh = shape("creature").expect("built in");
+    let texels = Texels::open("assets/scales.png", false).expect("the built-in height map");
+    let texture = Texture::new(&stage.headless, "scales", &texels).expect("a texture");
+    for texcoords in [false, true] {
+        let mut renderer = stage.renderer(&Options { texcoords, ..Options::default() });
+        // SAFETY: the texture outlives the renderer and is readable.
+        let displacement = Some(unsafe { renderer.add_displacement((&texture).into()) });
+        let shared = ways(Scheme::Gregory).filter(|way| way.evaluation.shares(way.construction));
+        let models: Vec<_> = std::iter::once(ModelOptions::default())
+            .chain(shared)
+            .map(|way| ModelOptions { displacement, ..way })
+            .map(|way| (renderer.add_model(&mesh, &way).expect("a model"), way.evaluation))
+            .collect();
+        for n in [3, 16] {
+            for &(model, _) in models.iter().filter(|(_, evaluation)| evaluation.needs_segments()) {
+                renderer.set_segments(model, n).unwrap();
+            }
+            stage.prepare(&mut renderer, 0);
+            let mut picture = |model, height| {
+                let item = DrawItem { displacement: [height, 0.0], ..DrawItem::new(model, n as f32) };
+                stage.draw(&mut renderer, 0, &[item]).expect("a picture")
+            };
+            let [expected, smooth] = [0.1, 0.0].map(|height| picture(models[0].0, height));
+            let differ = |a: &[u8], b: &[u8]| a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+            assert!(differ(&expected, &smooth) > 2000, "{}", differ(&expected, &smooth));
+            for &(model, evaluation) in &models[1..] {
+                let differ = differ(&picture(model, 0.1), &expected);
+                assert!(differ < 20, "{evaluation:?}, {n} segments, texture coordinates {texcoords}: {differ}");
+            }
+        }
+        drop(renderer);
+    }
+    drop(texture);
+    stage.finish();
+}
+
 /// More than the tessellator has, and in one draw more than lavapipe takes in one batch.
 #[test]
 fn lattices_may_be_fine() {
