@@ -18,13 +18,16 @@ pub(super) struct EvaluationArgs {
 }
 
 impl EvaluationArgs {
-    /// The construction; `given` are further arguments, and whether they were given, that only the tessellation stages go with.
-    pub(super) fn construction(&self, given: &[(&str, bool)]) -> Result<Construction, CliError> {
-        let (name, known) = (self.evaluation.name(), self.evaluation.constructions());
+    /// The construction; `given` are further arguments, and whether they were given, that only the tessellation stages go with,
+    /// `shares` is one that was given and has patches share more than positions.
+    pub(super) fn construction(&self, given: &[(&str, bool)], shares: Option<&str>) -> Result<Construction, CliError> {
+        let name = self.evaluation.name();
         let wrong = |what: &str| CliError::Usage(format!("--evaluation {name}: it does not go with {what}"));
-        if self.evaluation != Evaluation::Tessellation
-            && let Some((what, _)) = given.iter().find(|(_, given)| *given)
-        {
+        let known = self.evaluation.constructions().iter().copied();
+        let known: Vec<_> = known.filter(|&c| shares.is_none() || self.evaluation.shares(c)).collect();
+        let given = given.iter().filter(|(_, given)| *given && self.evaluation != Evaluation::Tessellation);
+        let given = given.map(|(what, _)| *what).chain(shares.filter(|_| known.is_empty())).next();
+        if let Some(what) = given {
             return Err(wrong(&format!("{what}: leave one of both out")));
         }
         match self.construction {
@@ -33,7 +36,8 @@ impl EvaluationArgs {
             Some(construction) => {
                 let names: Vec<_> = known.iter().map(|construction| construction.name()).collect();
                 let names = names.join(" or ");
-                Err(wrong(&format!("--construction {}: choose {names}, or leave it out", construction.name())))
+                let with = shares.map(|what| format!(" with {what}")).unwrap_or_default();
+                Err(wrong(&format!("--construction {}{with}: choose {names}, or leave it out", construction.name())))
             }
         }
     }

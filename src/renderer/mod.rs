@@ -13,19 +13,24 @@
 //! | pass | reads | writes |
 //! |---|---|---|
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
-//! | compute, cached | vertices and weights of the patches, positions | control points, if the vertices moved |
+//! | compute, cached | rings and their weights, positions | a frame for each ring, if the vertices moved |
+//! | compute, cached | those, patch corners, rings, positions | control points, and what corners share |
 //! | compute, evaluation | control points | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
-//! | GS, two passes | as compute, cached | control points of models that are [`Evaluation::GeometryTwoPass`], if the vertices moved |
+//! | GS, two passes | vertices and weights of the patches, positions | control points of models that are [`Evaluation::GeometryTwoPass`], if the vertices moved |
 //! | VS, instanced | control points | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
 //! | GS | vertices and weights of the patch, positions; or control points | strips of models that are [`Evaluation::Geometry`], which have only VS (the number of a tile) and FS besides |
 //! | VS, two-stage | patch corners, rings and their weights, positions | what a corner of a patch takes from its ring: limit point, edge vectors, transversals and the like, what it shares |
-//! | VS, stencil and cached | nothing | the number of the patch, for each patch |
+//! | VS, stencil | nothing | the number of the patch, for each patch |
+//! | VS, cached | control points | those, and what corners share |
 //! | TCS, two-stage | what its corners took from their rings | control points, factors |
 //! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
-//! | TCS, cached | control points | control points, factors |
+//! | TCS, cached | what VS has | control points, factors |
 //! | GS of models that are [`Evaluation::Subdivision`] | fans and their weights, positions | position, normal, texture coordinate; no TCS and TES |
 //! | TES | control points, the view | position, normal, texture coordinate |
 //! | FS | those, the view | the caller's attachments |
+//!
+//! Positions, rings and their weights are texel buffers where the device has large ones, else storage buffers
+//! ([`DeviceProperties::reads_texels`](crate::gpu::DeviceProperties::reads_texels)).
 //!
 //! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
 

@@ -13,9 +13,9 @@ pub enum Construction {
     TwoStage,
     /// The control shader sums the vertices around the patch with the weights of its type of connectivity.
     Stencil,
-    /// The same sums in a compute shader, once a frame in which the vertices moved; the control shader reads them. Takes
-    /// memory, and pays where a model is drawn in several passes or stands still. Needs a queue that computes, but for
-    /// [`Evaluation::GeometryTwoPass`].
+    /// The two stages in compute shaders, once a frame in which the vertices moved: each ring, then each patch. Draws read the
+    /// control points. Takes memory, and pays where a model is drawn in several passes or stands still. Needs a queue that
+    /// computes, but for [`Evaluation::GeometryTwoPass`], which sums with weights.
     Cached,
 }
 
@@ -37,8 +37,8 @@ impl Construction {
 ///
 /// All but the tessellation stages and subdivision evaluate on a lattice with the same number of segments along every edge,
 /// from 1 to 1024: they are for [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), or for factors of edges
-/// ([`ModelOptions::edge_factors`]) of which the largest holds inside patches, and so far without displacement and shared
-/// normals. Nothing is culled. Where patches share positions to the last bit, they do so here.
+/// ([`ModelOptions::edge_factors`]) of which the largest holds inside patches. Nothing is culled. Where patches share positions to
+/// the last bit, they do so here; for normals and displacement see [`Evaluation::shares`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Evaluation {
     /// The tessellation stages, in each draw anew.

@@ -1,11 +1,10 @@
 //! What the GPU reads, as plain arrays: which patches there are, and for each construction the connectivity that its
 //! shaders walk. Nothing here knows Vulkan; nothing here depends on positions.
 //!
-//! Loop et al. (2009, figures 7 and 8) keep these tables in textures. Here they are storage buffers. Measured on
-//! lavapipe with the monster frog (1292 patches, factor 1, rasterizer discard, ten draws a frame, medians of 61 frames,
-//! three runs of each, alternating, on a busy machine): tables as texel buffers 14.7, 14.0, 13.2 ms, as storage buffers
-//! 14.5, 14.3, 17.3 ms (two-stage); 13.9, 12.7, 12.4 against 13.1, 12.9, 17.5 ms (stencil). No difference above the
-//! noise, and texel buffers may end at 65 536 elements.
+//! Loop et al. (2009, figures 7 and 8) keep these tables in textures. Here they are storage buffers, and those of the two-stage
+//! construction and the positions texel buffers, too, in texels of up to four numbers: what shaders read by, where the device has
+//! texel buffers that are large enough for any table
+//! ([`DeviceProperties::reads_texels`](crate::gpu::DeviceProperties::reads_texels)).
 
 mod cpu;
 mod error;

@@ -53,7 +53,17 @@ fn wrong_usage_is_said_in_one_line() {
         2,
         "--evaluation compute: it does not go with --construction stencil: choose cached, or leave it out",
     );
-    for what in ["--pixels 3", "--bend 1", "--cull back", "--spacing odd", "--displacement scales"] {
+    fails(
+        "render --shape cube -o x.png --evaluation geometry --construction stencil --displacement scales",
+        2,
+        "--evaluation geometry: it does not go with --construction stencil with --displacement: choose cached, or leave it out",
+    );
+    fails(
+        "render --shape cube -o x.png --evaluation geometry-two-pass --displacement scales",
+        2,
+        "--evaluation geometry-two-pass: it does not go with --displacement: leave one of both out",
+    );
+    for what in ["--pixels 3", "--bend 1", "--cull back", "--spacing odd"] {
         let (name, _) = what.split_once(' ').unwrap();
         let message = format!("--evaluation instanced: it does not go with {name}: leave one of both out");
         fails(&format!("render --shape cube -o x.png --evaluation instanced {what}"), 2, &message);

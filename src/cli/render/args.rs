@@ -114,12 +114,12 @@ Examples:
 impl RenderArgs {
     /// How control points are made; an error if the evaluation does not go with what was asked for.
     pub(super) fn construction(&self) -> Result<Construction, CliError> {
-        self.evaluation.construction(&[
+        let tessellated = [
             ("--pixels", self.factor.pixels.is_some()),
             ("--bend", self.factor.bend.is_some()),
             ("--cull", self.factor.cull.cull() != Cull::NONE),
             ("--spacing", self.spacing != Spacing::Equal),
-            ("--displacement", self.displacement.is_given()),
-        ])
+        ];
+        self.evaluation.construction(&tessellated, self.displacement.is_given().then_some("--displacement"))
     }
 }
