@@ -4,7 +4,7 @@
 use ash::vk::{Format, SampleCountFlags};
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
-use ash_subdiv::{ControlMesh, ModelOptions, Options, Renderer, Target, grid_torus, shape};
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, Options, Renderer, Target, grid_torus, shape};
 
 #[test]
 fn a_table_that_no_shader_can_see_is_an_error() {
@@ -30,6 +30,31 @@ fn a_table_that_no_shader_can_see_is_an_error() {
         renderer.add_model(&shape("cube").unwrap(), &ModelOptions::default()).unwrap();
     }
     headless.finish_silent();
+}
+
+/// Where texel buffers are too small for tables these are read as storage buffers, with the same results to the bit.
+#[test]
+fn tables_are_read_either_way() {
+    let [texels, storage] = [false, true].map(|storage_tables| {
+        let options = HeadlessOptions { validation: true, storage_tables, ..HeadlessOptions::default() };
+        let headless = Headless::new(&options).unwrap();
+        assert!(!(storage_tables && headless.properties().reads_texels));
+        let mut captured = Vec::new();
+        for name in ["creature-mixed", "cloth"] {
+            let mesh = shape(name).unwrap();
+            for construction in Construction::ALL {
+                let options = ModelOptions { construction, shared_normals: true, ..ModelOptions::default() };
+                let of_model = Captured::new(&headless, &mesh, &options).unwrap();
+                captured.push((of_model.control_points().unwrap(), of_model.vertices(3.0).unwrap()));
+            }
+        }
+        headless.finish_silent();
+        captured
+    });
+    assert_eq!(texels.len(), 6);
+    for ((points, vertices), (other_points, other_vertices)) in texels.iter().zip(&storage) {
+        assert!(points == other_points && vertices == other_vertices);
+    }
 }
 
 #[test]

@@ -16,7 +16,7 @@ mod shaders {
 
 fn headless() -> Headless {
     let needs = Features { statistics: true, ..Features::NONE };
-    Headless::new(&HeadlessOptions { validation: true, needs, device: None }).unwrap()
+    Headless::new(&HeadlessOptions { validation: true, needs, ..HeadlessOptions::default() }).unwrap()
 }
 
 fn offscreen(headless: &Headless, width: u32, height: u32, samples: vk::SampleCountFlags) -> Offscreen {
@@ -343,7 +343,7 @@ fn devices_are_listed_and_chosen() {
     }
     let wanted = |device: &str| {
         let device = Some(device.to_owned());
-        Headless::new(&HeadlessOptions { validation: true, device, needs: Features::NONE })
+        Headless::new(&HeadlessOptions { validation: true, device, ..HeadlessOptions::default() })
     };
     let usable = all.iter().find(|device| device.missing.is_empty()).unwrap();
     for name in [usable.index.to_string(), usable.properties.name.to_uppercase()] {

@@ -38,6 +38,10 @@ pub struct DeviceProperties {
     pub max_control_components: u32,
     /// The most elements of a texel buffer.
     pub max_texel_buffer_elements: u64,
+    /// Whether shaders read tables as texel buffers, as they do where these are as large as tables may be: on lavapipe that takes
+    /// half as long as reading storage buffers. Every device has 65 536 elements; those that have many more have all as many
+    /// as are asked for here, 2^27.
+    pub reads_texels: bool,
     /// The largest buffer, in bytes.
     pub max_buffer_size: u64,
     /// The largest width and height of a 2D image.
@@ -83,6 +87,7 @@ impl DeviceProperties {
             max_stage_storage_buffers: limits.max_per_stage_descriptor_storage_buffers,
             max_control_components: limits.max_tessellation_control_per_vertex_output_components,
             max_texel_buffer_elements: limits.max_texel_buffer_elements.into(),
+            reads_texels: limits.max_texel_buffer_elements >= 1 << 27,
             // Zero where the device is older than Vulkan 1.3 and does not say.
             max_buffer_size: if v13.max_buffer_size == 0 { u64::MAX } else { v13.max_buffer_size },
             max_image_size: limits.max_image_dimension2_d,
@@ -92,13 +97,6 @@ impl DeviceProperties {
             // SAFETY: as the caller promises.
             features: unsafe { Features::supported(instance, physical_device) },
         }
-    }
-
-    /// Whether texel buffers are as large as tables may be, and shaders are to read these as such: on lavapipe that takes half as
-    /// long as reading storage buffers, and it costs nothing elsewhere. Every device has 65 536 elements; those
-    /// that have many more all have as many as here.
-    pub fn reads_texels(&self) -> bool {
-        self.max_texel_buffer_elements >= 1 << 27
     }
 
     /// The sample counts in numbers, ascending.
@@ -114,6 +112,9 @@ pub struct ContextOptions {
     pub features: Features,
     /// Whether `VK_EXT_debug_utils` is enabled on the instance: objects then get debug names.
     pub debug_utils: bool,
+    /// Have shaders read tables as storage buffers, even where [`DeviceProperties::reads_texels`] would have them read texel
+    /// buffers: for devices on which that is faster.
+    pub storage_tables: bool,
     /// Dropped after everything else: what has to outlive the last object, such as the owner of the device.
     pub keep_alive: Option<Box<dyn Any + Send + Sync>>,
 }
@@ -147,10 +148,12 @@ impl DeviceContext {
         options: ContextOptions,
     ) -> Arc<Self> {
         let debug_utils = options.debug_utils.then(|| ash::ext::debug_utils::Device::new(instance, device));
+        // SAFETY: as the caller promises.
+        let mut properties = unsafe { DeviceProperties::query(instance, physical_device) };
+        properties.reads_texels &= !options.storage_tables;
         Arc::new(Self {
             device: device.clone(),
-            // SAFETY: as the caller promises.
-            properties: unsafe { DeviceProperties::query(instance, physical_device) },
+            properties,
             features: options.features,
             debug_utils,
             allocator,

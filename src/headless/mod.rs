@@ -40,6 +40,8 @@ pub struct HeadlessOptions {
     pub device: Option<String>,
     /// What the device must have. Other features that it has are enabled too: see [`DeviceContext::features`].
     pub needs: Features,
+    /// As [`ContextOptions::storage_tables`].
+    pub storage_tables: bool,
 }
 
 /// A Vulkan device of our own, with one queue for everything.
@@ -107,7 +109,12 @@ impl Headless {
         // SAFETY: the device was made with these features, from this instance; both live as long as the context, which owns
         // them; objects are dropped when idle, because every submission is waited for.
         let context = unsafe {
-            let options = ContextOptions { features, debug_utils, keep_alive: Some(Box::new(owner)) };
+            let options = ContextOptions {
+                features,
+                debug_utils,
+                storage_tables: options.storage_tables,
+                keep_alive: Some(Box::new(owner)),
+            };
             DeviceContext::new(&instance_handle, physical_device, &raw, Arc::new(Mutex::new(allocator)), options)
         };
         // SAFETY: the device was made with one queue of this family.

@@ -90,7 +90,11 @@ impl Model {
         check_evaluation(id, model_options, &tables, context.features())?;
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
-        let check = |table: &'static str, bytes: u64| {
+        let most_texels = context.properties().max_texel_buffer_elements;
+        // `binding` is that of set 1, for what is read as a texel buffer.
+        let check = |table: &'static str, bytes: u64, binding: Option<usize>| {
+            let texels = binding.and_then(|binding| TEXELS.get(binding)).filter(|_| context.properties().reads_texels);
+            let max = texels.map_or(max, |(_, texel)| max.min(most_texels * texel));
             if bytes > max { Err(Error::TableTooLarge { id, table, bytes, max }) } else { Ok(()) }
         };
 
@@ -111,8 +115,8 @@ impl Model {
 
         let mut offset = 0;
         let mut ranges = Vec::with_capacity(arrays.len());
-        for (table, array) in &arrays {
-            check(table, array.len() as u64)?;
+        for (binding, (table, array)) in (1..).zip(&arrays) {
+            check(table, array.len() as u64, Some(binding))?;
             // An empty table still gets a range, so that every descriptor is written, and has a texel.
             let size = (array.len() as u64).max(16);
             ranges.push((offset, size));
@@ -126,14 +130,15 @@ impl Model {
         let table_buffer = device_buffer(context, &format!("{name}: tables"), offset, storage)?;
 
         let position_bytes = POSITION_BYTES * tables.stored_vertices() as u64;
-        check("positions", position_bytes)?;
+        check("positions", position_bytes, Some(0))?;
         let in_flight = options.frames_in_flight;
-        let kept = |what: &'static str, bytes: u64| -> Result<_, Error> {
-            check(what, bytes)?;
+        let kept = |what: &'static str, bytes: u64, binding: Option<usize>| -> Result<_, Error> {
+            check(what, bytes, binding)?;
             Ok((bytes > 0).then(|| device_buffer(context, &format!("{name}: {what}"), bytes, storage)).transpose()?)
         };
         let [point_bytes, frame_bytes] = tables.kept_bytes();
-        let (control_points, frames) = (kept("control points", point_bytes)?, kept("frames", frame_bytes)?);
+        let (control_points, frames) =
+            (kept("control points", point_bytes, None)?, kept("frames", frame_bytes, Some(FRAMES_BINDING))?);
         let mut stored = Vec::new();
         tables.store_positions(control, &mut stored);
         let positions = Streamed::new(context, &format!("{name}: positions"), &stored, in_flight)?;

@@ -189,7 +189,7 @@ impl PatchStages {
 
 /// What all shaders that read tables are specialized to. GLSL twin: `READS_TEXELS` in `glsl/lib/positions.glsl`.
 pub(crate) fn reads_texels(device: &DeviceProperties) -> Specialization {
-    Specialization::bool(9, device.reads_texels())
+    Specialization::bool(9, device.reads_texels)
 }
 
 /// A tessellation evaluation shader with another spacing: the files all say `equal_spacing`.
