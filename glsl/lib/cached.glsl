@@ -1,33 +1,27 @@
-// What the cached construction keeps of each corner: the control points that it owns and, after them, what it shares. Rust twin:
-// `ModelTables::kept_bytes` in src/renderer/tables.rs.
+// What the cached construction keeps of each corner: the control points that it owns and, after them, what it shares. Each vector
+// takes four numbers, of which the last is unused. Rust twin: `ModelTables::kept_bytes` in src/renderer/tables.rs.
 #ifndef CACHED_GLSL
 #define CACHED_GLSL
+
+#include "positions.glsl"
 
 // Vectors that a corner has room for: as many as the corners of any patch of the model need.
 layout(constant_id = 3) const uint STRIDE = 8u;
 
+// `corner` counts through all patches.
 #ifdef MAKES_POINTS
-layout(set = 1, binding = 12, std430) writeonly buffer ControlPoints { float control_points[]; };
-#else
-layout(set = 1, binding = 12, std430) readonly buffer ControlPoints { float control_points[]; };
-#endif
+layout(set = 1, binding = 12, std430) writeonly buffer ControlPoints { vec4 control_points[]; };
 
-// Where vector i of a corner starts; `corner` counts through all patches.
-uint kept_at(uint corner, uint i) {
-    return 3u * (STRIDE * corner + i);
-}
-
-#ifdef MAKES_POINTS
 void keep_vector(uint corner, uint i, vec3 x) {
-    uint at = kept_at(corner, i);
-    control_points[at] = x.x;
-    control_points[at + 1u] = x.y;
-    control_points[at + 2u] = x.z;
+    control_points[STRIDE * corner + i].xyz = x;
 }
 #else
+layout(set = 1, binding = 12, std430) readonly buffer ControlPoints { vec4 control_points[]; };
+layout(set = 1, binding = 20) uniform samplerBuffer control_point_texels;
+
 vec3 kept_vector(uint corner, uint i) {
-    uint at = kept_at(corner, i);
-    return vec3(control_points[at], control_points[at + 1u], control_points[at + 2u]);
+    uint at = STRIDE * corner + i;
+    return READS_TEXELS ? texelFetch(control_point_texels, int(at)).xyz : control_points[at].xyz;
 }
 #endif
 

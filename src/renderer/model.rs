@@ -5,26 +5,30 @@ use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::{MODEL_BUFFERS, Pipelines};
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
-use super::tables::POSITION_BYTES;
+use super::tables::VECTOR_BYTES;
 use super::{DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 use crate::table::PatchGroup;
 use ash::vk;
 use std::sync::Arc;
 
-/// How shaders see the first storage buffers of set 1 as texel buffers, and the bytes of a texel: positions, rings, their
-/// entries, their types, corners of patches, frames. GLSL twins: `glsl/lib/positions.glsl`, `rings.glsl`, `kept_frames.glsl`.
-pub(super) const TEXELS: [(vk::Format, u64); 6] = [
-    (vk::Format::R32G32B32A32_SFLOAT, 16),
-    (vk::Format::R32G32B32A32_UINT, 16),
-    (vk::Format::R32_UINT, 4),
-    (vk::Format::R32G32B32A32_SFLOAT, 16),
-    (vk::Format::R32G32_UINT, 8),
-    (vk::Format::R32G32B32A32_SFLOAT, 16),
+/// Which storage buffers of set 1 shaders see as texel buffers, too, how, and the bytes of a texel: positions, rings, their
+/// entries, their types, corners of patches, frames, control points. GLSL twins: `glsl/lib/positions.glsl`, `rings.glsl`,
+/// `kept_frames.glsl`, `cached.glsl`.
+pub(super) const TEXELS: [(usize, vk::Format, u64); 7] = [
+    (0, vk::Format::R32G32B32A32_SFLOAT, 16),
+    (1, vk::Format::R32G32B32A32_UINT, 16),
+    (2, vk::Format::R32_UINT, 4),
+    (3, vk::Format::R32G32B32A32_SFLOAT, 16),
+    (4, vk::Format::R32G32_UINT, 8),
+    (FRAMES_BINDING, vk::Format::R32G32B32A32_SFLOAT, 16),
+    (POINTS_BINDING, vk::Format::R32G32B32A32_SFLOAT, 16),
 ];
 
 /// Of set 1: frames are in the place of the stencil table, which the cached construction does without.
 const FRAMES_BINDING: usize = 5;
+/// Of set 1: control points that are kept.
+const POINTS_BINDING: usize = 12;
 
 /// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
@@ -91,10 +95,10 @@ impl Model {
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
         let most_texels = context.properties().max_texel_buffer_elements;
-        // `binding` is that of set 1, for what is read as a texel buffer.
-        let check = |table: &'static str, bytes: u64, binding: Option<usize>| {
-            let texels = binding.and_then(|binding| TEXELS.get(binding)).filter(|_| context.properties().reads_texels);
-            let max = texels.map_or(max, |(_, texel)| max.min(most_texels * texel));
+        // `binding` is that of set 1.
+        let check = |table: &'static str, bytes: u64, binding: usize| {
+            let texels = TEXELS.iter().find(|(of, ..)| *of == binding).filter(|_| context.properties().reads_texels);
+            let max = texels.map_or(max, |(.., texel)| max.min(most_texels * texel));
             if bytes > max { Err(Error::TableTooLarge { id, table, bytes, max }) } else { Ok(()) }
         };
 
@@ -116,7 +120,7 @@ impl Model {
         let mut offset = 0;
         let mut ranges = Vec::with_capacity(arrays.len());
         for (binding, (table, array)) in (1..).zip(&arrays) {
-            check(table, array.len() as u64, Some(binding))?;
+            check(table, array.len() as u64, binding)?;
             // An empty table still gets a range, so that every descriptor is written, and has a texel.
             let size = (array.len() as u64).max(16);
             ranges.push((offset, size));
@@ -129,16 +133,16 @@ impl Model {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
         let table_buffer = device_buffer(context, &format!("{name}: tables"), offset, storage)?;
 
-        let position_bytes = POSITION_BYTES * tables.stored_vertices() as u64;
-        check("positions", position_bytes, Some(0))?;
+        let position_bytes = VECTOR_BYTES * tables.stored_vertices() as u64;
+        check("positions", position_bytes, 0)?;
         let in_flight = options.frames_in_flight;
-        let kept = |what: &'static str, bytes: u64, binding: Option<usize>| -> Result<_, Error> {
+        let kept = |what: &'static str, bytes: u64, binding: usize| -> Result<_, Error> {
             check(what, bytes, binding)?;
             Ok((bytes > 0).then(|| device_buffer(context, &format!("{name}: {what}"), bytes, storage)).transpose()?)
         };
         let [point_bytes, frame_bytes] = tables.kept_bytes();
         let (control_points, frames) =
-            (kept("control points", point_bytes, None)?, kept("frames", frame_bytes, Some(FRAMES_BINDING))?);
+            (kept("control points", point_bytes, POINTS_BINDING)?, kept("frames", frame_bytes, FRAMES_BINDING)?);
         let mut stored = Vec::new();
         tables.store_positions(control, &mut stored);
         let positions = Streamed::new(context, &format!("{name}: positions"), &stored, in_flight)?;
@@ -170,23 +174,29 @@ impl Model {
         };
 
         let (pool, set) = descriptor_set(context, pipelines.model_layout.raw(), name)?;
-        let mut buffers = vec![positions.buffer().descriptor()];
-        let table = |&(offset, range)| vk::DescriptorBufferInfo { buffer: table_buffer.raw(), offset, range };
-        buffers.extend(ranges.iter().map(table));
+        // By binding.
+        fn whole(buffer: &Buffer) -> (&Buffer, u64, u64) {
+            (buffer, 0, buffer.size())
+        }
+        let mut parts = vec![whole(positions.buffer())];
+        parts.extend(ranges.iter().map(|&(offset, bytes)| (&table_buffer, offset, bytes)));
         if let Some(frames) = &frames {
-            buffers[FRAMES_BINDING] = frames.descriptor();
+            parts[FRAMES_BINDING] = whole(frames);
         }
         // Every descriptor has to be written; without factors of its own a model's edges never read any.
-        buffers.push(corner_factors.as_ref().unwrap_or(&positions).buffer().descriptor());
-        buffers.push(control_points.as_ref().unwrap_or(positions.buffer()).descriptor());
-        let table_ranges = ranges.iter().map(|&(offset, bytes)| (&table_buffer, offset, bytes));
-        let sources = std::iter::once((positions.buffer(), 0, positions.buffer().size())).chain(table_ranges);
-        let texels =
-            (0..).zip(TEXELS).zip(sources).map(|((binding, (format, texel)), (buffer, offset, bytes))| match &frames {
-                Some(frames) if binding == FRAMES_BINDING => frames.texels(format, texel, 0, frames.size()),
-                _ => buffer.texels(format, texel, offset, bytes),
-            });
-        let texels = texels.collect::<Result<Vec<_>, _>>()?;
+        parts.push(whole(corner_factors.as_ref().unwrap_or(&positions).buffer()));
+        parts.push(whole(control_points.as_ref().unwrap_or(positions.buffer())));
+        let info = |&(buffer, offset, range): &(&Buffer, _, _)| vk::DescriptorBufferInfo {
+            buffer: buffer.raw(),
+            offset,
+            range,
+        };
+        let buffers: Vec<_> = parts.iter().map(info).collect();
+        let texels = TEXELS.map(|(binding, format, texel)| {
+            let (buffer, offset, bytes) = parts[binding];
+            buffer.texels(format, texel, offset, bytes)
+        });
+        let texels = texels.into_iter().collect::<Result<Vec<_>, _>>()?;
         write_set(context, set, &buffers, map, &texels);
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_vectors(), tables.has_speakers());

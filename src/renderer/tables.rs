@@ -68,8 +68,8 @@ impl Edges {
     }
 }
 
-/// Bytes of a stored vertex. GLSL twin: `glsl/lib/positions.glsl`.
-pub(super) const POSITION_BYTES: u64 = 16;
+/// Bytes of a stored vertex, and of a vector that is kept. GLSL twins: `glsl/lib/positions.glsl`, `cached.glsl`.
+pub(super) const VECTOR_BYTES: u64 = 16;
 /// Bytes of a frame of a ring. GLSL twin: `glsl/lib/kept_frames.glsl`.
 const FRAME_BYTES: u64 = 4 * 12;
 
@@ -209,7 +209,7 @@ impl ModelTables {
     /// Bytes of what the cached construction keeps of corners, and of frames.
     pub(super) fn kept_bytes(&self) -> [u64; 2] {
         let corners: usize = self.plan.patches().iter().map(|patch| patch.kind.corners()).sum();
-        [12 * u64::from(self.kept_vectors()) * corners as u64, FRAME_BYTES * u64::from(self.kept_frames())]
+        [VECTOR_BYTES * u64::from(self.kept_vectors()) * corners as u64, FRAME_BYTES * u64::from(self.kept_frames())]
     }
 
     /// How many patches of a kind there are.
@@ -228,7 +228,7 @@ impl ModelTables {
 
     /// Bytes of each table that drawing the surface reads.
     pub fn bytes(&self) -> Vec<TableBytes> {
-        let positions = ("positions", POSITION_BYTES * self.stored_vertices() as u64);
+        let positions = ("positions", VECTOR_BYTES * self.stored_vertices() as u64);
         let tables = self.bindings().into_iter().filter(|(name, array)| *name != "texcoords" && !array.is_empty());
         let kept = ["control_points", "frames"].into_iter().zip(self.kept_bytes()).filter(|&(_, bytes)| bytes > 0);
         std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).chain(kept).collect()
