@@ -12,7 +12,9 @@ pub enum BenchError {
     Renderer(#[from] Error),
     #[error("{mesh}: it has no {subset} patches: choose others")]
     NoPatches { mesh: String, subset: &'static str },
-    #[error("the path {path} is not recorded by the renderer alone: measure tessellation or compute")]
+    #[error(
+        "the path {path} is not recorded by the renderer alone: measure one that is, such as tessellation or compute"
+    )]
     NotRecorded { path: &'static str },
     #[error("{what} is {given}: it must be at least {least}")]
     BadOption { what: &'static str, given: u32, least: u32 },

@@ -121,9 +121,9 @@ impl Path {
         }
     }
 
-    /// Whether [`Bench::recording`] knows it.
+    /// Whether [`Bench::recording`] knows it: what the renderer draws by itself.
     pub fn is_recorded(self) -> bool {
-        matches!(self, Self::Tessellation | Self::Compute)
+        !self.is_floor() && self != Self::AccPublished
     }
 
     /// Whether it does less than draw the surface from control vertices that move: what the others cannot get below.

@@ -3,7 +3,7 @@
 use super::drawable::timed;
 use super::scene::Scene;
 use super::{Bench, BenchError, Camera, Contestant, Subject};
-use crate::renderer::{DrawItem, Evaluation, ModelId, ModelTables, Options, Renderer, Style, Target};
+use crate::renderer::{DrawItem, ModelId, ModelTables, Options, Renderer, Style, Target};
 
 /// What the models of a frame are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -62,14 +62,15 @@ impl Bench<'_> {
         let target = self.geometry_target().desc();
         let target = Target::dynamic(target.color, target.depth, target.samples);
         let styles = vec![Style { rasterizer_discard: true, ..Style::default() }];
-        let options = Options { frames_in_flight: 1, views_per_frame: 1, styles, ..Options::default() };
+        let evaluations = vec![model_options.evaluation];
+        let options = Options { frames_in_flight: 1, views_per_frame: 1, styles, evaluations, ..Options::default() };
         // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
         let mut renderer = unsafe { Renderer::new(lane.headless.context(), &target, &options)? };
         let tables = ModelTables::new(&subject.mesh, &model_options)?;
         let positions = subject.mesh.positions_f32();
         let add = |renderer: &mut Renderer| -> Result<ModelId, BenchError> {
             let id = renderer.add_tables(tables.clone(), &positions, &model_options)?;
-            if model_options.evaluation == Evaluation::Compute {
+            if model_options.evaluation.needs_segments() {
                 renderer.set_segments(id, 1)?;
             }
             Ok(id)

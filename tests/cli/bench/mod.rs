@@ -148,9 +148,9 @@ fn bench_measures_normals_culling_and_views_beside_each_other() {
 fn bench_records_crowds() {
     let few = "--shape tetrahedron --recording 4 --schemes gregory,acc --constructions two-stage,cached";
     let results = json(&format!("bench {SMALL} {few}"));
-    // Gregory in three ways, three crowds each; ACC has no triangles, and floors are not recorded.
+    // Gregory in six ways and subdivision, three crowds each; ACC has no triangles, and floors are not recorded.
     let recording = results["recording"].as_array().unwrap();
-    assert_eq!((recording.len(), length(&results["left_out"]), length(&results["rows"])), (9, 3, 0));
+    assert_eq!((recording.len(), length(&results["left_out"]), length(&results["rows"])), (21, 6, 0));
     assert_eq!(
         keys(&recording[0]),
         [
