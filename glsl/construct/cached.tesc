@@ -43,12 +43,7 @@ void main() {
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
     uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
-#ifdef DISPLACED
-    float lod = in_shared_lod[gl_InvocationID];
-#else
-    float lod = 0.0;
-#endif
-    write_shared(corner, in_shared_with[gl_InvocationID], in_shared_bits[gl_InvocationID], lod);
+    HAND_ON_SHARED(corner, gl_InvocationID);
 #endif
     barrier();
     finish_patch(in_patch_number[0]);

@@ -16,7 +16,7 @@
 #include "read_cached.glsl"
 #include "draw.glsl"
 #ifdef DISPLACED
-#include "lattice_lod.glsl"
+#include "displaced.glsl"
 #endif
 #ifdef CAPTURE
 #include "capture.glsl"
@@ -31,11 +31,12 @@ layout(location = 2) out vec2 out_texcoord;
 void main() {
     uint patch_number = uint(gl_InstanceIndex);
     uint first_corner = draw.first_corner + patch_number * CORNERS;
-    read_cached(first_corner);
-    vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()), first_corner);
+    uint segments = uint(draw_factor());
+    read_cached(first_corner, segments);
+    vec3 at = lattice_parameter(uint(gl_VertexIndex), segments, first_corner);
     LatticeSample surface = lattice_sample(at);
 #ifdef DISPLACED
-    surface.position = displace(surface.position, surface.direction, surface.texcoord, lattice_lod(surface.lod));
+    surface.position = displace(surface.position, surface.direction, surface.texcoord, surface.lod);
 #endif
 #ifdef CAPTURE
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);

@@ -42,7 +42,7 @@ void put(uint at, vec3 x) {
 
 void main() {
     uint first_corner = patches.first_corner + gl_WorkGroupID.x * CORNERS;
-    read_cached(first_corner);
+    read_cached(first_corner, patches.segments);
     uint first_vertex = patches.first_vertex + gl_WorkGroupID.x * patches.vertices;
     uint start = gl_WorkGroupID.y * GROUP_VERTICES;
     uint end = min(start + GROUP_VERTICES, patches.vertices);

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #ifdef DISPLACED
 #define TEXCOORD
-#include "lattice_lod.glsl"
+#include "displaced.glsl"
 #endif
 #include "draw.glsl"
 
@@ -19,12 +19,12 @@ layout(location = 2) out vec2 out_texcoord;
 #endif
 #ifdef DISPLACED
 layout(location = 3) in vec3 direction;
-layout(location = 4) in vec3 lookup;  // xy: where in the map; z: see `lattice_lod`
+layout(location = 4) in vec3 lookup;  // xy: where in the map; z: its level
 #endif
 
 void main() {
 #ifdef DISPLACED
-    world_position = to_world(displace(position, direction, lookup.xy, lattice_lod(lookup.z)));
+    world_position = to_world(displace(position, direction, lookup.xy, lookup.z));
 #else
     world_position = to_world(position);
 #endif

@@ -27,7 +27,7 @@
 #include "stencils.glsl"
 #endif
 #ifdef DISPLACED
-#include "lattice_lod.glsl"
+#include "displaced.glsl"
 #endif
 #ifdef CAPTURE
 #include "capture.glsl"
@@ -78,7 +78,7 @@ void emit(uint row, uint place) {
     vec3 at = lattice_parameter(row, place, segments, first_corner);
     LatticeSample surface = lattice_sample(at);
 #ifdef DISPLACED
-    surface.position = displace(surface.position, surface.direction, surface.texcoord, lattice_lod(surface.lod));
+    surface.position = displace(surface.position, surface.direction, surface.texcoord, surface.lod);
 #endif
 #ifdef CAPTURE
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
@@ -143,7 +143,7 @@ void main() {
     }
 #endif
 #ifdef CACHED
-    read_cached(draw.first_corner + patch_number * CORNERS);
+    read_cached(draw.first_corner + patch_number * CORNERS, segments);
 #else
     for (uint k = 0u; k < CORNERS; ++k) {
         stencil_points(draw.first_patch + patch_number, k, CORNERS, owned[k]);

@@ -50,7 +50,7 @@ vec3 ring_normal(FramedRing at) {
     uint count = at.ring.faces + at.ring.edges;
     for (uint i = 1u; i <= 2u * at.ring.faces; ++i) {
         uint entry = at.ring.entries + (i < count ? i : 0u);
-        precise vec3 next = vertex_position(ring_entry(entry) & ~TRIANGLE_BIT) - at.centre;
+        precise vec3 next = entry_position(ring_entry(entry)) - at.centre;
         sum += exact_cross(before, next);
         before = next;
     }

@@ -27,12 +27,7 @@ layout(location = 15) in float in_shared_lod[];
 void finish_framed_corner(uint k) {
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
-#ifdef DISPLACED
-    float lod = in_shared_lod[k];
-#else
-    float lod = 0.0;
-#endif
-    write_shared(draw.first_corner + in_patch_number[0] * CORNERS + k, in_shared_with[k], in_shared_bits[k], lod);
+    HAND_ON_SHARED(draw.first_corner + in_patch_number[0] * CORNERS + k, k);
 #endif
 }
 

@@ -35,13 +35,13 @@ float along_side(uint i, uint segments) {
 
 // Whether edges have factors of their own.
 layout(constant_id = 8) const bool HAS_EDGE_FACTORS = false;
-layout(set = 1, binding = 11, std430) readonly buffer EdgeFactors { float edge_factors[]; };
+layout(set = 1, binding = 11, std430) readonly buffer CornerFactors { float corner_factors[]; };
 
 // The parameter of vertex i along the plus edge of a corner, which may have fewer segments than the lattice: then the vertex
 // goes to the nearest of the edge's own, and so both its patches have those and no others.
 float along_edge(uint i, uint segments, uint corner) {
     // What is no number counts as 1.
-    uint own = uint(min(ceil(max(1.0, edge_factors[corner])), float(segments)));
+    uint own = uint(min(ceil(max(1.0, corner_factors[corner])), float(segments)));
     return along_side((2u * i * own + segments) / (2u * segments), own);
 }
 

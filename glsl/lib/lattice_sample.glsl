@@ -10,12 +10,12 @@ vec3 shared_with[CORNERS][SHARED_VECTORS];
 uint shared_bits[CORNERS];
 #ifdef DISPLACED
 vec2 shared_texcoord[CORNERS][3];
-// How many of the map's longer side an edge takes, as a logarithm: see `lattice_lod`.
 float shared_lod[CORNERS];
 vec2 texcoord[CORNERS];
 #endif
 #include "edges.glsl"
 
+// One name for the type of either.
 #define LatticeSample SharedSample
 
 LatticeSample lattice_sample(vec3 at) {

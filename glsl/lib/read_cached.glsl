@@ -5,11 +5,12 @@
 #include "cached.glsl"
 #include "lattice_sample.glsl"
 #ifdef DISPLACED
+#include "map_lod.glsl"
 #include "shared_texcoords.glsl"
 #endif
 
-// Of a patch whose first corner this is.
-void read_cached(uint first_corner) {
+// Of a patch whose first corner this is, for a lattice of so many segments.
+void read_cached(uint first_corner, uint segments) {
     for (uint k = 0u; k < CORNERS; ++k) {
         for (uint i = 0u; i < OWNED; ++i) {
             owned[k][i] = kept_vector(first_corner + k, i);
@@ -23,8 +24,7 @@ void read_cached(uint first_corner) {
 #ifdef DISPLACED
         SharedTexcoord shared_at = shared_texcoords[first_corner + k];
         shared_texcoord[k] = vec2[3](shared_at.plus, shared_at.minus, shared_at.corner);
-        // A corner whose edges have no length is as one whose edges are very short.
-        shared_lod[k] = log2(max(shared_at.scale.x, 1e-30));
+        shared_lod[k] = map_lod(shared_at.scale.x, float(segments));
         texcoord[k] = texcoords[first_corner + k];
 #endif
     }

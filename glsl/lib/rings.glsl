@@ -1,4 +1,4 @@
-// The ring table of the two-stage construction. Rust twin: src/table/rings.rs.
+// The ring table of the two-stage and the cached construction. Rust twin: src/table/rings.rs.
 #ifndef RINGS_GLSL
 #define RINGS_GLSL
 

@@ -29,4 +29,11 @@ void write_shared(uint corner, vec3 vectors[SHARED_VECTORS], uint bits, float lo
 #endif
 }
 
+// What the vertex shader has of corner k, whose number among all this is.
+#ifdef DISPLACED
+#define HAND_ON_SHARED(corner, k) write_shared(corner, in_shared_with[k], in_shared_bits[k], in_shared_lod[k])
+#else
+#define HAND_ON_SHARED(corner, k) write_shared(corner, in_shared_with[k], in_shared_bits[k], 0.0)
+#endif
+
 #endif

@@ -93,7 +93,7 @@ pub struct Captured<'h> {
 
 impl<'h> Captured<'h> {
     /// Builds the tables of a model. Of [`Evaluation::Subdivision`] there is nothing but [`Captured::grid`], of as many samples as
-    /// one of its levels has.
+    /// one of its levels has; of [`Evaluation::GeometryTwoPass`] nothing but [`Captured::vertices_of`].
     ///
     /// # Errors
     /// [`Error::Unsupported`] if the device cannot write buffers before rasterization, and as

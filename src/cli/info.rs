@@ -47,7 +47,7 @@ struct Info {
     refine: u32,
     patches: Patches,
     construction: &'static str,
-    /// Rings (two-stage) or patches (stencil) that differ in connectivity and so have weights of their own.
+    /// Rings (two-stage, cached) or patches (stencil) that differ in connectivity and so have weights of their own.
     connectivity_types: usize,
     /// By table, and `total`.
     bytes: BTreeMap<&'static str, u64>,

@@ -5,7 +5,7 @@
 /// A driver that draws on the CPU takes and frees memory within each draw, and by default glibc gives much of it back to the system
 /// each time, or does not, as it happens to lie: lavapipe then takes a tenth longer in one run than in the next.
 pub(super) fn keep_freed() {
-    #[cfg(target_env = "gnu")]
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
         const MIB: libc::c_int = 1 << 20;
         for (setting, bytes) in [

@@ -18,7 +18,7 @@ enum Maker {
     TwoStage,
     /// The GPU: weighted sums in the control shader.
     Stencil,
-    /// The GPU: weighted sums in a compute shader.
+    /// The GPU: rings, then patches, in compute shaders.
     Cached,
     /// The CPU, in f64.
     Cpu,

@@ -40,7 +40,7 @@ pub(super) struct WatertightArgs {
 const EXAMPLES: &str = "\
 What is compared: every vertex on an edge or a corner, as each of its patches evaluates it, bit for bit:
 positions always, normals where the mesh shares them and has no crease. With uniform, random and adaptive
-factors, all spacings, both constructions, with and without displacement. A mesh without texture coordinates
+factors, all spacings, all constructions, with and without displacement. A mesh without texture coordinates
 gets some in which every edge is a seam. Then closed meshes are drawn, and pixels counted in which not as many
 layers face the eye as face away.
 

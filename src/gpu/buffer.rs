@@ -118,12 +118,12 @@ impl Buffer {
         vk::DescriptorBufferInfo { buffer: self.raw(), offset: 0, range: vk::WHOLE_SIZE }
     }
 
-    /// A view of some bytes from `offset` on as a texel buffer whose texels take so many bytes; it ends where the device sees no
-    /// more.
+    /// A view of at least a texel from `offset` on, in bytes, as a texel buffer whose texels take so many bytes; it ends where the
+    /// device sees no more. The buffer is for such views, and the offset aligned.
     ///
     /// # Errors
     /// No memory.
-    pub fn texels(
+    pub(crate) fn texels(
         &self,
         format: vk::Format,
         texel: u64,
@@ -133,7 +133,7 @@ impl Buffer {
         let most = self.context.properties().max_texel_buffer_elements;
         let range = (bytes / texel).clamp(1, most) * texel;
         let info = vk::BufferViewCreateInfo::default().buffer(self.raw()).format(format).offset(offset).range(range);
-        // SAFETY: the buffer is of this device, and the view is taken over by `Owned`.
+        // SAFETY: the buffer is of this device, has the usage and holds the range; the view is taken over by `Owned`.
         unsafe {
             let raw = self.context.device().create_buffer_view(&info, None).of("vkCreateBufferView", &self.name)?;
             Ok(Owned::new(&self.context, raw, &self.name))

@@ -36,7 +36,7 @@ pub fn corner_slots(k: usize) -> [usize; 8] {
 
 /// The control points of the quad with these corners, whose frames are [`acc_frame`]s.
 ///
-/// GLSL twin: `glsl/construct/acc.tesc`.
+/// GLSL twin: `glsl/lib/acc_points.glsl`.
 pub fn acc_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> Vec<T> {
     let mut points = vec![T::default(); POINTS];
     let cosines = corners.each_ref().map(|c| c.ring.shape.cosine());

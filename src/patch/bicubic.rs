@@ -17,7 +17,7 @@ pub const CORNER_SLOTS: [[usize; 4]; 4] = [[0, 4, 1, 5], [12, 13, 8, 9], [15, 11
 /// Corner and edge points are those of the rings, as for every other patch; the inner point of a corner is
 /// `(4 v + 2 a + 2 b + d) / 9` with the vertices of the face itself, at a boundary too.
 ///
-/// GLSL twin: `glsl/construct/regular.tesc`.
+/// GLSL twin: `glsl/lib/bicubic_points.glsl`.
 pub fn bicubic_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> [T; 16] {
     let mut points: [T; 16] = std::array::from_fn(|_| T::default());
     for (k, corner) in corners.iter().enumerate() {

@@ -39,7 +39,7 @@ impl<T: Blend> PatchCorner<'_, T> {
 /// `transversal` gives `r_j` of a corner's ring edge j; that of the paper is [`RingValues::transversal`]. The patches on
 /// both sides of an edge have to be given the same.
 ///
-/// GLSL twin: `glsl/construct/gregory.tesc`.
+/// GLSL twin: `glsl/lib/gregory_points.glsl`.
 pub fn gregory_points<T: Blend>(
     corners: &[PatchCorner<T>],
     transversal: impl Fn(&PatchCorner<T>, usize) -> T,

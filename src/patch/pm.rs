@@ -121,7 +121,7 @@ fn pm_centre_of_pentagon<T: Blend>(centre: &T, b202: &[T], b211: &[T], b121: &[T
 
 /// The control points of the face with these three, four or five corners, whose frames are [`pm_frame`]s.
 ///
-/// GLSL twin: `glsl/construct/pm.tesc`.
+/// GLSL twin: `glsl/lib/pm_points.glsl`.
 pub fn pm_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
     let m = corners.len();
     let mu = mu(m);

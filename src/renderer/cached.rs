@@ -1,6 +1,7 @@
 //! What a frame makes before its draws: the control points of the cached construction, by compute, and what follows from them.
 
 use super::Renderer;
+use super::lattice::MAX_GROUPS;
 use super::model::Model;
 use super::stages::PatchStages;
 use crate::gpu::{
@@ -14,8 +15,6 @@ use std::sync::Arc;
 
 /// Invocations in a workgroup of `glsl/lib/invocation.glsl`.
 const GROUP: u32 = 64;
-/// Every Vulkan device has as many workgroups along an axis.
-const MAX_GROUPS: u32 = 65_535;
 
 /// Push constants. GLSL twin: `glsl/lib/invocation.glsl`.
 #[repr(C)]
@@ -33,7 +32,7 @@ enum Step {
         /// Whether rings may have pentagons.
         pentagons: bool,
     },
-    /// By [`PatchStages::construction`].
+    /// By [`PatchStages::for_control_points`].
     Points(PatchStages),
 }
 
@@ -67,7 +66,7 @@ impl CachedPipelines {
 
     /// Makes what patches need.
     pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
-        let stages = stages.construction();
+        let stages = stages.for_control_points();
         let constants = stages.specialization(0, self.context.properties());
         self.make_one(Step::frames(stages), shaders::COMPUTE_FRAMES_COMP, &constants)?;
         self.make_one(Step::Points(stages), shaders::named(&stages.control_points())?, &constants)
@@ -124,7 +123,9 @@ impl CachedPipelines {
         for (&stages, group) in stages.iter().zip(plan.groups()) {
             let (count, first_corner) = (group.patches.len() as u32, group.first_corner as u32);
             // SAFETY: as the caller promises.
-            unsafe { self.cmd_dispatch(cmd, Step::Points(stages.construction()), Invocations { count, first_corner }) };
+            unsafe {
+                self.cmd_dispatch(cmd, Step::Points(stages.for_control_points()), Invocations { count, first_corner })
+            };
         }
     }
 

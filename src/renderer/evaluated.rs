@@ -57,7 +57,7 @@ pub struct EvaluatedVertices {
     /// [`grid_parameters`](crate::table::grid_parameters): position and normal in object space, three `f32` each; two more for the texture
     /// coordinate with [`Options::texcoords`](super::Options::texcoords). With displacement the surface is not displaced yet: draws
     /// do that, and there are always two for the texture coordinate, three for the direction in which it goes, two for where in
-    /// the map it looks, and one for `log2` of how long the edges are there over the map's longer side.
+    /// the map it looks, and one for the level of the map.
     pub buffer: vk::Buffer,
     /// Bytes of them all.
     pub size: u64,

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// Vertices of a patch that a workgroup takes. GLSL twin: `GROUP_VERTICES` in `glsl/evaluate/lattice.comp`.
 const GROUP_VERTICES: u32 = 256;
 /// Every Vulkan device has as many workgroups along an axis.
-const MAX_GROUPS: u32 = 65_535;
+pub(super) const MAX_GROUPS: u32 = 65_535;
 /// About as many evaluated vertices are drawn with the same indices, of one patch at least.
 const BLOCK_VERTICES: u64 = 65_536;
 
@@ -31,7 +31,7 @@ struct Dispatch {
 }
 
 /// Bytes of a vertex: position, normal, and the texture coordinate if there is one. Where the surface is displaced there is one,
-/// and after it which way, where in the map, and how long edges are there. GLSL twin: `VERTEX_WORDS` in
+/// and after it which way, where in the map, and at which of its levels. GLSL twin: `VERTEX_WORDS` in
 /// `glsl/evaluate/lattice.comp`.
 pub(super) fn vertex_bytes(texcoords: bool, sharing: Sharing) -> u32 {
     match (sharing, texcoords) {

@@ -15,13 +15,14 @@
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
 //! | compute, cached | rings and their weights, positions | a frame for each ring, if the vertices moved |
 //! | compute, cached | those, patch corners, rings, positions | control points, and what corners share |
-//! | compute, evaluation | control points | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
+//! | compute, evaluation | control points, what corners share | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
 //! | GS, two passes | vertices and weights of the patches, positions | control points of models that are [`Evaluation::GeometryTwoPass`], if the vertices moved |
-//! | VS, instanced | control points | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
+//! | VS, evaluated | vertices; the displacement map | position, normal, texture coordinate |
+//! | VS, instanced | control points, what corners share; the displacement map | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
 //! | GS | vertices and weights of the patch, positions; or control points | strips of models that are [`Evaluation::Geometry`], which have only VS (the number of a tile) and FS besides |
 //! | VS, two-stage | patch corners, rings and their weights, positions | what a corner of a patch takes from its ring: limit point, edge vectors, transversals and the like, what it shares |
 //! | VS, stencil | nothing | the number of the patch, for each patch |
-//! | VS, cached | control points | those, and what corners share |
+//! | VS, cached | control points, what corners share; displaced, frames | those, and levels of the map |
 //! | TCS, two-stage | what its corners took from their rings | control points, factors |
 //! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
 //! | TCS, cached | what VS has | control points, factors |
@@ -29,7 +30,7 @@
 //! | TES | control points, the view | position, normal, texture coordinate |
 //! | FS | those, the view | the caller's attachments |
 //!
-//! Positions, rings and their weights are texel buffers where the device has large ones, else storage buffers
+//! Positions, rings, their weights and what is kept of them are texel buffers where the device has large ones, else storage buffers
 //! ([`DeviceProperties::reads_texels`](crate::gpu::DeviceProperties::reads_texels)).
 //!
 //! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
@@ -97,7 +98,7 @@ pub struct MemoryUsage {
     pub tables: u64,
     /// Control vertices on the device, and factors of edges.
     pub positions: u64,
-    /// Control points that the cached construction keeps, on the device.
+    /// What the cached construction keeps, on the device: control points, what corners share, frames.
     pub control_points: u64,
     /// Vertices that were evaluated by compute, and indices of lattices, on the device.
     pub vertices: u64,
@@ -224,7 +225,7 @@ impl Renderer {
     /// options.
     ///
     /// # Errors
-    /// As [`Renderer::add_model`]; [`Error::PositionCount`].
+    /// As [`Renderer::add_model`]; [`Error::PositionCount`]; [`Error::OtherTables`].
     pub fn add_tables(
         &mut self,
         tables: ModelTables,
@@ -250,7 +251,8 @@ impl Renderer {
     ///
     /// # Safety
     /// The view and the sampler are of the context's device and live as long as the renderer. Whenever a model that uses the
-    /// map is drawn, the image is in its layout and visible to the tessellation and fragment stages.
+    /// map is drawn, the image is in its layout and visible to the vertex, tessellation, geometry and fragment stages, as far as
+    /// [`ModelOptions::evaluation`] has them.
     pub unsafe fn add_displacement(&mut self, map: DisplacementMap) -> DisplacementId {
         self.displacements.add(map)
     }

@@ -30,7 +30,7 @@ const FRAMES_BINDING: usize = 5;
 /// Of set 1: control points that are kept.
 const POINTS_BINDING: usize = 12;
 
-/// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
+/// The largest `minStorageBufferOffsetAlignment` and `minTexelBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
 
 pub(super) struct Model {
@@ -95,9 +95,11 @@ impl Model {
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
         let most_texels = context.properties().max_texel_buffer_elements;
+        // Fans are read as storage buffers only.
+        let reads_texels = context.properties().reads_texels && model_options.evaluation != Evaluation::Subdivision;
         // `binding` is that of set 1.
         let check = |table: &'static str, bytes: u64, binding: usize| {
-            let texels = TEXELS.iter().find(|(of, ..)| *of == binding).filter(|_| context.properties().reads_texels);
+            let texels = TEXELS.iter().find(|(of, ..)| *of == binding).filter(|_| reads_texels);
             let max = texels.map_or(max, |(.., texel)| max.min(most_texels * texel));
             if bytes > max { Err(Error::TableTooLarge { id, table, bytes, max }) } else { Ok(()) }
         };

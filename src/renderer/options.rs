@@ -182,7 +182,8 @@ pub struct Options {
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
     /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]): such
-    /// as evaluation shaders with a `displace` function of your own, see `glsl/lib/displace.glsl`.
+    /// as evaluation shaders with a `displace` function of your own, see `glsl/lib/displace.glsl`. Those of the stages of a draw:
+    /// what makes control points and vertices before the draws is not replaced.
     pub shaders: Vec<(String, Vec<u32>)>,
     /// Used for all pipelines; null for none.
     pub pipeline_cache: vk::PipelineCache,
@@ -274,7 +275,8 @@ pub(super) fn check_properties(
         missing.push(format!("{} samples a pixel (it has {})", target.samples.as_raw(), counts.join(", ")));
     }
     for (what, least, has) in [
-        ("storage buffers a shader stage", MODEL_BUFFERS as u32, properties.max_stage_storage_buffers),
+        // Evaluation by compute has its vertices besides.
+        ("storage buffers a shader stage", MODEL_BUFFERS as u32 + 1, properties.max_stage_storage_buffers),
         ("numbers a vertex from the control shader", CONTROL_COMPONENTS, properties.max_control_components),
     ] {
         if has < least {
@@ -314,7 +316,7 @@ mod tests {
         let target = Target::dynamic(vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT, vk::SampleCountFlags::TYPE_1);
         let error = check_properties(&properties, properties.features, &target, &Options::default()).unwrap_err();
         let told = error.to_string();
-        assert!(told.contains("13 storage buffers a shader stage (it has 4)"), "{told}");
+        assert!(told.contains("14 storage buffers a shader stage (it has 4)"), "{told}");
         assert!(told.contains("120 numbers a vertex from the control shader (it has 64)"), "{told}");
     }
 }

@@ -84,7 +84,7 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 );
 
 /// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
-/// points. The displacement map comes after them, and the first buffers once more as texel buffers ([`TEXELS`]).
+/// points. The displacement map comes after them, and those in [`TEXELS`] once more as texel buffers.
 pub(super) const MODEL_BUFFERS: usize = 13;
 
 /// Four for each location that the control shaders write to: the last is in `glsl/lib/culling.glsl`.
@@ -100,7 +100,7 @@ impl Pipelines {
         let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
         let model_stages = STAGES | vk::ShaderStageFlags::COMPUTE;
         let mut model = vec![(vk::DescriptorType::STORAGE_BUFFER, model_stages); MODEL_BUFFERS];
-        model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, STAGES));
+        model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, model_stages));
         model.extend([(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, model_stages); TEXELS.len()]);
         let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
         let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;

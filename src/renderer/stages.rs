@@ -89,7 +89,7 @@ impl PatchStages {
     }
 
     /// What tells apart the pipelines that make cached control points: what is of no concern to them is as usual.
-    pub(super) fn construction(self) -> Self {
+    pub(super) fn for_control_points(self) -> Self {
         Self { evaluation: Evaluation::Tessellation, spacing: Spacing::Equal, edge_factors: false, ..self }
     }
 

@@ -217,7 +217,7 @@ impl ModelTables {
         self.plan.count(kind)
     }
 
-    /// How many types of connectivity have weights of their own: of rings (two-stage), patches (stencil) or fans (subdivision).
+    /// How many types of connectivity have weights of their own: of rings (two-stage, cached), patches (stencil) or fans (subdivision).
     pub fn type_count(&self) -> usize {
         match (&self.stencils, &self.fans) {
             (Some(stencils), _) => stencils.type_count,

@@ -29,7 +29,7 @@ pub struct SharedCorner {
 }
 
 /// Texture coordinates of a patch corner on what it shares: where displacement is looked up there, so that both sides of a
-/// seam find the same texel. The patch's own are used inside. GLSL twin: `glsl/lib/shared.glsl`.
+/// seam find the same texel. The patch's own are used inside. GLSL twin: `glsl/lib/shared_texcoords.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct SharedTexcoord {

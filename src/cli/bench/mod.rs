@@ -79,7 +79,7 @@ impl BenchArgs {
                 (!names.is_empty()).then(|| format!("{} goes with {}", path.name(), names.join(" and ")))
             };
             let mut rules: Vec<String> = self.paths.iter().filter_map(rule).collect();
-            rules.push("shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)".into());
+            rules.push("shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass".into());
             let message = "none of --paths, --constructions, --schemes and --normals go together";
             return Err(CliError::Usage(format!("{message}: {}", rules.join("; "))));
         }

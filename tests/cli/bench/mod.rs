@@ -223,12 +223,12 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths compute,geometry --constructions two-stage",
         2,
-        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached; geometry goes with stencil and cached; shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)",
+        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached; geometry goes with stencil and cached; shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass",
     );
     fails(
         "bench --paths acc-published,subdivision --schemes gregory --normals shared",
         2,
-        "none of --paths, --constructions, --schemes and --normals go together: acc-published goes with acc and two-stage; shared normals go with tessellation and watertight schemes (gregory, gregory-fitted)",
+        "none of --paths, --constructions, --schemes and --normals go together: acc-published goes with acc and two-stage; shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass",
     );
     fails("bench --view far", 2, "invalid value 'far' for '--view <WHERE>' [possible values: fit, clipped]");
     fails("bench --passes 1,0", 2, "invalid value '0' for '--passes <N>': 0 is not in 1..=64");
