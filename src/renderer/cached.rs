@@ -1,8 +1,6 @@
-//! What a frame makes before its draws: the control points of the cached construction, by compute, and what follows from them.
+//! The cached construction: frames of rings, and from these control points, by compute.
 
-use super::Renderer;
 use super::lattice::MAX_GROUPS;
-use super::model::Model;
 use super::stages::PatchStages;
 use crate::gpu::{
     ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout, shaders,
@@ -147,56 +145,5 @@ impl CachedPipelines {
             device.cmd_push_constants(cmd, self.layout.raw(), stage, 0, bytes);
             device.cmd_dispatch(cmd, groups.div_ceil(rows), rows, 1);
         }
-    }
-}
-
-impl Renderer {
-    /// Records what makes control points, and vertices where they are evaluated by compute, for draws to read them.
-    ///
-    /// # Safety
-    /// `cmd` is being recorded, outside rendering, after the copies and the barrier that follows them. That and the one
-    /// before the copies have the computation wait for what read the points before.
-    pub(super) unsafe fn cmd_compute(&mut self, cmd: vk::CommandBuffer) {
-        let readers = self.shader_readers();
-        let Self { models, pipelines, context, .. } = self;
-        if !models.values().any(Model::is_stale) {
-            return;
-        }
-        use vk::PipelineStageFlags as Stage;
-        let makers = readers & (Stage::COMPUTE_SHADER | Stage::GEOMETRY_SHADER);
-        let written = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
-            .dst_access_mask(vk::AccessFlags::SHADER_READ)];
-        let none = vk::DependencyFlags::empty();
-        let device = context.device();
-        // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
-        unsafe {
-            for model in models.values().filter(|model| model.is_stale()) {
-                model.cmd_frames(pipelines, cmd);
-            }
-            device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]);
-            for model in models.values().filter(|model| model.is_stale()) {
-                model.cmd_points(pipelines, cmd);
-            }
-            device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]);
-        }
-        for model in models.values_mut().filter(|model| model.is_stale()) {
-            // SAFETY: as above, after the control points.
-            unsafe { model.cmd_evaluate(&pipelines.lattice, cmd) };
-        }
-        let evaluated = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
-            .dst_access_mask(vk::AccessFlags::VERTEX_ATTRIBUTE_READ)];
-        // SAFETY: as the caller promises.
-        unsafe {
-            device.cmd_pipeline_barrier(cmd, makers, Stage::VERTEX_INPUT, none, &evaluated, &[], &[]);
-        }
-    }
-
-    /// Has a model's control points and vertices made anew in the next frame: the bench times them.
-    #[cfg(all(feature = "measure", feature = "headless"))]
-    pub(crate) fn forget_control_points(&mut self, id: super::ModelId) -> Result<(), super::Error> {
-        self.models.get_mut(&id).ok_or(super::Error::NoSuchModel { id })?.forget_points();
-        Ok(())
     }
 }

@@ -146,11 +146,11 @@ impl Renderer {
         let cut = Cut::new(item.factor, item.cull);
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
-            if bound.set != model.set {
-                bound.set = model.set;
+            if bound.set != model.set.raw {
+                bound.set = model.set.raw;
                 let point = vk::PipelineBindPoint::GRAPHICS;
                 let layout = self.pipelines.layout.raw();
-                device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set], &[]);
+                device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set.raw], &[]);
             }
             if style.geometry != Geometry::Surface {
                 constants.colour = item.colors[0];

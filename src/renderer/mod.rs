@@ -35,6 +35,7 @@
 //!
 //! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
 
+mod bindings;
 mod cached;
 mod conversion;
 mod displacement;
@@ -48,6 +49,7 @@ mod model;
 mod model_options;
 mod options;
 mod pipelines;
+mod prepare;
 mod stages;
 mod streamed;
 mod subdivision;
@@ -309,53 +311,6 @@ impl Renderer {
         self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_edge_factors(frame_index, factors)
     }
 
-    /// Records what has to happen before this frame's draws: copies and barriers. Once a frame.
-    ///
-    /// # Errors
-    /// [`Error::NoSuchFrame`]; nothing is recorded then.
-    ///
-    /// # Safety
-    /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
-    /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]). The device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue.
-    pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
-        self.check_frame(frame_index)?;
-        self.views_drawn[frame_index as usize] = 0;
-        for retired in &mut self.retired {
-            retired.frames[frame_index as usize] = false;
-        }
-        self.retired.retain(|retired| retired.frames.contains(&true));
-        let at_rest = |model: &Model| !model.needs_copies(frame_index) && !model.needs_points(frame_index);
-        if self.models.values().all(at_rest) {
-            return Ok(());
-        }
-        let device = self.context.device();
-        let readers = vk::PipelineStageFlags::VERTEX_INPUT | self.shader_readers();
-        let transfer = vk::PipelineStageFlags::TRANSFER;
-        let none = vk::DependencyFlags::empty();
-        let after_copies = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-            .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::INDEX_READ)];
-        let after_writes = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)];
-        // SAFETY: as the caller promises; the copied ranges are of live buffers.
-        unsafe {
-            // The frame before may still read what is overwritten here.
-            device.cmd_pipeline_barrier(cmd, readers | transfer, transfer, none, &after_writes, &[], &[]);
-            self.models.values_mut().for_each(|model| model.mark_stale(frame_index));
-            for model in self.models.values_mut().filter(|model| model.needs_copies(frame_index)) {
-                for staging in model.cmd_copy(device, cmd, frame_index) {
-                    let mut frames = vec![false; self.options.frames_in_flight as usize];
-                    frames[frame_index as usize] = true;
-                    self.retired.push(Retired { frames, _what: RetiredObject::Staging(staging) });
-                }
-            }
-            device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
-            self.cmd_compute(cmd);
-        }
-        Ok(())
-    }
-
     /// The layout that the caller's own descriptor sets are bound with.
     pub fn pipeline_layout(&self) -> vk::PipelineLayout {
         self.pipelines.layout.raw()
@@ -366,20 +321,6 @@ impl Renderer {
         let mut usage = MemoryUsage { views: self.views.size(), ..MemoryUsage::default() };
         self.models.values().for_each(|model| model.add_memory(&mut usage));
         usage
-    }
-
-    /// The shader stages that read what models keep in buffers.
-    fn shader_readers(&self) -> vk::PipelineStageFlags {
-        use vk::PipelineStageFlags as Stage;
-        let mut readers = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER;
-        if self.context.features().geometry {
-            readers |= Stage::GEOMETRY_SHADER;
-        }
-        // The queue may be one that does not compute.
-        if self.models.values().any(Model::computes) {
-            readers |= Stage::COMPUTE_SHADER;
-        }
-        readers
     }
 
     fn model(&self, id: ModelId) -> Result<&Model, Error> {

@@ -1,34 +1,17 @@
 //! A model on the GPU.
 
+use super::bindings::{FRAMES_BINDING, ModelSet, POINTS_BINDING, TEXELS};
 use super::evaluated::check_evaluation;
 use super::lattice::{Lattice, LatticePipelines};
-use super::pipelines::{MODEL_BUFFERS, Pipelines};
+use super::pipelines::Pipelines;
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
 use super::tables::VECTOR_BYTES;
 use super::{DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
-use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
+use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation};
 use crate::table::PatchGroup;
 use ash::vk;
 use std::sync::Arc;
-
-/// Which storage buffers of set 1 shaders see as texel buffers, too, how, and the bytes of a texel: positions, rings, their
-/// entries, their types, corners of patches, frames, control points. GLSL twins: `glsl/lib/positions.glsl`, `rings.glsl`,
-/// `kept_frames.glsl`, `cached.glsl`.
-pub(super) const TEXELS: [(usize, vk::Format, u64); 7] = [
-    (0, vk::Format::R32G32B32A32_SFLOAT, 16),
-    (1, vk::Format::R32G32B32A32_UINT, 16),
-    (2, vk::Format::R32_UINT, 4),
-    (3, vk::Format::R32G32B32A32_SFLOAT, 16),
-    (4, vk::Format::R32G32_UINT, 8),
-    (FRAMES_BINDING, vk::Format::R32G32B32A32_SFLOAT, 16),
-    (POINTS_BINDING, vk::Format::R32G32B32A32_SFLOAT, 16),
-];
-
-/// Of set 1: frames are in the place of the stencil table, which the cached construction does without.
-const FRAMES_BINDING: usize = 5;
-/// Of set 1: control points that are kept.
-const POINTS_BINDING: usize = 12;
 
 /// The largest `minStorageBufferOffsetAlignment` and `minTexelBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
@@ -40,9 +23,7 @@ pub(super) struct Model {
     pub stages: Vec<PatchStages>,
     /// What there are pipelines for, by [`Cut::bit`](super::factor::Cut::bit).
     pub made: u32,
-    pub set: vk::DescriptorSet,
-    _texels: Vec<Owned<vk::BufferView>>,
-    _pool: Owned<vk::DescriptorPool>,
+    pub set: ModelSet,
     /// All tables of the construction and the texture coordinates, one after the other.
     table_buffer: Buffer,
     positions: Streamed,
@@ -175,7 +156,6 @@ impl Model {
             None
         };
 
-        let (pool, set) = descriptor_set(context, pipelines.model_layout.raw(), name)?;
         // By binding.
         fn whole(buffer: &Buffer) -> (&Buffer, u64, u64) {
             (buffer, 0, buffer.size())
@@ -188,18 +168,8 @@ impl Model {
         // Every descriptor has to be written; without factors of its own a model's edges never read any.
         parts.push(whole(corner_factors.as_ref().unwrap_or(&positions).buffer()));
         parts.push(whole(control_points.as_ref().unwrap_or(positions.buffer())));
-        let info = |&(buffer, offset, range): &(&Buffer, _, _)| vk::DescriptorBufferInfo {
-            buffer: buffer.raw(),
-            offset,
-            range,
-        };
-        let buffers: Vec<_> = parts.iter().map(info).collect();
-        let texels = TEXELS.map(|(binding, format, texel)| {
-            let (buffer, offset, bytes) = parts[binding];
-            buffer.texels(format, texel, offset, bytes)
-        });
-        let texels = texels.into_iter().collect::<Result<Vec<_>, _>>()?;
-        write_set(context, set, &buffers, map, &texels);
+        // SAFETY: the buffers live as long as the model, and the map as long as the renderer.
+        let set = unsafe { ModelSet::new(context, pipelines.model_layout.raw(), name, &parts, map)? };
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_vectors(), tables.has_speakers());
         // The control shader knows by its flags.
@@ -214,8 +184,6 @@ impl Model {
             made: 0,
             tables,
             set,
-            _texels: texels,
-            _pool: pool,
             table_buffer,
             positions,
             stored,
@@ -315,7 +283,7 @@ impl Model {
         self.stale = false;
         if let Some(lattice) = &self.lattice {
             // SAFETY: as the caller promises.
-            unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set, &self.stages, &self.tables.plan) };
+            unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set.raw, &self.stages, &self.tables.plan) };
         }
     }
 
@@ -325,7 +293,7 @@ impl Model {
     /// `cmd` is being recorded, outside rendering, after the copies; `pipelines` have those of the model's kinds.
     pub(super) unsafe fn cmd_frames(&self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
         // SAFETY: as the caller promises.
-        unsafe { pipelines.cached.cmd_frames(cmd, self.set, &self.stages, self.tables.kept_frames()) };
+        unsafe { pipelines.cached.cmd_frames(cmd, self.set.raw, &self.stages, self.tables.kept_frames()) };
     }
 
     /// Records what makes the control points.
@@ -333,7 +301,7 @@ impl Model {
     /// # Safety
     /// As [`Model::cmd_frames`], after these.
     pub(super) unsafe fn cmd_points(&self, pipelines: &Pipelines, cmd: vk::CommandBuffer) {
-        let (set, stages, plan) = (self.set, &self.stages, &self.tables.plan);
+        let (set, stages, plan) = (self.set.raw, &self.stages, &self.tables.plan);
         // SAFETY: as the caller promises.
         unsafe {
             match &pipelines.conversion {
@@ -393,65 +361,4 @@ pub(super) fn device_buffer(
 ) -> Result<Buffer, GpuError> {
     let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
     Buffer::new(context, &BufferDesc { name, size, usage, location: MemoryLocation::DeviceLocal })
-}
-
-fn descriptor_set(
-    context: &Arc<DeviceContext>,
-    layout: vk::DescriptorSetLayout,
-    name: &str,
-) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    let count = |ty, descriptor_count| vk::DescriptorPoolSize { ty, descriptor_count };
-    let sizes = [
-        count(vk::DescriptorType::STORAGE_BUFFER, MODEL_BUFFERS as u32),
-        count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1),
-        count(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, TEXELS.len() as u32),
-    ];
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let layouts = [layout];
-    // SAFETY: the pool is taken over by `Owned` and has room for the set.
-    unsafe {
-        let pool = context.device().create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", name)?;
-        let pool = Owned::new(context, pool, name);
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-        let sets = context.device().allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", name)?;
-        context.set_name(sets[0], name);
-        Ok((pool, sets[0]))
-    }
-}
-
-fn write_set(
-    context: &DeviceContext,
-    set: vk::DescriptorSet,
-    buffers: &[vk::DescriptorBufferInfo],
-    map: DisplacementMap,
-    texels: &[Owned<vk::BufferView>],
-) {
-    let image = [vk::DescriptorImageInfo { sampler: map.sampler, image_view: map.view, image_layout: map.layout }];
-    let sampler = vk::WriteDescriptorSet::default()
-        .dst_set(set)
-        .dst_binding(MODEL_BUFFERS as u32)
-        .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
-        .image_info(&image);
-    let views: Vec<_> = texels.iter().map(Owned::raw).collect();
-    let texels = (MODEL_BUFFERS as u32 + 1..).zip(views.chunks(1)).map(|(binding, view)| {
-        vk::WriteDescriptorSet::default()
-            .dst_set(set)
-            .dst_binding(binding)
-            .descriptor_type(vk::DescriptorType::UNIFORM_TEXEL_BUFFER)
-            .texel_buffer_view(view)
-    });
-    let writes: Vec<_> = (0..)
-        .zip(buffers.chunks(1))
-        .map(|(binding, info)| {
-            vk::WriteDescriptorSet::default()
-                .dst_set(set)
-                .dst_binding(binding)
-                .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-                .buffer_info(info)
-        })
-        .chain([sampler])
-        .chain(texels)
-        .collect();
-    // SAFETY: the set is new, the buffers live as long as it, and the map as long as the renderer.
-    unsafe { context.device().update_descriptor_sets(&writes, &[]) };
 }

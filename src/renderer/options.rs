@@ -1,6 +1,7 @@
 //! What the caller says once: where to draw, and how.
 
-use super::pipelines::{CONTROL_COMPONENTS, MODEL_BUFFERS};
+use super::bindings::MODEL_BUFFERS;
+use super::pipelines::CONTROL_COMPONENTS;
 use super::{Error, Evaluation};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, shaders};
 use ash::vk;

@@ -1,10 +1,10 @@
 //! Every pipeline that the models of a renderer need, made when the first such model is added.
 
+use super::bindings::model_layout;
 use super::cached::CachedPipelines;
 use super::conversion::Conversion;
 use super::factor::Cut;
 use super::lattice::{LatticePipelines, VERTEX_PARTS, vertex_bytes};
-use super::model::TEXELS;
 use super::stages::{PatchStages, Sharing, reads_texels, spaced};
 use super::subdivision;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
@@ -83,10 +83,6 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
-/// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
-/// points. The displacement map comes after them, and those in [`TEXELS`] once more as texel buffers.
-pub(super) const MODEL_BUFFERS: usize = 13;
-
 /// Four for each location that the control shaders write to: the last is in `glsl/lib/culling.glsl`.
 pub(super) const CONTROL_COMPONENTS: u32 = 4 * 30;
 
@@ -98,12 +94,8 @@ impl Pipelines {
         capture: Capture,
     ) -> Result<Self, GpuError> {
         let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
-        let model_stages = STAGES | vk::ShaderStageFlags::COMPUTE;
-        let mut model = vec![(vk::DescriptorType::STORAGE_BUFFER, model_stages); MODEL_BUFFERS];
-        model.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, model_stages));
-        model.extend([(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, model_stages); TEXELS.len()]);
         let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
-        let model_layout = descriptor_set_layout(context, "subdiv model", &model)?;
+        let model_layout = model_layout(context)?;
         let mut sets = vec![view_layout.raw(), model_layout.raw()];
         sets.extend(&options.set_layouts);
         let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];

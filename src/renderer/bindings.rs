@@ -1,0 +1,132 @@
+//! The descriptors of set 1: what the shaders of a model read.
+
+use super::DisplacementMap;
+use super::pipelines::STAGES;
+use crate::gpu::{Buffer, DeviceContext, GpuError, Owned, VkResultExt, descriptor_set_layout};
+use ash::vk;
+use std::sync::Arc;
+
+/// Storage buffers of a model: positions, [`ModelTables::bindings`](super::ModelTables), factors of edges, cached control
+/// points. The displacement map comes after them, and those in [`TEXELS`] once more as texel buffers.
+pub(super) const MODEL_BUFFERS: usize = 13;
+
+/// Which storage buffers of set 1 shaders see as texel buffers, too, how, and the bytes of a texel: positions, rings, their
+/// entries, their types, corners of patches, frames, control points. GLSL twins: `glsl/lib/positions.glsl`, `rings.glsl`,
+/// `kept_frames.glsl`, `cached.glsl`.
+pub(super) const TEXELS: [(usize, vk::Format, u64); 7] = [
+    (0, vk::Format::R32G32B32A32_SFLOAT, 16),
+    (1, vk::Format::R32G32B32A32_UINT, 16),
+    (2, vk::Format::R32_UINT, 4),
+    (3, vk::Format::R32G32B32A32_SFLOAT, 16),
+    (4, vk::Format::R32G32_UINT, 8),
+    (FRAMES_BINDING, vk::Format::R32G32B32A32_SFLOAT, 16),
+    (POINTS_BINDING, vk::Format::R32G32B32A32_SFLOAT, 16),
+];
+
+/// Of set 1: frames are in the place of the stencil table, which the cached construction does without.
+pub(super) const FRAMES_BINDING: usize = 5;
+/// Of set 1: control points that are kept.
+pub(super) const POINTS_BINDING: usize = 12;
+
+/// The layout of a [`ModelSet`].
+pub(super) fn model_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::DescriptorSetLayout>, GpuError> {
+    let stages = STAGES | vk::ShaderStageFlags::COMPUTE;
+    let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, stages); MODEL_BUFFERS];
+    bindings.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, stages));
+    bindings.extend([(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, stages); TEXELS.len()]);
+    descriptor_set_layout(context, "subdiv model", &bindings)
+}
+
+/// A descriptor set, with the views that it shows.
+pub(super) struct ModelSet {
+    pub raw: vk::DescriptorSet,
+    _texels: Vec<Owned<vk::BufferView>>,
+    _pool: Owned<vk::DescriptorPool>,
+}
+
+impl ModelSet {
+    /// Of parts of buffers, from an offset on so many bytes each, by binding.
+    ///
+    /// # Safety
+    /// The buffers and the map live as long as the set is used.
+    pub(super) unsafe fn new(
+        context: &Arc<DeviceContext>,
+        layout: vk::DescriptorSetLayout,
+        name: &str,
+        parts: &[(&Buffer, u64, u64)],
+        map: DisplacementMap,
+    ) -> Result<Self, GpuError> {
+        let texels = TEXELS.map(|(binding, format, texel)| {
+            let (buffer, offset, bytes) = parts[binding];
+            buffer.texels(format, texel, offset, bytes)
+        });
+        let texels = texels.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let (pool, raw) = descriptor_set(context, layout, name)?;
+        write_set(context, raw, parts, map, &texels);
+        Ok(Self { raw, _texels: texels, _pool: pool })
+    }
+}
+
+fn descriptor_set(
+    context: &Arc<DeviceContext>,
+    layout: vk::DescriptorSetLayout,
+    name: &str,
+) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
+    let count = |ty, descriptor_count| vk::DescriptorPoolSize { ty, descriptor_count };
+    let sizes = [
+        count(vk::DescriptorType::STORAGE_BUFFER, MODEL_BUFFERS as u32),
+        count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1),
+        count(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, TEXELS.len() as u32),
+    ];
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+    let layouts = [layout];
+    // SAFETY: the pool is taken over by `Owned` and has room for the set.
+    unsafe {
+        let pool = context.device().create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", name)?;
+        let pool = Owned::new(context, pool, name);
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
+        let sets = context.device().allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", name)?;
+        context.set_name(sets[0], name);
+        Ok((pool, sets[0]))
+    }
+}
+
+fn write_set(
+    context: &DeviceContext,
+    set: vk::DescriptorSet,
+    parts: &[(&Buffer, u64, u64)],
+    map: DisplacementMap,
+    texels: &[Owned<vk::BufferView>],
+) {
+    let info =
+        |&(buffer, offset, range): &(&Buffer, _, _)| vk::DescriptorBufferInfo { buffer: buffer.raw(), offset, range };
+    let buffers: Vec<_> = parts.iter().map(info).collect();
+    let image = [vk::DescriptorImageInfo { sampler: map.sampler, image_view: map.view, image_layout: map.layout }];
+    let sampler = vk::WriteDescriptorSet::default()
+        .dst_set(set)
+        .dst_binding(MODEL_BUFFERS as u32)
+        .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+        .image_info(&image);
+    let views: Vec<_> = texels.iter().map(Owned::raw).collect();
+    let texels = (MODEL_BUFFERS as u32 + 1..).zip(views.chunks(1)).map(|(binding, view)| {
+        vk::WriteDescriptorSet::default()
+            .dst_set(set)
+            .dst_binding(binding)
+            .descriptor_type(vk::DescriptorType::UNIFORM_TEXEL_BUFFER)
+            .texel_buffer_view(view)
+    });
+    let writes: Vec<_> = (0..)
+        .zip(buffers.chunks(1))
+        .map(|(binding, info)| {
+            vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .dst_binding(binding)
+                .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                .buffer_info(info)
+        })
+        .chain([sampler])
+        .chain(texels)
+        .collect();
+    // SAFETY: the set is new, the buffers live as long as it, and the map as long as the renderer.
+    unsafe { context.device().update_descriptor_sets(&writes, &[]) };
+}
