@@ -341,7 +341,8 @@ fn wrong_displacement_is_told() {
     let texture = Texture::new(&headless, "flat", &heights(1)).expect("a texture");
     let desc = OffscreenDesc::new(4, 4);
     let target = Target::dynamic(desc.color, desc.depth, desc.samples);
-    let options = Options { evaluations: vec![Evaluation::GeometryTwoPass], ..Options::default() };
+    let options =
+        Options { evaluations: vec![Evaluation::GeometryTwoPass, Evaluation::Geometry], ..Options::default() };
     // SAFETY: nothing is drawn with either.
     let renderers = [(); 2].map(|()| unsafe { Renderer::new(headless.context(), &target, &options) });
     let [mut first, mut second] = renderers.map(|renderer| renderer.expect("a renderer"));
@@ -350,12 +351,16 @@ fn wrong_displacement_is_told() {
     let mesh = shape("creature").expect("built in");
     let error = second.add_model(&mesh, &ModelOptions { displacement, ..ModelOptions::default() }).unwrap_err();
     assert_eq!(error.to_string(), "displacement map 0: this renderer was not told of it: call add_displacement first");
-    let (evaluation, construction) = (Evaluation::GeometryTwoPass, Construction::Cached);
-    let options = ModelOptions { displacement, evaluation, construction, ..ModelOptions::default() };
-    assert_eq!(
-        first.add_model(&mesh, &options).unwrap_err().to_string(),
-        "model 0: Evaluation::GeometryTwoPass does not go with displacement: do without, or choose Evaluation::Tessellation"
-    );
+    for (evaluation, construction, what) in [
+        (Evaluation::GeometryTwoPass, Construction::Cached, "displacement"),
+        (Evaluation::Geometry, Construction::Stencil, "displacement of Construction::Stencil"),
+    ] {
+        let options = ModelOptions { displacement, evaluation, construction, ..ModelOptions::default() };
+        let told = format!(
+            "model 0: Evaluation::{evaluation:?} does not go with {what}: do without, or choose Evaluation::Tessellation"
+        );
+        assert_eq!(first.add_model(&mesh, &options).unwrap_err().to_string(), told);
+    }
     drop((first, second, texture));
     headless.finish_silent();
 }

@@ -42,7 +42,7 @@ void main() {
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
 #endif
 #ifdef TEXCOORD
-    out_texcoord = texcoord_at(first_corner, at);
+    out_texcoord = INTERPOLATED(texcoord, at);
 #endif
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);

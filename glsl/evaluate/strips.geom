@@ -84,7 +84,7 @@ void emit(uint row, uint place) {
     capture_sample(draw.first_patch + patch_number, 0u, 0u, at, surface.position, surface.normal);
 #endif
 #ifdef TEXCOORD
-    out_texcoord = texcoord_at(first_corner, at);
+    out_texcoord = INTERPOLATED(texcoord, at);
 #endif
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);
@@ -147,6 +147,9 @@ void main() {
 #else
     for (uint k = 0u; k < CORNERS; ++k) {
         stencil_points(draw.first_patch + patch_number, k, CORNERS, owned[k]);
+#ifdef TEXCOORD
+        texcoord[k] = texcoords[draw.first_corner + patch_number * CORNERS + k];
+#endif
     }
 #endif
     for (uint row = first.y; row < end.y; ++row) {

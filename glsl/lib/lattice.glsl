@@ -10,19 +10,6 @@
 #endif
 #include "lattice_sample.glsl"
 
-#ifdef TEXCOORD
-layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
-
-// Of a patch whose first corner this is, at a point of it.
-vec2 texcoord_at(uint first_corner, vec3 at) {
-    vec2 of_corners[CORNERS];
-    for (uint k = 0u; k < CORNERS; ++k) {
-        of_corners[k] = texcoords[first_corner + k];
-    }
-    return INTERPOLATED(of_corners, at);
-}
-#endif
-
 // The parameter of vertex i along a side, with 16 bits after the point: from both ends of an edge the same vertices, for
 // `1 - t` is exact. As tessellators that follow Direct3D's have it, which step by a rounded 1 / n; they end at 64 segments.
 float along_side(uint i, uint segments) {

@@ -4,6 +4,11 @@
 
 #include "kinds.glsl"
 
+#ifdef TEXCOORD
+layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
+vec2 texcoord[CORNERS];
+#endif
+
 #ifdef SHARED
 #include "shared_bits.glsl"
 vec3 shared_with[CORNERS][SHARED_VECTORS];
@@ -11,7 +16,6 @@ uint shared_bits[CORNERS];
 #ifdef DISPLACED
 vec2 shared_texcoord[CORNERS][3];
 float shared_lod[CORNERS];
-vec2 texcoord[CORNERS];
 #endif
 #include "edges.glsl"
 
