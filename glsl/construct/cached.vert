@@ -12,6 +12,7 @@
 #define KEPT_FRAMES
 #include "draw.glsl"
 #include "cached.glsl"
+#include "visible.glsl"
 #ifdef SHARED
 #include "shared.glsl"
 #endif
@@ -35,8 +36,8 @@ void main() {
     // Not gl_PrimitiveID: lavapipe restarts it (bug B).
     uint vertex = uint(gl_VertexIndex);
     uint first = uint(gl_InstanceIndex) * draw.patches_per_instance;
-    patch_number = first + vertex / CORNERS;
-    uint corner = draw.first_corner + first * CORNERS + vertex;
+    patch_number = patch_drawn(first + vertex / CORNERS);
+    uint corner = draw.first_corner + patch_number * CORNERS + vertex % CORNERS;
     for (uint i = 0u; i < OWNED; ++i) {
         owned[i] = kept_vector(corner, i);
     }

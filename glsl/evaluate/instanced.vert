@@ -15,6 +15,7 @@
 #include "lattice.glsl"
 #include "read_cached.glsl"
 #include "draw.glsl"
+#include "visible.glsl"
 #ifdef DISPLACED
 #include "displaced.glsl"
 #endif
@@ -29,7 +30,7 @@ layout(location = 2) out vec2 out_texcoord;
 #endif
 
 void main() {
-    uint patch_number = uint(gl_InstanceIndex);
+    uint patch_number = patch_drawn(uint(gl_InstanceIndex));
     uint first_corner = draw.first_corner + patch_number * CORNERS;
     uint segments = uint(draw_factor());
     read_cached(first_corner, segments);

@@ -42,19 +42,11 @@ layout(location = 9) patch out uint captured_patch;
 #ifndef HULL
 #define HULL OWNED
 #endif
+// For the first invocation to put together.
+layout(location = 28) out uint outside[];
+layout(location = 29) out vec4 pixel_box[];
 #include "culling.glsl"
-
-// The factor of the edge from corner k to the next.
-float plus_factor(uint patch_number, uint k, uint next) {
-    switch (metric()) {
-    case METRIC_UNIFORM:
-        return draw_factor();
-    case METRIC_EDGES:
-        return draw_factor() * corner_factors[draw.first_corner + patch_number * CORNERS + k];
-    default:
-        return edge_factor(owned[k][0], CONTROL_POINT(k, 1), CONTROL_POINT(next, 2), owned[next][0]);
-    }
-}
+#include "edge_factors.glsl"
 
 // What is left to do when all control points are written and a barrier is passed. `patch_number` counts within the draw.
 void finish_patch(uint patch_number) {
@@ -64,9 +56,8 @@ void finish_patch(uint patch_number) {
     float asked[CORNERS], outer[CORNERS];
     float largest = 1.0, smallest = MAX_FACTOR;
     for (uint k = 0u; k < CORNERS; ++k) {
-        asked[k] = plus_factor(patch_number, k, k + 1u == CORNERS ? 0u : k + 1u);
-        // What is no number counts as 1.
-        outer[k] = min(max(1.0, asked[k]), MAX_FACTOR);
+        asked[k] = plus_factor(patch_number, k);
+        outer[k] = within_limits(asked[k]);
         largest = max(largest, outer[k]);
         smallest = min(smallest, outer[k]);
     }
@@ -114,7 +105,9 @@ void finish_corner(uint patch_number) {
 #ifdef TEXCOORD
     texcoord[gl_InvocationID] = texcoords[draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID)];
 #endif
-    examine_corner();
+    Examined examined = examine(uint(gl_InvocationID));
+    outside[gl_InvocationID] = examined.outside;
+    pixel_box[gl_InvocationID] = examined.pixel_box;
 #ifdef CAPTURE_POINTS
     for (uint i = 0u; i < OWNED; ++i) {
         capture_point(draw.first_patch + patch_number, uint(gl_InvocationID) * OWNED + i,

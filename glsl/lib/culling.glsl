@@ -1,14 +1,17 @@
 // Patches that cannot be seen. All tests are conservative: a picture is the same with and without.
 //
-// To be included where HULL of the control points that a corner owns are known to enclose the patch together.
+// To be included where CORNERS and the `owned` control points are known, and HULL of those that a corner owns enclose the
+// patch together; and where there are `outside` and `pixel_box` for what `examine` finds at each corner.
 #ifndef CULLING_GLSL
 #define CULLING_GLSL
 
 #include "factors.glsl"
 
-// What a corner's control points say of the patch, for the first invocation to put together.
-layout(location = 28) out uint outside[];      // a bit for each plane that all of them are beyond
-layout(location = 29) out vec4 pixel_box[];    // the least and the largest x and y
+// What a corner's control points say of the patch.
+struct Examined {
+    uint outside;    // a bit for each plane that all of them are beyond
+    vec4 pixel_box;  // the least and the largest x and y
+};
 
 // How far displacement moves a point, at most, in world space.
 float reach() {
@@ -24,18 +27,17 @@ vec4 clip_row(int i) {
 }
 
 #if HULL > 0
-// Writes what the control points of this corner say.
-void examine_corner() {
+Examined examine(uint k) {
+    uint beyond = 63u;
+    vec4 box = vec4(1e30, 1e30, -1e30, -1e30);
     if ((DRAW_FLAGS & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
-        return;
+        return Examined(beyond, box);
     }
     float margin = reach();
     vec4 w = clip_row(3);
     vec4 planes[6] = { w + clip_row(0), w - clip_row(0), w + clip_row(1), w - clip_row(1), clip_row(2), w - clip_row(2) };
-    uint beyond = 63u;
-    vec4 box = vec4(1e30, 1e30, -1e30, -1e30);
     for (int i = 0; i < HULL; ++i) {
-        vec4 at = vec4(to_world(i == 0 ? owned[gl_InvocationID][0] : CONTROL_POINT(gl_InvocationID, i)), 1.0);
+        vec4 at = vec4(to_world(i == 0 ? owned[k][0] : CONTROL_POINT(k, i)), 1.0);
         for (int plane = 0; plane < 6; ++plane) {
             if (dot(planes[plane], at) + margin * length(planes[plane].xyz) >= 0.0) {
                 beyond &= ~(1u << plane);
@@ -49,8 +51,7 @@ void examine_corner() {
             box = vec4(-1e30, -1e30, 1e30, 1e30);
         }
     }
-    outside[gl_InvocationID] = beyond;
-    pixel_box[gl_InvocationID] = box;
+    return Examined(beyond, box);
 }
 
 // Whether no pixel's centre lies within a box.
@@ -206,7 +207,8 @@ bool is_culled(float step) {
     return culled;
 }
 #else
-void examine_corner() {
+Examined examine(uint k) {
+    return Examined(0u, vec4(0.0));
 }
 
 bool is_culled(float step) {

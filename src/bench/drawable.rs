@@ -83,10 +83,18 @@ pub(super) trait Drawable {
         Ok(())
     }
 
-    /// Records the draws of a frame.
+    /// Records what a pass does before it draws.
     ///
     /// # Safety
-    /// `cmd` is being recorded, inside rendering that fits [`Lane::target`], after [`Drawable::cmd_prepare`].
+    /// As [`Drawable::cmd_prepare`], after it.
+    unsafe fn cmd_begin_pass(&mut self, _cmd: vk::CommandBuffer, _frame: &Frame) -> Result<(), BenchError> {
+        Ok(())
+    }
+
+    /// Records the draws of a pass.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, inside rendering that fits [`Lane::target`], after [`Drawable::cmd_begin_pass`].
     unsafe fn cmd_draw(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError>;
 
     fn setup(&self) -> Setup;

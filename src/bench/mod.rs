@@ -175,13 +175,13 @@ impl Contestant {
         Self { path, patches, normals: Normals::Own, cull: Cull::NONE }
     }
 
-    /// The same with each of these normals and cullings that it can be combined with: the tessellation stages cull, and
-    /// normals are shared where the scheme is watertight and [`Evaluation::shares`]. Floors stay as they are.
+    /// The same with each of these normals and cullings that it can be combined with: patches are left out of the tessellation
+    /// stages and of instances, and normals are shared where the scheme is watertight and [`Evaluation::shares`]. Floors stay as they are.
     pub fn variants(self, normals: &[Normals], culls: &[Cull]) -> Vec<Self> {
         if self.path.is_floor() {
             return vec![self];
         }
-        let tessellates = self.path == Path::Tessellation;
+        let culls_any = matches!(self.path, Path::Tessellation | Path::Instanced);
         let shares = match (self.path.evaluation(), self.patches) {
             (Some(evaluation), Some((scheme, construction))) if self.path != Path::AccPublished => {
                 scheme.is_watertight() && evaluation.shares(construction)
@@ -189,7 +189,7 @@ impl Contestant {
             _ => false,
         };
         let normals = normals.iter().filter(|&&normals| normals == Normals::Own || shares);
-        let culls = culls.iter().filter(|&&cull| cull == Cull::NONE || tessellates);
+        let culls = culls.iter().filter(|&&cull| cull == Cull::NONE || culls_any);
         let with = |&normals| culls.clone().map(move |&cull| Self { normals, cull, ..self });
         normals.flat_map(with).collect()
     }

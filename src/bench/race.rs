@@ -139,10 +139,14 @@ impl<'h> Bench<'h> {
         let mut drawable = contestant.open(self.lane(subject))?;
         drawable.set_factor(factor)?;
         // SAFETY: the command buffer is being recorded, outside rendering; each submission is waited for.
-        self.headless.try_submit(|cmd| unsafe { drawable.cmd_prepare(cmd) })?;
+        let frame = scenes[0].frame(factor, Pass::Pixels);
+        self.headless.try_submit(|cmd| unsafe {
+            drawable.cmd_prepare(cmd)?;
+            drawable.cmd_begin_pass(cmd, &frame)
+        })?;
         target.draw(self.headless, [0.0; 4], |cmd| {
             // SAFETY: inside rendering that fits the target, after the frame was prepared.
-            unsafe { drawable.cmd_draw(cmd, &scenes[0].frame(factor, Pass::Pixels)) }
+            unsafe { drawable.cmd_draw(cmd, &frame) }
         })
     }
 
@@ -239,6 +243,7 @@ impl<'h> Bench<'h> {
         unsafe {
             drawable.cmd_prepare(cmd)?;
             for _ in 0..self.options.passes {
+                drawable.cmd_begin_pass(cmd, frame)?;
                 target.cmd_begin(cmd, [0.0; 4]);
                 drawable.cmd_draw(cmd, frame)?;
                 target.cmd_end(cmd);

@@ -4,8 +4,8 @@ use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
 use super::{BenchError, Contestant, Path, published};
 use crate::measure::statistics::Summary;
 use crate::renderer::{
-    Cull, DrawItem, Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Options, Renderer, Style,
-    TableBytes, Target, subdivision_level,
+    Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options, Renderer, Style,
+    TableBytes, Target, VisibleItems, subdivision_level,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -22,6 +22,8 @@ pub(super) struct Surface {
     control_point_bytes: u64,
     evaluation: Evaluation,
     cull: Cull,
+    /// What is drawn of the next pass.
+    visible: Option<VisibleItems>,
 }
 
 impl Surface {
@@ -41,6 +43,7 @@ impl Surface {
             styles,
             evaluations,
             shaders,
+            visible_lists: contestant.cull != Cull::NONE,
             ..Options::default()
         };
         let render_target = Target::dynamic(target.color, target.depth, target.samples);
@@ -71,7 +74,15 @@ impl Surface {
             Ok::<_, Error>(model)
         })?;
         let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
-        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation, cull: contestant.cull })
+        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation, cull: contestant.cull, visible: None })
+    }
+}
+
+impl Surface {
+    fn items(&self, frame: &Frame) -> Vec<DrawItem> {
+        let style = usize::from(frame.pass == Pass::Geometry);
+        let item = DrawItem { style, cull: self.cull, ..DrawItem::new(self.model, frame.factor) };
+        frame.instances.iter().map(|&transform| DrawItem { transform, ..item }).collect()
     }
 }
 
@@ -106,12 +117,23 @@ impl Drawable for Surface {
         Ok(())
     }
 
+    unsafe fn cmd_begin_pass(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
+        if self.cull != Cull::NONE {
+            let items = self.items(frame);
+            // SAFETY: as the caller promises.
+            self.visible = Some(unsafe { self.renderer.cmd_cull(cmd, 0, frame.view, &items)? });
+        }
+        Ok(())
+    }
+
     unsafe fn cmd_draw(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
-        let style = usize::from(frame.pass == Pass::Geometry);
-        let item = DrawItem { style, cull: self.cull, ..DrawItem::new(self.model, frame.factor) };
-        let items: Vec<_> = frame.instances.iter().map(|&transform| DrawItem { transform, ..item }).collect();
         // SAFETY: as the caller promises.
-        unsafe { self.renderer.cmd_draw(cmd, 0, frame.view, &items)? };
+        unsafe {
+            match &self.visible {
+                Some(visible) => self.renderer.cmd_draw_visible(cmd, 0, visible)?,
+                None => self.renderer.cmd_draw(cmd, 0, frame.view, &self.items(frame))?,
+            }
+        }
         Ok(())
     }
 
@@ -120,8 +142,9 @@ impl Drawable for Surface {
     }
 
     fn bytes(&self) -> Vec<TableBytes> {
-        let vertices = self.renderer.memory_usage().vertices;
-        self.bytes.iter().copied().chain((vertices > 0).then_some(("vertices", vertices))).collect()
+        let MemoryUsage { vertices, lists, .. } = self.renderer.memory_usage();
+        let besides = [("vertices", vertices), ("lists", lists)].into_iter().filter(|(_, bytes)| *bytes > 0);
+        self.bytes.iter().copied().chain(besides).collect()
     }
 
     fn control_point_bytes(&self) -> u64 {

@@ -51,6 +51,8 @@ features! {
     statistics = "pipelineStatisticsQuery",
     /// Geometry shaders, the `gl_PrimitiveID` of fragment shaders with them: subdivision of faces.
     geometry = "geometryShader",
+    /// Indirect draws that start at any instance: patches that compute shaders left out.
+    indirect_first_instance = "drawIndirectFirstInstance",
     /// `double` in shaders.
     float64 = "shaderFloat64",
     /// Anisotropic texture filtering.
@@ -72,6 +74,7 @@ impl Features {
         vertex_stores: false,
         statistics: false,
         geometry: false,
+        indirect_first_instance: false,
         float64: false,
         anisotropy: false,
         transform_feedback: false,
@@ -107,6 +110,7 @@ impl Features {
             vertex_stores: core.vertex_pipeline_stores_and_atomics == vk::TRUE,
             statistics: core.pipeline_statistics_query == vk::TRUE,
             geometry: core.geometry_shader == vk::TRUE,
+            indirect_first_instance: core.draw_indirect_first_instance == vk::TRUE,
             float64: core.shader_float64 == vk::TRUE,
             anisotropy: core.sampler_anisotropy == vk::TRUE,
             transform_feedback: feedback.transform_feedback == vk::TRUE,
@@ -136,6 +140,7 @@ impl Features {
             .vertex_pipeline_stores_and_atomics(self.vertex_stores)
             .pipeline_statistics_query(self.statistics)
             .geometry_shader(self.geometry)
+            .draw_indirect_first_instance(self.indirect_first_instance)
             .shader_float64(self.float64)
             .sampler_anisotropy(self.anisotropy);
         let mut v13 = vk::PhysicalDeviceVulkan13Features::default()

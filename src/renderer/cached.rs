@@ -1,5 +1,6 @@
 //! The cached construction: frames of rings, and from these control points, by compute.
 
+use super::factor::Cut;
 use super::lattice::MAX_GROUPS;
 use super::stages::PatchStages;
 use crate::gpu::{
@@ -65,7 +66,7 @@ impl CachedPipelines {
     /// Makes what patches need.
     pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
         let stages = stages.for_control_points();
-        let constants = stages.specialization(0, self.context.properties());
+        let constants = stages.specialization(Cut::default(), self.context.properties());
         self.make_one(Step::frames(stages), shaders::COMPUTE_FRAMES_COMP, &constants)?;
         self.make_one(Step::Points(stages), shaders::named(&stages.control_points())?, &constants)
     }

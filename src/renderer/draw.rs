@@ -5,7 +5,9 @@ use super::factor::{Cull, Cut, Factor};
 use super::gpu_data::DrawConstants;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
-use super::{Error, Evaluation, Geometry, ModelId, Renderer, View, subdivision};
+use super::stages::PatchStages;
+use super::visible::ItemLists;
+use super::{Error, Evaluation, Geometry, ModelId, Renderer, Style, View, subdivision};
 use crate::gpu::{Domain, tessellated_vertices};
 use crate::table::{TILE_VERTICES, lattice_tiles};
 use ash::vk;
@@ -44,6 +46,17 @@ impl DrawItem {
         }
     }
 
+    /// What the shaders know of it, for all patches; `most` is the largest factor of an edge.
+    pub(super) fn constants(&self, model: &Model, most: f32) -> DrawConstants {
+        let [scale, bias] = self.displacement;
+        let value = match self.factor {
+            Factor::Uniform(factor) => factor.min(most),
+            factor => factor.value(),
+        };
+        let flags = model.displacement_flags(self.displacement);
+        DrawConstants { flags, ..DrawConstants::new(&self.transform, [value, scale, bias]) }
+    }
+
     /// All patches in one colour.
     pub fn color(self, color: [f32; 4]) -> Self {
         Self { colors: [color; 4], ..self }
@@ -52,7 +65,7 @@ impl DrawItem {
 
 /// What is bound in a command buffer so far.
 #[derive(Default)]
-struct Bound {
+pub(super) struct Bound {
     pipeline: vk::Pipeline,
     set: vk::DescriptorSet,
 }
@@ -76,25 +89,37 @@ impl Renderer {
         items: &[DrawItem],
     ) -> Result<(), Error> {
         self.check_frame(frame_index)?;
-        let max = self.options.views_per_frame;
-        let drawn = &mut self.views_drawn[frame_index as usize];
-        if *drawn >= max {
-            return Err(Error::TooManyViews { frame: frame_index, max });
-        }
-        let offset = self.view_stride * (u64::from(frame_index) * u64::from(max) + u64::from(*drawn));
-        *drawn += 1;
-        self.views.write(offset, &[view.data()])?;
-        let (device, layout) = (self.context.device(), self.pipelines.layout.raw());
-        let point = vk::PipelineBindPoint::GRAPHICS;
+        let offset = self.take_view(frame_index, view)?;
+        let set = self.lists[frame_index as usize].set;
         // SAFETY: as the caller promises.
-        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 0, &[self.view_set], &[offset as u32]) };
+        unsafe { self.cmd_bind_view(cmd, set, [offset, 0]) };
         let mut bound = Bound::default();
         for item in items {
             self.make_pipelines(item.model, item.factor, item.cull)?;
             // SAFETY: as the caller promises.
-            unsafe { self.cmd_draw_item(cmd, view, item, &mut bound)? };
+            unsafe { self.cmd_draw_item(cmd, view, item, None, &mut bound)? };
         }
         Ok(())
+    }
+
+    /// Writes what the shaders know of a view, and tells where that is.
+    pub(super) fn take_view(&mut self, frame: u32, view: &View) -> Result<u32, Error> {
+        let max = self.options.views_per_frame;
+        let drawn = &mut self.views_drawn[frame as usize];
+        if *drawn >= max {
+            return Err(Error::TooManyViews { frame, max });
+        }
+        let offset = self.view_stride * (u64::from(frame) * u64::from(max) + u64::from(*drawn));
+        *drawn += 1;
+        self.views.write(offset, &[view.data()])?;
+        Ok(offset as u32)
+    }
+
+    /// Binds set 0, with the offsets of the view and of a list of patches.
+    pub(super) unsafe fn cmd_bind_view(&self, cmd: vk::CommandBuffer, set: vk::DescriptorSet, offsets: [u32; 2]) {
+        let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, self.pipelines.layout.raw());
+        // SAFETY: as the caller of `cmd_draw` promises.
+        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, layout, 0, &[set], &offsets) };
     }
 
     /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor (but each
@@ -106,9 +131,16 @@ impl Renderer {
     pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
         let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
         let cut = Cut::new(factor, cull);
-        if model.made & cut.bit() == 0 {
-            self.pipelines.make(&model.stages, cut)?;
-            model.made |= cut.bit();
+        let lists = self.options.visible_lists && cull != Cull::NONE && model.is_listed();
+        let of_lists = [Cut::new(factor, Cull::NONE), Cut::listed(factor)].into_iter().filter(|_| lists);
+        for each in of_lists.chain([cut]) {
+            if model.made & each.bit() == 0 {
+                self.pipelines.make(&model.stages, each)?;
+                model.made |= each.bit();
+            }
+        }
+        for &stages in model.stages.iter().filter(|stages| lists && stages.has_hull()) {
+            self.pipelines.lists.make(stages, cut)?;
         }
         // A factor that is none of a level is told by the draw.
         if model.evaluation == Evaluation::Subdivision
@@ -119,31 +151,25 @@ impl Renderer {
         Ok(())
     }
 
-    unsafe fn cmd_draw_item(
+    /// Records the draws of an item, of the patches on lists where there are lists.
+    ///
+    /// # Safety
+    /// As [`Renderer::cmd_draw`], with set 0 bound.
+    pub(super) unsafe fn cmd_draw_item(
         &self,
         cmd: vk::CommandBuffer,
         view: &View,
         item: &DrawItem,
+        lists: Option<ItemLists>,
         bound: &mut Bound,
     ) -> Result<(), Error> {
-        let id = item.model;
-        let model = self.model(id)?;
-        let styles = self.pipelines.styles();
-        let style = styles.get(item.style).ok_or(Error::NoSuchStyle { given: item.style, count: styles.len() })?;
-        if !model.prepared {
-            return Err(Error::NotPrepared { id });
-        }
-        let most = self.check_item(view, item, model)?;
+        let (model, style) = (self.model(item.model)?, self.style(item)?);
+        let most = self.check_item(view, item)?;
         let device = self.context.device();
-        let properties = self.context.properties();
-        let [scale, bias] = item.displacement;
-        let value = match item.factor {
-            Factor::Uniform(factor) => factor.min(most),
-            factor => factor.value(),
-        };
-        let mut constants = DrawConstants::new(&item.transform, [value, scale, bias]);
-        constants.flags = model.displacement_flags(item.displacement);
-        let cut = Cut::new(item.factor, item.cull);
+        let mut constants = item.constants(model, most);
+        let lists = lists.filter(|lists| !lists.is_empty());
+        let cull = if lists.is_some() { Cull::NONE } else { item.cull };
+        let cut = Cut::new(item.factor, cull);
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
             if bound.set != model.set.raw {
@@ -177,20 +203,22 @@ impl Renderer {
                 Drawn::Subdivided { .. } => {}
             }
             for (number, (&stages, group)) in model.stages.iter().zip(model.tables.plan().groups()).enumerate() {
+                constants.colour = item.colors[stages.kind as usize];
+                if let Some(lists) = lists.filter(|_| stages.has_hull()) {
+                    self.cmd_draw_lists(cmd, lists, (item, model, number), &constants, bound);
+                    continue;
+                }
                 let geometry = match drawn {
                     Drawn::Subdivided { level } => GeometryKey::Subdivision(level),
                     _ => stages.geometry(cut),
                 };
                 self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
-                constants.colour = item.colors[stages.kind as usize];
                 constants.first_corner = group.first_corner as u32;
                 constants.first_patch = group.patches.start as u32;
                 let patches = group.patches.len() as u32;
                 match drawn {
                     Drawn::Patches => {
-                        let domain = if stages.kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
-                        let level = properties.max_tessellation_level;
-                        let vertices = tessellated_vertices(domain, stages.spacing, most, level);
+                        let vertices = self.vertices_of_patch(stages, most);
                         self.cmd_draw_batches(cmd, &mut constants, patches, stages.input_points(), vertices);
                     }
                     Drawn::Subdivided { level } => {
@@ -240,9 +268,31 @@ impl Renderer {
         }
     }
 
-    /// Tells whether the numbers of an item make sense. Gives the largest factor that any edge may have.
-    fn check_item(&self, view: &View, item: &DrawItem, model: &Model) -> Result<f32, Error> {
+    /// The most vertices that the tessellation stages make of a patch whose factors are at most this.
+    fn vertices_of_patch(&self, stages: PatchStages, most: f32) -> u32 {
+        let domain = if stages.kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
+        tessellated_vertices(domain, stages.spacing, most, self.context.properties().max_tessellation_level)
+    }
+
+    /// How many of so many patches an instance of a draw through the tessellation stages has.
+    pub(super) fn patches_per_instance(&self, stages: PatchStages, patches: u32, most: f32) -> u32 {
+        let rule = self.context.properties().patch_batch;
+        rule.patches_per_instance(patches, stages.input_points(), self.vertices_of_patch(stages, most))
+    }
+
+    pub(super) fn style(&self, item: &DrawItem) -> Result<&Style, Error> {
+        let styles = self.pipelines.styles();
+        styles.get(item.style).ok_or(Error::NoSuchStyle { given: item.style, count: styles.len() })
+    }
+
+    /// Tells whether an item can be drawn. Gives the largest factor that any edge may have.
+    pub(super) fn check_item(&self, view: &View, item: &DrawItem) -> Result<f32, Error> {
         let (id, factor) = (item.model, item.factor);
+        let model = self.model(id)?;
+        self.style(item)?;
+        if !model.prepared {
+            return Err(Error::NotPrepared { id });
+        }
         if !factor.is_valid() {
             return Err(Error::BadFactor { id, factor });
         }
@@ -264,7 +314,7 @@ impl Renderer {
         }
     }
 
-    unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {
+    pub(super) unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {
         // Every pipeline of the model was made before.
         if let Some(pipeline) = self.pipelines.get(key)
             && bound.pipeline != pipeline
@@ -275,7 +325,7 @@ impl Renderer {
         }
     }
 
-    unsafe fn push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
+    pub(super) unsafe fn push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
         let layout = self.pipelines.layout.raw();
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe { self.context.device().cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(constants)) };

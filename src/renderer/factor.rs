@@ -56,7 +56,8 @@ impl Factor {
     }
 }
 
-/// Which patches the control shader leaves out. No choice changes the factors of the patches that stay.
+/// Which patches are left out: by the control shader, or before by compute ([`Renderer::cmd_cull`](super::Renderer::cmd_cull)). No
+/// choice changes the factors of the patches that stay.
 ///
 /// Pm- and c-patches are never left out, triangles only by the frustum and as small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -79,16 +80,33 @@ impl Cull {
     pub const ALL: Self = Self { frustum: true, back: true, small: true };
 }
 
-/// What the control shader does to cut a patch or to leave it out: each has pipelines of its own.
+/// How the patches of a draw are cut and which of them are drawn: each way has pipelines of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(super) struct Cut {
     metric: u32,
+    /// Those that the control shader leaves out.
     cull: Cull,
+    /// Whether only those on a list are drawn.
+    listed: bool,
 }
 
 impl Cut {
     pub(super) fn new(factor: Factor, cull: Cull) -> Self {
-        Self { metric: factor.metric(), cull }
+        Self { metric: factor.metric(), cull, listed: false }
+    }
+
+    /// For draws of the patches on a list.
+    pub(super) fn listed(factor: Factor) -> Self {
+        Self { listed: true, ..Self::new(factor, Cull::NONE) }
+    }
+
+    pub(super) fn is_listed(self) -> bool {
+        self.listed
+    }
+
+    /// Of draws where nothing is left for a control shader to do.
+    pub(super) fn without_control(self) -> Self {
+        Self { listed: self.listed, ..Self::default() }
     }
 
     /// GLSL twin: `DRAW_FLAGS` in `glsl/lib/factors.glsl`.
@@ -98,8 +116,8 @@ impl Cut {
         self.metric | u32::from(frustum) << 2 | u32::from(back) << 3 | u32::from(small) << 4
     }
 
-    /// A bit of its own among 32.
-    pub(super) fn bit(self) -> u32 {
-        1 << self.flags()
+    /// A bit of its own among 64.
+    pub(super) fn bit(self) -> u64 {
+        1 << (self.flags() | u32::from(self.listed) << 5)
     }
 }

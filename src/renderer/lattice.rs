@@ -1,6 +1,7 @@
 //! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
 
 use super::model::{device_buffer, upload_buffer};
+use super::factor::Cut;
 use super::stages::{PatchStages, Sharing};
 use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{
@@ -84,7 +85,7 @@ impl LatticePipelines {
             return Ok(());
         }
         let name = stages.evaluation(Capture::Off, self.texcoords);
-        let constants = stages.specialization(0, self.context.properties());
+        let constants = stages.specialization(Cut::default(), self.context.properties());
         let desc = ComputePipelineDesc {
             name: &format!("subdiv {name}"),
             layout: self.layout.raw(),
@@ -232,6 +233,11 @@ impl Lattice {
                 }
             }
         }
+    }
+
+    /// How many indices a patch of a group has, and the first.
+    pub(super) fn indices_of_patch(&self, group: usize) -> (u32, u32) {
+        (self.groups[group].indices, self.groups[group].first_index)
     }
 
     /// Binds what all groups are drawn from.

@@ -8,7 +8,8 @@
 //! 2. [`Renderer::set_positions`] writes this frame's control vertices, if they move.
 //! 3. [`Renderer::cmd_prepare`], outside rendering, records the copies and barriers. Once a frame.
 //! 4. [`Renderer::cmd_draw`], inside rendering, records the draws of one view: for every model its regular patches,
-//!    irregular quads and triangles. As often as there are views.
+//!    irregular quads and triangles. As often as there are views. Or, to draw only what can be seen of models whose control points
+//!    are cached, [`Renderer::cmd_cull`] outside rendering and [`Renderer::cmd_draw_visible`] inside.
 //!
 //! | pass | reads | writes |
 //! |---|---|---|
@@ -16,13 +17,14 @@
 //! | compute, cached | rings and their weights, positions | a frame for each ring, if the vertices moved |
 //! | compute, cached | those, patch corners, rings, positions | control points, and what corners share |
 //! | compute, evaluation | control points, what corners share | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
+//! | compute, culling | control points, the view | which patches can be seen: lists, and indirect draws of them |
 //! | GS, two passes | vertices and weights of the patches, positions | control points of models that are [`Evaluation::GeometryTwoPass`], if the vertices moved |
 //! | VS, evaluated | vertices; the displacement map | position, normal, texture coordinate |
-//! | VS, instanced | control points, what corners share; the displacement map | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
+//! | VS, instanced | lists of patches; control points, what corners share; the displacement map | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
 //! | GS | vertices and weights of the patch, positions; or control points | strips of models that are [`Evaluation::Geometry`], which have only VS (the number of a tile) and FS besides |
 //! | VS, two-stage | patch corners, rings and their weights, positions | what a corner of a patch takes from its ring: limit point, edge vectors, transversals and the like, what it shares |
 //! | VS, stencil | nothing | the number of the patch, for each patch |
-//! | VS, cached | control points, what corners share; displaced, frames | those, and levels of the map |
+//! | VS, cached | lists of patches; control points, what corners share; displaced, frames | those, and levels of the map |
 //! | TCS, two-stage | what its corners took from their rings | control points, factors |
 //! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
 //! | TCS, cached | what VS has | control points, factors |
@@ -45,6 +47,7 @@ mod evaluated;
 mod factor;
 mod gpu_data;
 mod lattice;
+mod lists;
 mod model;
 mod model_options;
 mod options;
@@ -55,6 +58,7 @@ mod streamed;
 mod subdivision;
 mod tables;
 mod view;
+mod visible;
 
 pub use displacement::{DisplacementId, DisplacementMap};
 pub use draw::DrawItem;
@@ -65,6 +69,7 @@ pub use model_options::{Construction, Evaluation, ModelOptions};
 pub use options::{ColorEncoding, Fragment, Geometry, Options, Pass, Requirements, Style, Target, check, requirements};
 pub use tables::{Edges, ModelTables, TableBytes};
 pub use view::{MeasuredFrom, View};
+pub use visible::VisibleItems;
 
 pub(crate) use pipelines::Capture;
 #[cfg(feature = "headless")]
@@ -76,7 +81,7 @@ pub(crate) use {
     subdivision::level as subdivision_level,
 };
 
-use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
+use crate::gpu::{Buffer, BufferDesc, DeviceContext, MemoryLocation};
 use crate::mesh::ControlMesh;
 use crate::table::Notice;
 use ash::vk;
@@ -84,6 +89,7 @@ use displacement::Displacements;
 #[cfg(not(all(feature = "measure", feature = "headless")))]
 use gpu_data::ViewData;
 use lattice::Lattice;
+use lists::FrameLists;
 use model::{Model, Surroundings};
 use pipelines::Pipelines;
 use std::collections::HashMap;
@@ -108,6 +114,8 @@ pub struct MemoryUsage {
     pub control_meshes: u64,
     /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
     pub staging: u64,
+    /// Lists of the patches that can be seen, on the device.
+    pub lists: u64,
     /// What the host writes for each view.
     pub views: u64,
 }
@@ -120,6 +128,7 @@ impl MemoryUsage {
             + self.control_points
             + self.vertices
             + self.control_meshes
+            + self.lists
             + self.staging
             + self.views
     }
@@ -137,6 +146,7 @@ enum RetiredObject {
     Model(Box<Model>),
     Staging(Buffer),
     Lattice(Box<Lattice>),
+    Lists(Box<FrameLists>),
 }
 
 /// Draws subdivision surfaces into the caller's command buffers.
@@ -152,8 +162,10 @@ pub struct Renderer {
     retired: Vec<Retired>,
     views: Buffer,
     view_stride: u64,
-    view_set: vk::DescriptorSet,
-    _view_pool: Owned<vk::DescriptorPool>,
+    /// Of each frame.
+    lists: Vec<FrameLists>,
+    /// How often each frame was prepared.
+    preparations: Vec<u64>,
     /// Views drawn in each frame since it was prepared.
     views_drawn: Vec<u32>,
 }
@@ -191,11 +203,12 @@ impl Renderer {
             &BufferDesc {
                 name: "subdiv views",
                 size: count * view_stride,
-                usage: vk::BufferUsageFlags::UNIFORM_BUFFER,
+                usage: vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER,
                 location: MemoryLocation::Upload,
             },
         )?;
-        let (pool, view_set) = view_set(context, pipelines.view_layout.raw(), &views)?;
+        let lists = |_| FrameLists::new(context, pipelines.view_layout.raw(), &views, 0);
+        let lists = (0..options.frames_in_flight).map(lists).collect::<Result<_, _>>()?;
         Ok(Self {
             context: context.clone(),
             options: options.clone(),
@@ -206,8 +219,8 @@ impl Renderer {
             retired: Vec::new(),
             views,
             view_stride,
-            view_set,
-            _view_pool: pool,
+            lists,
+            preparations: vec![0; options.frames_in_flight as usize],
             views_drawn: vec![0; options.frames_in_flight as usize],
         })
     }
@@ -318,7 +331,8 @@ impl Renderer {
 
     /// Bytes of all models together.
     pub fn memory_usage(&self) -> MemoryUsage {
-        let mut usage = MemoryUsage { views: self.views.size(), ..MemoryUsage::default() };
+        let lists = self.lists.iter().map(FrameLists::bytes).sum();
+        let mut usage = MemoryUsage { views: self.views.size(), lists, ..MemoryUsage::default() };
         self.models.values().for_each(|model| model.add_memory(&mut usage));
         usage
     }
@@ -330,29 +344,5 @@ impl Renderer {
     fn check_frame(&self, given: u32) -> Result<(), Error> {
         let frames = self.options.frames_in_flight;
         if given < frames { Ok(()) } else { Err(Error::NoSuchFrame { given, frames }) }
-    }
-}
-
-fn view_set(
-    context: &Arc<DeviceContext>,
-    layout: vk::DescriptorSetLayout,
-    views: &Buffer,
-) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    let ty = vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC;
-    let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: 1 }];
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let layouts = [layout];
-    let buffers = [vk::DescriptorBufferInfo { buffer: views.raw(), offset: 0, range: size_of::<ViewData>() as u64 }];
-    // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
-    unsafe {
-        let device = context.device();
-        let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", "subdiv views")?;
-        let pool = Owned::new(context, pool, "subdiv views");
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-        let sets = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", "subdiv views")?;
-        let write =
-            vk::WriteDescriptorSet::default().dst_set(sets[0]).dst_binding(0).descriptor_type(ty).buffer_info(&buffers);
-        device.update_descriptor_sets(&[write], &[]);
-        Ok((pool, sets[0]))
     }
 }

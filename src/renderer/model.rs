@@ -22,7 +22,7 @@ pub(super) struct Model {
     /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
     /// What there are pipelines for, by [`Cut::bit`](super::factor::Cut::bit).
-    pub made: u32,
+    pub made: u64,
     pub set: ModelSet,
     /// All tables of the construction and the texture coordinates, one after the other.
     table_buffer: Buffer,
@@ -251,6 +251,11 @@ impl Model {
     /// Whether compute shaders make something of it.
     pub(super) fn computes(&self) -> bool {
         self.control_points.is_some() && self.evaluation != Evaluation::GeometryTwoPass
+    }
+
+    /// Whether compute shaders can list the patches of it that can be seen.
+    pub(super) fn is_listed(&self) -> bool {
+        self.computes() && matches!(self.evaluation, Evaluation::Tessellation | Evaluation::Instanced)
     }
 
     /// Has the control points computed anew in the next frame, even though nothing moved.

@@ -2,6 +2,7 @@
 
 use super::bindings::MODEL_BUFFERS;
 use super::pipelines::CONTROL_COMPONENTS;
+use super::visible::LIST_FEATURES;
 use super::{Error, Evaluation};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, shaders};
 use ash::vk;
@@ -180,6 +181,9 @@ pub struct Options {
     /// What models will be evaluated by, besides the tessellation stages: [`requirements`] lists what the device must have for
     /// it.
     pub evaluations: Vec<Evaluation>,
+    /// Whether [`Renderer::cmd_cull`](super::Renderer::cmd_cull) will be called: [`requirements`] lists what the device must have
+    /// for it.
+    pub visible_lists: bool,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
     /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]): such
@@ -199,6 +203,7 @@ impl Default for Options {
             styles: vec![Style::default()],
             texcoords: false,
             evaluations: Vec::new(),
+            visible_lists: false,
             set_layouts: Vec::new(),
             shaders: Vec::new(),
             pipeline_cache: vk::PipelineCache::null(),
@@ -231,7 +236,7 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
         dynamic_rendering: matches!(target.pass, Pass::Dynamic { .. }),
         fill_mode_non_solid: options.styles.iter().any(|s| s.wireframe),
         wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
-        ..Features::NONE
+        ..if options.visible_lists { LIST_FEATURES } else { Features::NONE }
     };
     let features = options.evaluations.iter().fold(features, |all, evaluation| all.union(evaluation.features()));
     Requirements { api_version: vk::API_VERSION_1_3, features, device_extensions: features.extensions() }
@@ -276,7 +281,7 @@ pub(super) fn check_properties(
         missing.push(format!("{} samples a pixel (it has {})", target.samples.as_raw(), counts.join(", ")));
     }
     for (what, least, has) in [
-        // Evaluation by compute has its vertices besides.
+        // Draws may have lists of patches besides, evaluation by compute its vertices.
         ("storage buffers a shader stage", MODEL_BUFFERS as u32 + 1, properties.max_stage_storage_buffers),
         ("numbers a vertex from the control shader", CONTROL_COMPONENTS, properties.max_control_components),
     ] {

@@ -5,12 +5,13 @@ use super::cached::CachedPipelines;
 use super::conversion::Conversion;
 use super::factor::Cut;
 use super::lattice::{LatticePipelines, VERTEX_PARTS, vertex_bytes};
+use super::lists::{ListPipelines, view_layout};
 use super::stages::{PatchStages, Sharing, reads_texels, spaced};
 use super::subdivision;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
-    descriptor_set_layout, pipeline_layout, shaders,
+    pipeline_layout, shaders,
 };
 use ash::vk;
 use std::collections::HashMap;
@@ -71,6 +72,8 @@ pub(super) struct Pipelines {
     pub conversion: Option<Conversion>,
     /// For what evaluation by compute does.
     pub lattice: LatticePipelines,
+    /// For patches that are left out before draws.
+    pub lists: ListPipelines,
     made: HashMap<PipelineKey, Owned<vk::Pipeline>>,
 }
 
@@ -93,8 +96,7 @@ impl Pipelines {
         options: &Options,
         capture: Capture,
     ) -> Result<Self, GpuError> {
-        let view = [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, STAGES)];
-        let view_layout = descriptor_set_layout(context, "subdiv view", &view)?;
+        let view_layout = view_layout(context)?;
         let model_layout = model_layout(context)?;
         let mut sets = vec![view_layout.raw(), model_layout.raw()];
         sets.extend(&options.set_layouts);
@@ -104,6 +106,7 @@ impl Pipelines {
         let sets = [view_layout.raw(), model_layout.raw()];
         let cached = CachedPipelines::new(context, sets, options.pipeline_cache)?;
         let lattice = LatticePipelines::new(context, sets, options.pipeline_cache, options.texcoords)?;
+        let lists = ListPipelines::new(context, sets, options.pipeline_cache)?;
         Ok(Self {
             context: context.clone(),
             target: target.clone(),
@@ -118,6 +121,7 @@ impl Pipelines {
             cached,
             conversion: None,
             lattice,
+            lists,
             made: HashMap::new(),
         })
     }
@@ -215,7 +219,7 @@ impl Pipelines {
                 let name = format!("subdiv style {} {patch:?}", key.style);
                 let fragment = fragment(style, patch.sharing, &encode);
                 let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
-                let constants = patch.specialization(cut.flags(), properties);
+                let constants = patch.specialization(cut, properties);
                 match patch.evaluation {
                     Evaluation::Tessellation => {
                         self.create_tessellating(&name, key, patch, &constants, evaluation, fragment)?

@@ -18,6 +18,8 @@ impl Renderer {
     pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         self.views_drawn[frame_index as usize] = 0;
+        self.lists[frame_index as usize].clear();
+        self.preparations[frame_index as usize] += 1;
         for retired in &mut self.retired {
             retired.frames[frame_index as usize] = false;
         }

@@ -2,7 +2,7 @@
 
 use super::factor::Cut;
 use super::pipelines::GeometryKey;
-use super::{Capture, Construction, Cull, Evaluation, Factor};
+use super::{Capture, Construction, Evaluation};
 use crate::gpu::{DeviceProperties, Spacing, Specialization};
 use crate::patch::Scheme;
 use crate::topology::PatchKind;
@@ -83,8 +83,7 @@ impl PatchStages {
         match self.evaluation {
             Evaluation::Compute => GeometryKey::Evaluated { displaced: self.sharing == Sharing::Displacement },
             Evaluation::Tessellation => GeometryKey::Patches(self, cut),
-            // Neither adaptive nor culled.
-            _ => GeometryKey::Patches(self, Cut::new(Factor::Uniform(1.0), Cull::NONE)),
+            _ => GeometryKey::Patches(self, cut.without_control()),
         }
     }
 
@@ -127,18 +126,38 @@ impl PatchStages {
         format!("CONSTRUCT_TWO_STAGE_VERT{inner}{sharing}")
     }
 
-    /// What the vertex and the control shader of draws with these flags are specialized to.
-    pub(super) fn specialization(self, flags: u32, device: &DeviceProperties) -> [Specialization; 9] {
+    /// Whether its control points enclose it, so that they tell whether it can be seen. GLSL twin: `HULL` in
+    /// `glsl/lib/culling.glsl`.
+    pub(super) fn has_hull(self) -> bool {
+        !matches!(files(self.scheme, self.kind)[0], "PM")
+    }
+
+    /// What tells apart the pipelines that look which patches can be seen.
+    pub(super) fn for_culling(self) -> Self {
+        Self { sharing: Sharing::Positions, has_speakers: false, ..self.for_control_points() }
+    }
+
+    /// The name of the shader that looks which patches can be seen.
+    pub(super) fn culling(self) -> String {
+        match self.scheme.owned(self.kind) {
+            4 => "COMPUTE_CULL_COMP".to_owned(),
+            owned => format!("COMPUTE_CULL_COMP_OWNED_{owned}{}", self.domain_suffix()),
+        }
+    }
+
+    /// What the shaders of draws that are cut so are specialized to, but for those that evaluate and shade.
+    pub(super) fn specialization(self, cut: Cut, device: &DeviceProperties) -> [Specialization; 10] {
         [
             Specialization::uint(0, self.kind.corners() as u32),
             Specialization::float(2, device.max_tessellation_level as f32),
             Specialization::uint(3, self.stride),
-            Specialization::uint(4, flags),
+            Specialization::uint(4, cut.flags()),
             Specialization::bool(5, self.scheme == Scheme::GregoryFitted),
             Specialization::bool(6, self.scheme.has_pentagons()),
             Specialization::bool(7, self.has_speakers),
             Specialization::bool(8, self.edge_factors),
             reads_texels(device),
+            Specialization::bool(10, cut.is_listed()),
         ]
     }
 
@@ -251,13 +270,14 @@ mod tests {
                 };
                 for (capture, texcoords) in modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]) {
                     let made = [stages.vertex(capture), stages.control(capture, texcoords), stages.control_points()];
+                    let culling = stages.has_hull().then(|| stages.culling());
                     let watched = match evaluation {
                         Evaluation::Tessellation => true,
                         Evaluation::Compute => capture == Capture::Off,
                         _ => matches!(capture, Capture::Off | Capture::Vertices),
                     };
                     let evaluation = watched.then(|| stages.evaluation(capture, texcoords));
-                    for name in made.into_iter().filter(|_| tessellates).chain(evaluation) {
+                    for name in made.into_iter().filter(|_| tessellates).chain(culling).chain(evaluation) {
                         assert!(shaders::find(&name).is_some(), "{name}");
                     }
                 }

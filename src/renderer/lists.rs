@@ -1,0 +1,248 @@
+//! Lists of the patches that can be seen, made by compute: pipelines, memory, dispatches. See [`super::visible`].
+
+use super::factor::Cut;
+use super::gpu_data::{DrawConstants, ViewData};
+use super::model::device_buffer;
+use super::stages::PatchStages;
+use crate::gpu::{
+    Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
+    pipeline_layout, shaders,
+};
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The most patches of a list. One workgroup makes it.
+pub(super) const MAX_PATCHES: u32 = 8192;
+/// Bytes of a list before its patches. GLSL twin: `Visible` in `glsl/lib/visible.glsl`.
+const HEADER_BYTES: u64 = 4 * 8;
+/// Bytes of a list for each of its patches: its place on the list, and whether it can be seen.
+const PATCH_BYTES: u64 = 4 * 2;
+/// What shaders see from the start of a list on.
+const RANGE: u64 = HEADER_BYTES + PATCH_BYTES * MAX_PATCHES as u64;
+/// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
+const ALIGNMENT: u64 = 256;
+/// Invocations in a workgroup of `glsl/compute/cull.comp`.
+const GROUP: u32 = 64;
+
+/// From one command of a list to the next.
+pub(super) const COMMAND_BYTES: u32 = size_of::<vk::DrawIndirectCommand>() as u32;
+
+/// Bytes of a list of so many patches, up to the next.
+pub(super) fn list_bytes(patches: u32) -> u64 {
+    (HEADER_BYTES + PATCH_BYTES * u64::from(patches)).next_multiple_of(ALIGNMENT)
+}
+
+/// What the indirect draws of a list are: push constants. GLSL twin: `Pack` in `glsl/compute/pack.comp`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(super) struct Pack {
+    /// Of all patches.
+    pub count: u32,
+    /// Vertices of a patch in a draw: the points of its corners, or the indices of a lattice.
+    pub vertices: u32,
+    /// Of a lattice.
+    pub first_index: u32,
+    /// 0 for indexed draws with an instance for each patch.
+    pub patches_per_instance: u32,
+}
+
+/// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
+pub(super) fn view_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::DescriptorSetLayout>, GpuError> {
+    let stages = super::pipelines::STAGES | vk::ShaderStageFlags::COMPUTE;
+    let bindings = [
+        (vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, stages),
+        (vk::DescriptorType::STORAGE_BUFFER_DYNAMIC, stages),
+    ];
+    descriptor_set_layout(context, "subdiv view", &bindings)
+}
+
+/// The lists of a frame, and set 0 with them.
+pub(super) struct FrameLists {
+    pub set: vk::DescriptorSet,
+    _pool: Owned<vk::DescriptorPool>,
+    buffer: Option<Buffer>,
+    used: u64,
+}
+
+impl FrameLists {
+    /// With room for lists of so many bytes.
+    pub(super) fn new(
+        context: &Arc<DeviceContext>,
+        layout: vk::DescriptorSetLayout,
+        views: &Buffer,
+        bytes: u64,
+    ) -> Result<Self, GpuError> {
+        use vk::BufferUsageFlags as Usage;
+        let usage = Usage::STORAGE_BUFFER | Usage::INDIRECT_BUFFER;
+        let make = || device_buffer(context, "subdiv lists of patches", bytes + RANGE, usage);
+        let buffer = (bytes > 0).then(make).transpose()?;
+        // Every descriptor has to be written; without lists no draw reads any.
+        let lists = buffer.as_ref().map_or((views.raw(), 4), |lists| (lists.raw(), RANGE));
+        let (pool, set) = view_set(context, layout, [(views.raw(), size_of::<ViewData>() as u64), lists])?;
+        Ok(Self { set, _pool: pool, buffer, used: 0 })
+    }
+
+    /// Forgets the lists that there are.
+    pub(super) fn clear(&mut self) {
+        self.used = 0;
+    }
+
+    /// Bytes that lists may take.
+    pub(super) fn capacity(&self) -> u64 {
+        self.buffer.as_ref().map_or(0, |buffer| buffer.size() - RANGE)
+    }
+
+    pub(super) fn has_room(&self, bytes: u64) -> bool {
+        self.used + bytes <= self.capacity()
+    }
+
+    /// Takes room for a list, which there must be: where it starts.
+    pub(super) fn take(&mut self, patches: u32) -> u32 {
+        let offset = self.used;
+        self.used += list_bytes(patches);
+        offset as u32
+    }
+
+    /// The buffer with the lists; null if there is no room for any.
+    pub(super) fn raw(&self) -> vk::Buffer {
+        self.buffer.as_ref().map_or(vk::Buffer::null(), Buffer::raw)
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.buffer.as_ref().map_or(0, Buffer::size)
+    }
+}
+
+fn view_set(
+    context: &Arc<DeviceContext>,
+    layout: vk::DescriptorSetLayout,
+    parts: [(vk::Buffer, u64); 2],
+) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
+    const NAME: &str = "subdiv view";
+    let types = [vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, vk::DescriptorType::STORAGE_BUFFER_DYNAMIC];
+    let sizes = types.map(|ty| vk::DescriptorPoolSize { ty, descriptor_count: 1 });
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+    let layouts = [layout];
+    let buffers = parts.map(|(buffer, range)| [vk::DescriptorBufferInfo { buffer, offset: 0, range }]);
+    // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
+    unsafe {
+        let device = context.device();
+        let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", NAME)?;
+        let pool = Owned::new(context, pool, NAME);
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
+        let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", NAME)?[0];
+        let write = |binding: usize| {
+            vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .dst_binding(binding as u32)
+                .descriptor_type(types[binding])
+                .buffer_info(&buffers[binding])
+        };
+        device.update_descriptor_sets(&[0, 1].map(write), &[]);
+        Ok((pool, set))
+    }
+}
+
+/// The pipelines that look which patches can be seen, and list them.
+pub(super) struct ListPipelines {
+    context: Arc<DeviceContext>,
+    layout: Owned<vk::PipelineLayout>,
+    cache: vk::PipelineCache,
+    /// By [`PatchStages::for_culling`].
+    looking: HashMap<(PatchStages, Cut), Owned<vk::Pipeline>>,
+    packing: Option<Owned<vk::Pipeline>>,
+}
+
+impl ListPipelines {
+    /// With the set layouts of the draws.
+    pub(super) fn new(
+        context: &Arc<DeviceContext>,
+        sets: [vk::DescriptorSetLayout; 2],
+        cache: vk::PipelineCache,
+    ) -> Result<Self, GpuError> {
+        let size = size_of::<DrawConstants>() as u32;
+        let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
+        // SAFETY: the set layouts are of this device.
+        let layout = unsafe { pipeline_layout(context, "subdiv lists of patches", &sets, &constants)? };
+        Ok(Self { context: context.clone(), layout, cache, looking: HashMap::new(), packing: None })
+    }
+
+    /// Makes what patches need that are left out by these rules.
+    pub(super) fn make(&mut self, stages: PatchStages, cut: Cut) -> Result<(), GpuError> {
+        let stages = stages.for_culling();
+        if !self.looking.contains_key(&(stages, cut)) {
+            let name = stages.culling();
+            let constants = stages.specialization(cut, self.context.properties());
+            let shader = Shader::compute(shaders::named(&name)?).specialized(&constants);
+            self.looking.insert((stages, cut), self.create(&name, shader)?);
+        }
+        if self.packing.is_none() {
+            self.packing = Some(self.create("pack", Shader::compute(shaders::COMPUTE_PACK_COMP))?);
+        }
+        Ok(())
+    }
+
+    fn create(&self, name: &str, shader: Shader) -> Result<Owned<vk::Pipeline>, GpuError> {
+        let name = &format!("subdiv {name}");
+        let desc = ComputePipelineDesc { name, layout: self.layout.raw(), shader, cache: self.cache };
+        // SAFETY: the shader is ours and matches the layout.
+        unsafe { desc.create(&self.context) }
+    }
+
+    /// Records the dispatch that looks which patches can be seen of as many as
+    /// [`patches_per_instance`](DrawConstants::patches_per_instance) says.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering; the pipeline was made; the sets and the offsets in set 0 (of the view, of the
+    /// list) are valid, and the list has room.
+    pub(super) unsafe fn cmd_look(
+        &self,
+        cmd: vk::CommandBuffer,
+        (stages, cut): (PatchStages, Cut),
+        sets: [vk::DescriptorSet; 2],
+        offsets: [u32; 2],
+        constants: &DrawConstants,
+    ) {
+        let Some(pipeline) = self.looking.get(&(stages.for_culling(), cut)) else { return };
+        let groups = constants.patches_per_instance.div_ceil(GROUP);
+        // SAFETY: as the caller promises.
+        unsafe { self.cmd_dispatch(cmd, pipeline, &sets, offsets, bytemuck::bytes_of(constants), groups) };
+    }
+
+    /// Records the dispatch that makes a list of what was found, and its draws.
+    ///
+    /// # Safety
+    /// As [`ListPipelines::cmd_look`], which went before, with a barrier in between.
+    pub(super) unsafe fn cmd_pack(
+        &self,
+        cmd: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        offsets: [u32; 2],
+        pack: &Pack,
+    ) {
+        let Some(pipeline) = &self.packing else { return };
+        // SAFETY: as the caller promises.
+        unsafe { self.cmd_dispatch(cmd, pipeline, &[set], offsets, bytemuck::bytes_of(pack), 1) };
+    }
+
+    unsafe fn cmd_dispatch(
+        &self,
+        cmd: vk::CommandBuffer,
+        pipeline: &Owned<vk::Pipeline>,
+        sets: &[vk::DescriptorSet],
+        offsets: [u32; 2],
+        constants: &[u8],
+        groups: u32,
+    ) {
+        let (device, layout, point) = (self.context.device(), self.layout.raw(), vk::PipelineBindPoint::COMPUTE);
+        // SAFETY: as the caller promises.
+        unsafe {
+            device.cmd_bind_pipeline(cmd, point, pipeline.raw());
+            device.cmd_bind_descriptor_sets(cmd, point, layout, 0, sets, &offsets);
+            device.cmd_push_constants(cmd, layout, vk::ShaderStageFlags::COMPUTE, 0, constants);
+            device.cmd_dispatch(cmd, groups, 1, 1);
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! Views of which compute leaves out the patches that cannot be seen, before they are drawn.
+//!
+//! A control shader can leave out a patch only when most of the work is done: the vertex shader ran, the control points are
+//! there. Of cached control points a compute shader finds out before, with all lanes at work, and lists the patches that are
+//! left, in their order, for indirect draws.
+
+use super::draw::Bound;
+use super::evaluated::Drawn;
+use super::factor::{Cull, Cut};
+use super::gpu_data::DrawConstants;
+use super::lists::{COMMAND_BYTES, FrameLists, MAX_PATCHES, Pack, list_bytes};
+use super::model::Model;
+use super::pipelines::PipelineKey;
+use super::{DrawItem, Error, Evaluation, Geometry, Renderer, Retired, RetiredObject, View};
+use crate::gpu::Features;
+use crate::table::PatchGroup;
+use ash::vk;
+
+/// The items of a view, with lists of the patches of them that can be seen: made by [`Renderer::cmd_cull`], drawn by
+/// [`Renderer::cmd_draw_visible`].
+#[derive(Debug, Clone)]
+pub struct VisibleItems {
+    frame: u32,
+    /// Which preparation of the frame they are of.
+    preparation: u64,
+    view: View,
+    view_offset: u32,
+    set: vk::DescriptorSet,
+    buffer: vk::Buffer,
+    items: Vec<(DrawItem, Vec<List>)>,
+}
+
+impl VisibleItems {
+    /// The same, all in another of [`Options::styles`](super::Options::styles): such as for depth alone.
+    pub fn in_style(&self, style: usize) -> Self {
+        let mut other = self.clone();
+        other.items.iter_mut().for_each(|(item, _)| item.style = style);
+        other
+    }
+}
+
+/// The lists of an item.
+#[derive(Clone, Copy)]
+pub(super) struct ItemLists<'v> {
+    visible: &'v VisibleItems,
+    lists: &'v [List],
+}
+
+impl ItemLists<'_> {
+    /// Whether there are none: then the item is drawn as without.
+    pub(super) fn is_empty(self) -> bool {
+        self.lists.is_empty()
+    }
+}
+
+/// Some of the patches of a group, in the order of the plan.
+#[derive(Debug, Clone, Copy)]
+struct List {
+    group: usize,
+    /// In the group.
+    first: u32,
+    count: u32,
+    /// In the buffer.
+    offset: u32,
+    /// 0 on a lattice, of which each patch has an instance.
+    patches_per_instance: u32,
+}
+
+impl List {
+    fn constants(self, of_draw: &DrawConstants, group: &PatchGroup) -> DrawConstants {
+        let corners = group.kind.corners();
+        DrawConstants {
+            first_corner: (group.first_corner + self.first as usize * corners) as u32,
+            first_patch: group.patches.start as u32 + self.first,
+            ..*of_draw
+        }
+    }
+}
+
+/// What draws of lists need, in [`Features`].
+pub(super) const LIST_FEATURES: Features = Features { indirect_first_instance: true, ..Features::NONE };
+
+impl Renderer {
+    /// Records the search for the patches of some items that can be seen in a view, by their
+    /// [`DrawItem::cull`]: for [`Renderer::cmd_draw_visible`], as often as you like in this frame.
+    ///
+    /// It pays where control points are cached: for models that are [`Construction::Cached`](super::Construction::Cached) and
+    /// evaluated by the tessellation stages or [`Evaluation::Instanced`]. Others are drawn as by [`Renderer::cmd_draw`]. Takes eight
+    /// bytes of memory a patch.
+    ///
+    /// # Errors
+    /// As [`Renderer::cmd_draw`]; [`Error::CullingNeeds`] without [`Options::visible_lists`](super::Options::visible_lists). What was recorded
+    /// until then does no harm.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, after [`Renderer::cmd_prepare`] of the same frame, for the same queue, which
+    /// computes.
+    pub unsafe fn cmd_cull(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        frame_index: u32,
+        view: &View,
+        items: &[DrawItem],
+    ) -> Result<VisibleItems, Error> {
+        self.check_frame(frame_index)?;
+        let missing = self.context.features().missing(LIST_FEATURES);
+        if !missing.is_empty() {
+            return Err(Error::CullingNeeds { missing });
+        }
+        let view_offset = self.take_view(frame_index, view)?;
+        let mut bytes = 0;
+        for item in items {
+            self.check_item(view, item)?;
+            self.make_pipelines(item.model, item.factor, item.cull)?;
+            for (_, group) in self.listed_groups(item)? {
+                bytes += pieces(group).map(|(_, count)| list_bytes(count)).sum::<u64>();
+            }
+        }
+        self.make_room(frame_index, bytes)?;
+        let mut listed = Vec::with_capacity(items.len());
+        for item in items {
+            listed.push((*item, self.take_lists(frame_index, view, item)?));
+        }
+        let lists = &self.lists[frame_index as usize];
+        let (set, buffer) = (lists.set, lists.raw());
+        let visible = VisibleItems {
+            frame: frame_index,
+            preparation: self.preparations[frame_index as usize],
+            view: *view,
+            view_offset,
+            set,
+            buffer,
+            items: listed,
+        };
+        if bytes > 0 {
+            // SAFETY: as the caller promises.
+            unsafe { self.cmd_list(cmd, &visible)? };
+        }
+        Ok(visible)
+    }
+
+    /// Records the draws of what [`Renderer::cmd_cull`] found. Otherwise as [`Renderer::cmd_draw`].
+    ///
+    /// # Errors
+    /// As [`Renderer::cmd_draw`]; [`Error::OtherFrame`] if `visible` was found for another frame, or before this one was last
+    /// prepared.
+    ///
+    /// # Safety
+    /// As [`Renderer::cmd_draw`]; after [`Renderer::cmd_cull`].
+    pub unsafe fn cmd_draw_visible(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        frame_index: u32,
+        visible: &VisibleItems,
+    ) -> Result<(), Error> {
+        self.check_frame(frame_index)?;
+        if (visible.frame, visible.preparation) != (frame_index, self.preparations[frame_index as usize]) {
+            return Err(Error::OtherFrame { frame: frame_index });
+        }
+        let mut bound = Bound::default();
+        // SAFETY: as the caller promises.
+        unsafe { self.cmd_bind_view(cmd, visible.set, [visible.view_offset, 0]) };
+        for (item, lists) in &visible.items {
+            // SAFETY: as the caller promises.
+            unsafe { self.cmd_draw_item(cmd, &visible.view, item, Some(ItemLists { visible, lists }), &mut bound)? };
+        }
+        Ok(())
+    }
+
+    /// The groups of which lists are made, if any, by their number.
+    fn listed_groups(&self, item: &DrawItem) -> Result<impl Iterator<Item = (usize, &PatchGroup)>, Error> {
+        let model = self.model(item.model)?;
+        let surface = self.style(item)?.geometry == Geometry::Surface;
+        let any = surface && item.cull != Cull::NONE && model.is_listed();
+        let groups = model.stages.iter().zip(model.tables.plan().groups()).enumerate();
+        Ok(groups.filter(move |(_, (stages, _))| any && stages.has_hull()).map(|(number, (_, group))| (number, group)))
+    }
+
+    /// Makes room for lists of so many bytes in a frame.
+    fn make_room(&mut self, frame: u32, bytes: u64) -> Result<(), Error> {
+        let lists = &self.lists[frame as usize];
+        if lists.has_room(bytes) {
+            return Ok(());
+        }
+        let capacity = bytes.max(2 * lists.capacity()).next_power_of_two();
+        let layout = self.pipelines.view_layout.raw();
+        let larger = FrameLists::new(&self.context, layout, &self.views, capacity)?;
+        let before = std::mem::replace(&mut self.lists[frame as usize], larger);
+        // What was found in this frame so far is in there.
+        let mut frames = vec![false; self.options.frames_in_flight as usize];
+        frames[frame as usize] = true;
+        self.retired.push(Retired { frames, _what: RetiredObject::Lists(Box::new(before)) });
+        Ok(())
+    }
+
+    fn take_lists(&mut self, frame: u32, view: &View, item: &DrawItem) -> Result<Vec<List>, Error> {
+        let most = self.check_item(view, item)?;
+        let model = self.model(item.model)?;
+        let mut lists = Vec::new();
+        for (number, group) in self.listed_groups(item)? {
+            for (first, count) in pieces(group) {
+                let patches_per_instance = match model.evaluation {
+                    Evaluation::Tessellation => self.patches_per_instance(model.stages[number], count, most),
+                    _ => 0,
+                };
+                lists.push(List { group: number, first, count, offset: 0, patches_per_instance });
+            }
+        }
+        let room = &mut self.lists[frame as usize];
+        lists.iter_mut().for_each(|list| list.offset = room.take(list.count));
+        Ok(lists)
+    }
+
+    unsafe fn cmd_list(&self, cmd: vk::CommandBuffer, visible: &VisibleItems) -> Result<(), Error> {
+        use vk::PipelineStageFlags as Stage;
+        let (device, pipelines) = (self.context.device(), &self.pipelines.lists);
+        let barrier = |to, access| {
+            let written =
+                [vk::MemoryBarrier::default().src_access_mask(vk::AccessFlags::SHADER_WRITE).dst_access_mask(access)];
+            let none = vk::DependencyFlags::empty();
+            // SAFETY: as the caller promises.
+            unsafe { device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, to, none, &written, &[], &[]) };
+        };
+        for (item, lists) in &visible.items {
+            let model = self.model(item.model)?;
+            let most = self.check_item(&visible.view, item)?;
+            let of_draw = item.constants(model, most);
+            for list in lists {
+                let group = &model.tables.plan().groups()[list.group];
+                let of_list = list.constants(&of_draw, group);
+                let constants = DrawConstants { patches_per_instance: list.count, ..of_list };
+                let key = (model.stages[list.group], Cut::new(item.factor, item.cull));
+                let sets = [visible.set, model.set.raw];
+                // SAFETY: as the caller promises.
+                unsafe { pipelines.cmd_look(cmd, key, sets, [visible.view_offset, list.offset], &constants) };
+            }
+        }
+        barrier(Stage::COMPUTE_SHADER, vk::AccessFlags::SHADER_READ);
+        for (item, lists) in &visible.items {
+            let model = self.model(item.model)?;
+            let drawn = model.drawn(item.factor)?;
+            for list in lists {
+                let pack = pack(model, drawn, *list);
+                // SAFETY: as the caller promises.
+                unsafe { pipelines.cmd_pack(cmd, visible.set, [visible.view_offset, list.offset], &pack) };
+            }
+        }
+        let read = vk::AccessFlags::SHADER_READ | vk::AccessFlags::INDIRECT_COMMAND_READ;
+        barrier(Stage::DRAW_INDIRECT | Stage::VERTEX_SHADER, read);
+        Ok(())
+    }
+
+    /// Records the draws of the lists of a group; `of_draw` are the constants of the whole item.
+    ///
+    /// # Safety
+    /// As [`Renderer::cmd_draw_visible`], with the model's set and buffers bound.
+    pub(super) unsafe fn cmd_draw_lists(
+        &self,
+        cmd: vk::CommandBuffer,
+        ItemLists { visible, lists }: ItemLists,
+        (item, model, group): (&DrawItem, &Model, usize),
+        of_draw: &DrawConstants,
+        bound: &mut Bound,
+    ) {
+        let device = self.context.device();
+        let geometry = model.stages[group].geometry(Cut::listed(item.factor));
+        // SAFETY: as the caller promises.
+        unsafe {
+            self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
+            for list in lists.iter().filter(|list| list.group == group) {
+                let of_list = list.constants(of_draw, &model.tables.plan().groups()[group]);
+                let constants = DrawConstants { patches_per_instance: list.patches_per_instance, ..of_list };
+                self.cmd_bind_view(cmd, visible.set, [visible.view_offset, list.offset]);
+                self.push(cmd, &constants);
+                let offset = u64::from(list.offset);
+                if list.patches_per_instance == 0 {
+                    device.cmd_draw_indexed_indirect(cmd, visible.buffer, offset, 1, 0);
+                    continue;
+                }
+                for command in 0..2 {
+                    let offset = offset + u64::from(command * COMMAND_BYTES);
+                    device.cmd_draw_indirect(cmd, visible.buffer, offset, 1, 0);
+                }
+            }
+        }
+    }
+}
+
+/// The patches of a group in pieces that a list has room for: from which on, and how many.
+fn pieces(group: &PatchGroup) -> impl Iterator<Item = (u32, u32)> {
+    let patches = group.patches.len() as u32;
+    (0..patches).step_by(MAX_PATCHES as usize).map(move |first| (first, MAX_PATCHES.min(patches - first)))
+}
+
+fn pack(model: &Model, drawn: Drawn, list: List) -> Pack {
+    let List { count, patches_per_instance, .. } = list;
+    let (vertices, first_index) = match drawn {
+        Drawn::Lattice(lattice) => lattice.indices_of_patch(list.group),
+        _ => (model.stages[list.group].input_points(), 0),
+    };
+    Pack { count, vertices, first_index, patches_per_instance }
+}
