@@ -253,9 +253,10 @@ fn evaluations_that_need_features_say_so() {
     let stage = Stage::new();
     let desc = stage.target.desc();
     let target = Target::dynamic(desc.color, desc.depth, desc.samples);
-    let options = Options { evaluations: vec![Evaluation::GeometryTwoPass, Evaluation::Compute], ..Options::default() };
+    let evaluations = vec![Evaluation::GeometryTwoPass, Evaluation::Compute];
+    let options = Options { evaluations, visible_lists: true, ..Options::default() };
     let needs = requirements(&target, &options).features;
-    assert!(needs.geometry && needs.vertex_stores);
+    assert!(needs.geometry && needs.vertex_stores && needs.indirect_first_instance);
     let without = requirements(&target, &Options::default()).context_options();
     let (instance, device) = (stage.headless.instance(), stage.headless.device());
     let allocator = Arc::new(Borrowed(stage.headless.context().clone()));
@@ -263,7 +264,9 @@ fn evaluations_that_need_features_say_so() {
     let context = unsafe { DeviceContext::new(instance, stage.headless.physical_device(), device, allocator, without) };
     // SAFETY: nothing is recorded.
     let error = unsafe { Renderer::new(&context, &target, &options) }.err().expect("an error").to_string();
-    assert!(error.contains("geometryShader (the device has it") && error.contains("vertexPipelineStores"), "{error}");
+    for feature in ["geometryShader (the device has it", "vertexPipelineStores", "drawIndirectFirstInstance"] {
+        assert!(error.contains(feature), "{error}");
+    }
     // SAFETY: nothing is recorded.
     let mut renderer = unsafe { Renderer::new(&context, &target, &Options::default()) }.expect("a renderer");
     for (evaluation, missing) in [
@@ -278,6 +281,14 @@ fn evaluations_that_need_features_say_so() {
         );
         assert_eq!(error, told);
     }
+    let view = View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [0.0, 0.0, 1.0], 1.0);
+    // SAFETY: the command buffer is being recorded, outside rendering.
+    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, &view, &[]) }).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "leaving out patches by compute needs drawIndirectFirstInstance: set Options::visible_lists and make the device with \
+         what requirements lists then"
+    );
     drop((renderer, context));
     stage.finish();
 }

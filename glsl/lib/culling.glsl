@@ -28,30 +28,35 @@ vec4 clip_row(int i) {
 
 #if HULL > 0
 Examined examine(uint k) {
-    uint beyond = 63u;
     vec4 box = vec4(1e30, 1e30, -1e30, -1e30);
     if ((DRAW_FLAGS & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
-        return Examined(beyond, box);
+        return Examined(0u, box);
     }
-    float margin = reach();
-    vec4 w = clip_row(3);
-    vec4 planes[6] = { w + clip_row(0), w - clip_row(0), w + clip_row(1), w - clip_row(1), clip_row(2), w - clip_row(2) };
+    // How far before each plane the foremost point is, in clip space: w + x, w + y, w - x, w - y; z, w - z.
+    vec4 sides = vec4(-1e30);
+    vec2 depths = vec2(-1e30);
     for (int i = 0; i < HULL; ++i) {
-        vec4 at = vec4(to_world(i == 0 ? owned[k][0] : CONTROL_POINT(k, i)), 1.0);
-        for (int plane = 0; plane < 6; ++plane) {
-            if (dot(planes[plane], at) + margin * length(planes[plane].xyz) >= 0.0) {
-                beyond &= ~(1u << plane);
+        vec3 at = to_world(i == 0 ? owned[k][0] : CONTROL_POINT(k, i));
+        vec4 clip = view.measured_view_projection * vec4(at, 1.0);
+        sides = max(sides, clip.w + vec4(clip.xy, -clip.xy));
+        depths = max(depths, vec2(clip.z, clip.w - clip.z));
+        if ((DRAW_FLAGS & CULL_SMALL_FLAG) != 0u) {
+            vec2 pixels = (0.5 + 0.5 * clip.xy / clip.w) * view.viewport.xy;
+            box = vec4(min(box.xy, pixels), max(box.zw, pixels));
+            if (!(clip.w > view.viewport.z)) {
+                // Not all of it is before the eye: as large as the picture.
+                box = vec4(-1e30, -1e30, 1e30, 1e30);
             }
         }
-        vec4 clip = view.measured_view_projection * at;
-        vec2 pixels = (0.5 + 0.5 * clip.xy / clip.w) * view.viewport.xy;
-        box = vec4(min(box.xy, pixels), max(box.zw, pixels));
-        if (!(clip.w > view.viewport.z)) {
-            // Not all of it is before the eye: as large as the picture.
-            box = vec4(-1e30, -1e30, 1e30, 1e30);
-        }
     }
-    return Examined(beyond, box);
+    vec3 x = clip_row(0).xyz, y = clip_row(1).xyz, z = clip_row(2).xyz, w = clip_row(3).xyz;
+    float margin = reach();
+    bvec4 beyond_sides =
+        lessThan(sides + margin * vec4(length(w + x), length(w + y), length(w - x), length(w - y)), vec4(0.0));
+    bvec2 beyond_depths = lessThan(depths + margin * vec2(length(z), length(w - z)), vec2(0.0));
+    uvec4 bits = uvec4(beyond_sides) << uvec4(0u, 1u, 2u, 3u);
+    uvec2 more = uvec2(beyond_depths) << uvec2(4u, 5u);
+    return Examined(bits.x | bits.y | bits.z | bits.w | more.x | more.y, box);
 }
 
 // Whether no pixel's centre lies within a box.

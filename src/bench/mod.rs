@@ -175,13 +175,13 @@ impl Contestant {
         Self { path, patches, normals: Normals::Own, cull: Cull::NONE }
     }
 
-    /// The same with each of these normals and cullings that it can be combined with: patches are left out of the tessellation
-    /// stages and of instances, and normals are shared where the scheme is watertight and [`Evaluation::shares`]. Floors stay as they are.
+    /// The same with each of these normals and cullings that it can be combined with: patches are left out where
+    /// [`Evaluation::culls`], and normals shared where the scheme is watertight and [`Evaluation::shares`]. Floors stay as they are.
     pub fn variants(self, normals: &[Normals], culls: &[Cull]) -> Vec<Self> {
         if self.path.is_floor() {
             return vec![self];
         }
-        let culls_any = matches!(self.path, Path::Tessellation | Path::Instanced);
+        let culls_any = self.path != Path::AccPublished && self.path.evaluation().is_some_and(Evaluation::culls);
         let shares = match (self.path.evaluation(), self.patches) {
             (Some(evaluation), Some((scheme, construction))) if self.path != Path::AccPublished => {
                 scheme.is_watertight() && evaluation.shares(construction)

@@ -4,8 +4,8 @@ use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
 use super::{BenchError, Contestant, Path, published};
 use crate::measure::statistics::Summary;
 use crate::renderer::{
-    Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options, Renderer, Style,
-    TableBytes, Target, VisibleItems, subdivision_level,
+    Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options, Renderer,
+    Style, TableBytes, Target, VisibleItems, subdivision_level,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -74,7 +74,16 @@ impl Surface {
             Ok::<_, Error>(model)
         })?;
         let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
-        Ok(Self { renderer, model, setup, bytes, control_point_bytes, evaluation, cull: contestant.cull, visible: None })
+        Ok(Self {
+            renderer,
+            model,
+            setup,
+            bytes,
+            control_point_bytes,
+            evaluation,
+            cull: contestant.cull,
+            visible: None,
+        })
     }
 }
 

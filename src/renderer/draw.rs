@@ -21,7 +21,8 @@ pub struct DrawItem {
     pub transform: [[f32; 4]; 4],
     /// How finely it is cut.
     pub factor: Factor,
-    /// Patches that are left out.
+    /// Patches that are left out, where [`Evaluation::culls`]: by [`Renderer::cmd_cull`], of the tessellation stages by
+    /// [`Renderer::cmd_draw`], too.
     pub cull: Cull,
     /// Index into [`Options::styles`](super::Options::styles).
     pub style: usize,

@@ -30,7 +30,9 @@ pub enum Error {
     NoSuchFrame { given: u32, frames: u32 },
     #[error("{max} views were already drawn in frame {frame}: raise Options::views_per_frame")]
     TooManyViews { frame: u32, max: u32 },
-    #[error("frame {frame}: what can be seen was found before it was prepared, or for another frame: call cmd_cull after cmd_prepare, and draw in the same frame")]
+    #[error(
+        "frame {frame}: what can be seen was found before it was prepared, or for another frame: call cmd_cull after cmd_prepare, and draw in the same frame"
+    )]
     OtherFrame { frame: u32 },
     #[error("leaving out patches by compute needs {}: set Options::visible_lists and make the device with what requirements lists then", missing.join(" and "))]
     CullingNeeds { missing: Vec<&'static str> },

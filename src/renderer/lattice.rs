@@ -1,7 +1,7 @@
 //! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
 
-use super::model::{device_buffer, upload_buffer};
 use super::factor::Cut;
+use super::model::{device_buffer, upload_buffer};
 use super::stages::{PatchStages, Sharing};
 use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{

@@ -51,10 +51,8 @@ pub(super) struct Pack {
 /// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
 pub(super) fn view_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::DescriptorSetLayout>, GpuError> {
     let stages = super::pipelines::STAGES | vk::ShaderStageFlags::COMPUTE;
-    let bindings = [
-        (vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, stages),
-        (vk::DescriptorType::STORAGE_BUFFER_DYNAMIC, stages),
-    ];
+    let bindings =
+        [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, stages), (vk::DescriptorType::STORAGE_BUFFER_DYNAMIC, stages)];
     descriptor_set_layout(context, "subdiv view", &bindings)
 }
 

@@ -255,7 +255,7 @@ impl Model {
 
     /// Whether compute shaders can list the patches of it that can be seen.
     pub(super) fn is_listed(&self) -> bool {
-        self.computes() && matches!(self.evaluation, Evaluation::Tessellation | Evaluation::Instanced)
+        self.computes() && self.evaluation.culls()
     }
 
     /// Has the control points computed anew in the next frame, even though nothing moved.

@@ -37,8 +37,8 @@ impl Construction {
 ///
 /// All but the tessellation stages and subdivision evaluate on a lattice with the same number of segments along every edge,
 /// from 1 to 1024: they are for [`Spacing::Equal`] and [`Factor::Uniform`](super::Factor::Uniform), or for factors of edges
-/// ([`ModelOptions::edge_factors`]) of which the largest holds inside patches. Nothing is culled. Where patches share positions to
-/// the last bit, they do so here; for normals and displacement see [`Evaluation::shares`].
+/// ([`ModelOptions::edge_factors`]) of which the largest holds inside patches. Where patches share positions to the last bit, they
+/// do so here; for normals and displacement see [`Evaluation::shares`], for patches that are left out [`Evaluation::culls`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Evaluation {
     /// The tessellation stages, in each draw anew.
@@ -98,6 +98,12 @@ impl Evaluation {
             Self::Compute | Self::Instanced | Self::Geometry => construction == Construction::Cached,
             Self::GeometryTwoPass | Self::Subdivision => false,
         }
+    }
+
+    /// Whether draws can leave out patches ([`Cull`](super::Cull)): by
+    /// [`Renderer::cmd_cull`](super::Renderer::cmd_cull), the tessellation stages by themselves, too.
+    pub fn culls(self) -> bool {
+        matches!(self, Self::Tessellation | Self::Instanced)
     }
 
     /// Whether [`Renderer::set_segments`](super::Renderer::set_segments) has to say how many segments edges have.

@@ -117,7 +117,7 @@ impl RenderArgs {
         let tessellated = [
             ("--pixels", self.factor.pixels.is_some()),
             ("--bend", self.factor.bend.is_some()),
-            ("--cull", self.factor.cull.cull() != Cull::NONE),
+            ("--cull", self.factor.cull.cull() != Cull::NONE && !self.evaluation.evaluation.culls()),
             ("--spacing", self.spacing != Spacing::Equal),
         ];
         self.evaluation.construction(&tessellated, self.displacement.is_given().then_some("--displacement"))

@@ -7,7 +7,7 @@ use super::{RenderArgs, StatisticsOut};
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels};
-use ash_subdiv::renderer::{Cull, Factor, ModelTables};
+use ash_subdiv::renderer::{Cull, Evaluation, Factor, ModelTables};
 use ash_subdiv::{ControlMesh, DrawItem, ModelOptions, Options, Renderer, Target, View};
 
 /// What is drawn besides the model.
@@ -35,6 +35,8 @@ impl RenderArgs {
             return Ok(None);
         }
         let displacement = self.displacement.amount(mesh);
+        // Other evaluations leave out the same.
+        let options = &ModelOptions { evaluation: Evaluation::Tessellation, ..options.clone() };
         let draw = CaptureDraw { view: picture.view, cull, displacement, ..CaptureDraw::new(factor) };
         let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
         let captured = match &texture {
@@ -70,10 +72,12 @@ impl RenderArgs {
         let target = Offscreen::new(headless, &desc)?;
         let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
         let errors = picture.map.map(|map| ErrorSet::new(headless.context(), map)).transpose()?;
+        let culls = self.factor.cull.cull() != Cull::NONE;
         let options = Options {
             styles: self.shading.styles(),
             texcoords: errors.is_some(),
             evaluations: vec![model_options.evaluation],
+            visible_lists: culls,
             set_layouts: errors.iter().map(|errors| errors.layout.raw()).collect(),
             ..Options::default()
         };
@@ -96,7 +100,10 @@ impl RenderArgs {
         };
         let draws = self.shading.draws(item);
         // SAFETY: the command buffer is being recorded, outside rendering.
-        headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+        let visible = headless.try_submit(|cmd| unsafe {
+            renderer.cmd_prepare(cmd, 0)?;
+            culls.then(|| renderer.cmd_cull(cmd, 0, &picture.view, &draws)).transpose()
+        })?;
         let record = |cmd| {
             if let Some(errors) = &errors {
                 let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, renderer.pipeline_layout());
@@ -106,7 +113,12 @@ impl RenderArgs {
                 }
             }
             // SAFETY: inside rendering that fits the target, after the frame was prepared.
-            unsafe { renderer.cmd_draw(cmd, 0, &picture.view, &draws) }
+            unsafe {
+                match &visible {
+                    Some(visible) => renderer.cmd_draw_visible(cmd, 0, visible),
+                    None => renderer.cmd_draw(cmd, 0, &picture.view, &draws),
+                }
+            }
         };
         let background = match desc.color {
             vk::Format::R8G8B8A8_SRGB => self.background.linear(),

@@ -1,0 +1,267 @@
+//! Patches that compute leaves out before the draws.
+#![cfg(feature = "headless")]
+
+mod common;
+
+use ash_subdiv::capture::{CaptureDraw, Captured};
+use ash_subdiv::headless::Statistics;
+use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
+use ash_subdiv::{
+    Construction, ControlMesh, DrawItem, Error, Fallback, ModelId, ModelOptions, Options, Renderer, Scheme, Style,
+    View, shape,
+};
+use common::stage::Stage;
+use glam::{Mat4, Vec3};
+
+const BACK: Cull = Cull { back: true, ..Cull::NONE };
+const FRUSTUM: Cull = Cull { frustum: true, ..Cull::NONE };
+
+fn options() -> Options {
+    Options { visible_lists: true, evaluations: vec![Evaluation::Instanced], ..Options::default() }
+}
+
+fn cached(scheme: Scheme, evaluation: Evaluation) -> ModelOptions {
+    let construction = Construction::Cached;
+    ModelOptions { scheme, fallback: Fallback::Gregory, construction, evaluation, ..ModelOptions::default() }
+}
+
+/// All of a mesh, and a part of it from near by.
+fn views(mesh: &ControlMesh) -> [View; 2] {
+    let [low, high] = mesh.bounds().map(|corner| corner.as_vec3());
+    let (middle, radius) = ((low + high) / 2.0, (high - low).length() / 2.0);
+    let eye = middle + Vec3::new(0.4, 0.3, 1.0) * (2.0 * radius);
+    let target = middle + 0.5 * (high - middle);
+    let near = View::perspective(eye.into(), target.into(), [0.0, 1.0, 0.0], 0.25, 1.0, [0.1 * radius, 9.0 * radius]);
+    [View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0), near].map(|view| view.sized(96, 96))
+}
+
+fn cull(stage: &Stage, renderer: &mut Renderer, view: &View, items: &[DrawItem]) -> VisibleItems {
+    // SAFETY: the command buffer is being recorded, outside rendering, and every submission is waited for.
+    stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, view, items) }).expect("lists")
+}
+
+fn draw(stage: &Stage, renderer: &mut Renderer, visible: &VisibleItems) -> Result<Vec<u8>, Error> {
+    // SAFETY: as above, inside rendering.
+    let record = |cmd| unsafe { renderer.cmd_draw_visible(cmd, 0, visible) };
+    stage.target.draw(&stage.headless, [0.0; 4], record)
+}
+
+fn draw_all(stage: &Stage, renderer: &mut Renderer, view: &View, items: &[DrawItem]) -> Vec<u8> {
+    // SAFETY: as above.
+    let record = |cmd| unsafe { renderer.cmd_draw(cmd, 0, view, items) };
+    stage.target.draw(&stage.headless, [0.0; 4], record).expect("a picture")
+}
+
+/// What the stages do for an item, looked through before or not.
+fn count(stage: &Stage, renderer: &mut Renderer, view: &View, item: DrawItem, lists: bool) -> Statistics {
+    let counted = stage.headless.counted(|cmd| {
+        // SAFETY: as above.
+        unsafe {
+            let visible = if lists { Some(renderer.cmd_cull(cmd, 0, view, &[item])?) } else { None };
+            stage.target.cmd_begin(cmd, [0.0; 4]);
+            match &visible {
+                Some(visible) => renderer.cmd_draw_visible(cmd, 0, visible)?,
+                None => renderer.cmd_draw(cmd, 0, view, &[item])?,
+            }
+            stage.target.cmd_end(cmd);
+        }
+        Ok::<(), Error>(())
+    });
+    counted.expect("counts")
+}
+
+fn moved(model: ModelId, factor: Factor) -> DrawItem {
+    let transform = Mat4::from_scale_rotation_translation(
+        Vec3::new(-0.9, 1.1, 1.0),
+        glam::Quat::from_rotation_y(0.2),
+        Vec3::new(0.05, -0.02, 0.0),
+    );
+    DrawItem { transform: transform.to_cols_array_2d(), ..DrawItem::new(model, factor) }
+}
+
+/// The control shader and the lists leave out the same patches, however edges get their factors.
+#[test]
+fn lists_leave_out_what_the_control_shader_does() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&options());
+    for (name, scheme) in [
+        ("creature-mixed", Scheme::Gregory),
+        ("creature", Scheme::Acc),
+        ("pentagons", Scheme::Pm),
+        ("cloth", Scheme::Gregory),
+    ] {
+        let mesh = if name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
+        let options = ModelOptions { edge_factors: true, ..cached(scheme, Evaluation::Tessellation) };
+        let model = renderer.add_model(&mesh, &options).expect("a model");
+        let edges = renderer.tables(model).unwrap().edges().expect("asked for").vertices.len();
+        let factors: Vec<f32> = (0..edges).map(|edge| 2.0 + (edge % 5) as f32).collect();
+        renderer.set_edge_factors(model, 0, &factors).expect("factors");
+        let mut less = 0;
+        for view in views(&mesh) {
+            for factor in [Factor::Uniform(6.0), Factor::Pixels(3.0), Factor::Curvature(0.3), Factor::Edges(1.0)] {
+                for cull in [BACK, FRUSTUM, Cull::ALL] {
+                    stage.prepare(&mut renderer, 0);
+                    let item = DrawItem { cull, ..moved(model, factor) };
+                    let [shader, lists] = [false, true].map(|lists| count(&stage, &mut renderer, &view, item, lists));
+                    let numbers = |s: &Statistics| (s.evaluation_invocations, s.clipping_invocations);
+                    assert_eq!(numbers(&lists), numbers(&shader), "{name}, {factor:?}, {cull:?}");
+                    less += shader.control_patches - lists.control_patches;
+                }
+            }
+        }
+        // Pm-patches stay, and there are no others.
+        assert_eq!(less > 0, scheme != Scheme::Pm, "{name}");
+        renderer.remove_model(model).unwrap();
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn pictures_stay_the_same() {
+    let stage = Stage::new();
+    let style = Style { cull: ash::vk::CullModeFlags::BACK, ..Style::default() };
+    let mut renderer = stage.renderer(&Options { styles: vec![style], ..options() });
+    for (name, scheme, shared_normals) in [
+        ("creature-mixed", Scheme::Gregory, true),
+        ("machine-part", Scheme::Gregory, false),
+        ("valences", Scheme::Pm, false),
+    ] {
+        let mesh = shape(name).expect("built in");
+        for evaluation in [Evaluation::Tessellation, Evaluation::Instanced] {
+            let options = ModelOptions { shared_normals, ..cached(scheme, evaluation) };
+            let model = renderer.add_model(&mesh, &options).expect("a model");
+            if evaluation.needs_segments() {
+                renderer.set_segments(model, 6).expect("segments");
+            }
+            for view in views(&mesh) {
+                stage.prepare(&mut renderer, 0);
+                let item = DrawItem { cull: Cull::ALL, ..moved(model, 6.0.into()) };
+                let all = draw_all(&stage, &mut renderer, &view, &[DrawItem { cull: Cull::NONE, ..item }]);
+                let visible = cull(&stage, &mut renderer, &view, &[item]);
+                assert!(draw(&stage, &mut renderer, &visible).unwrap() == all, "{name}, {evaluation:?}");
+                assert!(all.chunks(4).any(|pixel| pixel != [0; 4]));
+            }
+        }
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+/// Instances are left out by the factors that their edges have, and only whole patches.
+#[test]
+fn instances_are_of_the_patches_that_are_left() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&options());
+    let mesh = shape("creature-mixed").expect("built in");
+    let instanced = cached(Scheme::Gregory, Evaluation::Instanced);
+    let captured = Captured::new(&stage.headless, &mesh, &cached(Scheme::Gregory, Evaluation::Tessellation)).unwrap();
+    let plain = renderer.add_model(&mesh, &instanced).expect("a model");
+    let options = ModelOptions { edge_factors: true, ..instanced };
+    let uneven = renderer.add_model(&mesh, &options).expect("a model");
+    let edges = renderer.tables(uneven).unwrap().edges().expect("asked for").vertices.len();
+    renderer.set_edge_factors(uneven, 0, &vec![8.0; edges]).expect("factors");
+    for model in [plain, uneven] {
+        renderer.set_segments(model, 8).expect("segments");
+    }
+    for view in views(&mesh) {
+        for cull in [BACK, FRUSTUM] {
+            stage.prepare(&mut renderer, 0);
+            let factors = captured.factors(&CaptureDraw { view, cull, ..CaptureDraw::new(8.0) }).expect("a capture");
+            let patches = captured.tables().plan().patches().iter().zip(factors).filter(|(_, f)| !f.culled);
+            let triangles: u64 = patches.map(|(patch, _)| if patch.kind.corners() == 4 { 2 * 64 } else { 64 }).sum();
+            for (model, factor) in [(plain, Factor::Uniform(8.0)), (uneven, Factor::Edges(1.0))] {
+                let item = DrawItem { cull, ..DrawItem::new(model, factor) };
+                let counted = count(&stage, &mut renderer, &view, item, true);
+                assert_eq!(counted.clipping_invocations, triangles, "{factor:?}, {cull:?}");
+            }
+        }
+    }
+    // Of edges with fewer segments less is known: nothing that they turn to the eye may be missed.
+    let [view, _] = views(&mesh);
+    let factors: Vec<f32> = (0..edges).map(|edge| [1.0, 8.0, 3.0][edge % 3]).collect();
+    renderer.set_edge_factors(uneven, 0, &factors).expect("factors");
+    stage.prepare(&mut renderer, 0);
+    let item = DrawItem { cull: BACK, ..DrawItem::new(uneven, Factor::Edges(1.0)) };
+    let all = draw_all(&stage, &mut renderer, &view, &[item]);
+    let visible = cull(&stage, &mut renderer, &view, &[item]);
+    assert!(draw(&stage, &mut renderer, &visible).unwrap() == all);
+    drop((renderer, captured));
+    stage.finish();
+}
+
+/// More patches than a list has room for, and more lists than there was room for at first; items that are not looked through;
+/// one search for several draws.
+#[test]
+fn lists_grow_with_what_is_drawn() {
+    let stage = Stage::new();
+    let flat = Style { fragment: Fragment::Flat, ..Style::default() };
+    let mut renderer = stage.renderer(&Options { styles: vec![Style::default(), flat], ..options() });
+    let [creature, torus] = ["creature", "torus"].map(|name| shape(name).expect("built in"));
+    let small = renderer.add_model(&creature, &cached(Scheme::Gregory, Evaluation::Tessellation)).expect("a model");
+    let two_stage = renderer.add_model(&creature, &ModelOptions::default()).expect("a model");
+    let options = ModelOptions { refine: 4, ..cached(Scheme::Gregory, Evaluation::Tessellation) };
+    let large = renderer.add_model(&torus, &options).expect("a model");
+    let instanced = ModelOptions { evaluation: Evaluation::Instanced, ..options };
+    let instanced = renderer.add_model(&torus, &instanced).expect("a model");
+    renderer.set_segments(instanced, 1).expect("segments");
+    assert!(renderer.tables(large).unwrap().plan().patches().len() > 2 * 8192);
+    let away = |x: f32| Mat4::from_translation(Vec3::new(x, 0.3, -0.4)).to_cols_array_2d();
+    let item = |model, factor: f32, x: f32| DrawItem {
+        cull: Cull { small: false, ..Cull::ALL },
+        transform: away(x),
+        ..DrawItem::new(model, factor)
+    };
+    let scenes = [
+        vec![item(small, 5.0, 0.0)],
+        vec![item(large, 1.0, 0.0), item(two_stage, 3.0, 0.4), item(small, 2.0, -0.3), item(instanced, 1.0, 0.2)],
+    ];
+    for _ in 0..2 {
+        stage.prepare(&mut renderer, 0);
+        let [view, near] = views(&creature);
+        let views = [view, near, view];
+        let visible: Vec<_> = views.iter().zip(scenes.iter().cycle()).collect();
+        let visible: Vec<_> =
+            visible.into_iter().map(|(view, items)| (view, items, cull(&stage, &mut renderer, view, items))).collect();
+        for (view, items, visible) in visible {
+            for style in [0, 1] {
+                let items: Vec<_> = items.iter().map(|&item| DrawItem { cull: Cull::NONE, style, ..item }).collect();
+                let all = draw_all(&stage, &mut renderer, view, &items);
+                assert!(draw(&stage, &mut renderer, &visible.in_style(style)).unwrap() == all, "{style}");
+            }
+        }
+    }
+    let lists = renderer.memory_usage().lists;
+    assert!(lists > 8 * 2 * 8192, "{lists} bytes");
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn wrong_use_is_told() {
+    let stage = Stage::new();
+    let mesh = shape("cube").expect("built in");
+    let mut renderer = stage.renderer(&options());
+    let model = renderer.add_model(&mesh, &cached(Scheme::Gregory, Evaluation::Tessellation)).expect("a model");
+    let [view, _] = views(&mesh);
+    stage.prepare(&mut renderer, 0);
+    let item = DrawItem { cull: BACK, ..DrawItem::new(model, 2.0) };
+    let visible = cull(&stage, &mut renderer, &view, &[item]);
+    let told = |error: Error| error.to_string();
+    assert_eq!(told(draw(&stage, &mut renderer, &visible.in_style(7)).unwrap_err()), "style 7: Options::styles has 1");
+    // Preparing another frame does not matter.
+    stage.prepare(&mut renderer, 1);
+    draw(&stage, &mut renderer, &visible).expect("a picture");
+    stage.prepare(&mut renderer, 0);
+    assert_eq!(
+        told(draw(&stage, &mut renderer, &visible).unwrap_err()),
+        "frame 0: what can be seen was found before it was prepared, or for another frame: call cmd_cull after cmd_prepare, \
+         and draw in the same frame"
+    );
+    let bad = DrawItem { factor: Factor::Uniform(0.5), ..item };
+    // SAFETY: outside rendering, and every submission is waited for.
+    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, &view, &[item, bad]) }).unwrap_err();
+    assert!(told(error).contains("a tessellation factor is a number from 1 up"));
+    drop(renderer);
+    stage.finish();
+}
