@@ -65,12 +65,16 @@ fn a_vertex_buffer_is_the_same_surface() {
 #[test]
 fn acc_as_published_is_the_same_surface() {
     let headless = headless();
-    let acc = |path| Contestant::new(path, Some((Scheme::Acc, Construction::TwoStage)));
+    let acc = |(path, construction)| Contestant::new(path, Some((Scheme::Acc, construction)));
+    let tessellated = [Path::Tessellation, Path::AccPublished].map(|path| (path, Construction::TwoStage));
+    let instanced = [Path::Instanced, Path::AccPublishedInstanced].map(|path| (path, Construction::Cached));
     let bench = Bench::new(&headless, options()).unwrap();
-    for name in ["creature", "valences", "cloth"] {
+    for (name, pair) in
+        ["creature", "valences", "cloth"].into_iter().flat_map(|name| [(name, tessellated), (name, instanced)])
+    {
         let subject = subject(name);
-        let [ours, published] = [Path::Tessellation, Path::AccPublished].map(|path| {
-            let pixels = bench.picture(&subject, acc(path), 4.0).unwrap();
+        let [ours, published] = pair.map(|way| {
+            let pixels = bench.picture(&subject, acc(way), 4.0).unwrap();
             assert!(covered(&pixels) > 1500, "{name}");
             pixels
         });
@@ -126,7 +130,7 @@ fn a_race_counts_what_was_drawn() {
         let kept = match contestant.path {
             // Six patches once, with their indices.
             Path::Compute => Some(6 * (24 * (n + 1) * (n + 1) + indices)),
-            Path::Instanced | Path::GeometryTwoPass => Some(indices),
+            Path::Instanced | Path::AccPublishedInstanced | Path::GeometryTwoPass => Some(indices),
             _ => None,
         };
         assert!(kept.is_none() || vertices == kept, "{vertices:?}");
@@ -203,17 +207,20 @@ fn variants_are_of_what_can_be_combined() {
         all.iter().flat_map(|contestant| contestant.variants(normals, culls)).collect()
     };
     assert_eq!(variants(&[Normals::Own], &[Cull::NONE]), all);
-    let published = Contestant::all(&[Path::AccPublished], &Scheme::ALL, &Construction::ALL);
-    assert_eq!(published, [Contestant::new(Path::AccPublished, Some((Scheme::Acc, Construction::TwoStage)))]);
+    let acc_published = [Path::AccPublished, Path::AccPublishedInstanced];
+    let published = Contestant::all(&acc_published, &Scheme::ALL, &Construction::ALL);
+    let constructions = [Construction::TwoStage, Construction::Cached];
+    let of_acc = |i: usize| Contestant::new(acc_published[i], Some((Scheme::Acc, constructions[i])));
+    assert_eq!(published, [0, 1].map(of_acc));
     let of = |variants: &[Contestant], path, scheme| {
         let is = |c: &&Contestant| c.path == path && c.patches.is_none_or(|(s, _)| s == scheme);
         variants.iter().filter(is).count()
     };
     let every = variants(&Normals::ALL, &[Cull::NONE, Cull::ALL]);
-    for path in Path::ALL.into_iter().filter(|&path| path != Path::AccPublished) {
+    for path in Path::ALL.into_iter().filter(|path| !acc_published.contains(path)) {
         let [gregory, acc] = match path {
-            Path::Tessellation => [4, 2],
-            Path::Compute | Path::Instanced | Path::Geometry => [2, 1],
+            Path::Tessellation | Path::Instanced => [4, 2],
+            Path::Compute | Path::Geometry => [2, 1],
             _ => [1, 1],
         };
         assert_eq!(of(&every, path, Scheme::Gregory), gregory, "{path:?}");

@@ -19,9 +19,13 @@ void keep_vector(uint corner, uint i, vec3 x) {
 layout(set = 1, binding = 12, std430) readonly buffer ControlPoints { vec4 control_points[]; };
 layout(set = 1, binding = 20) uniform samplerBuffer control_point_texels;
 
-vec3 kept_vector(uint corner, uint i) {
+vec4 kept_texel(uint corner, uint i) {
     uint at = STRIDE * corner + i;
-    return READS_TEXELS ? texelFetch(control_point_texels, int(at)).xyz : control_points[at].xyz;
+    return READS_TEXELS ? texelFetch(control_point_texels, int(at)) : control_points[at];
+}
+
+vec3 kept_vector(uint corner, uint i) {
+    return kept_texel(corner, i).xyz;
 }
 #endif
 

@@ -49,6 +49,9 @@ pub enum Path {
     /// The same with ACC as published (Loop and Schaefer 2008), where the evaluation shader makes the tangents: for the scheme
     /// [`Scheme::Acc`] and [`Construction::TwoStage`], to compare with.
     AccPublished,
+    /// Likewise with the vertex shader that evaluates instances of a lattice, as [`Path::Instanced`]: for
+    /// [`Construction::Cached`].
+    AccPublishedInstanced,
     /// Evaluated by compute once a frame, and drawn as indexed triangles in each pass ([`Evaluation::Compute`]).
     Compute,
     /// Faces subdivided in a geometry shader ([`Evaluation::Subdivision`]): at factors 1, 2, 4 and 8.
@@ -68,9 +71,10 @@ pub enum Path {
 
 impl Path {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Tessellation,
         Self::AccPublished,
+        Self::AccPublishedInstanced,
         Self::Compute,
         Self::Instanced,
         Self::Geometry,
@@ -84,6 +88,7 @@ impl Path {
     pub fn name(self) -> &'static str {
         match self {
             Self::AccPublished => "acc-published",
+            Self::AccPublishedInstanced => "acc-published-instanced",
             Self::Bilinear => "bilinear",
             Self::VertexBuffer => "vertex-buffer",
             _ => self.evaluation().map_or("", Evaluation::name),
@@ -95,7 +100,7 @@ impl Path {
         match self {
             Self::Tessellation | Self::AccPublished => Some(Evaluation::Tessellation),
             Self::Compute => Some(Evaluation::Compute),
-            Self::Instanced => Some(Evaluation::Instanced),
+            Self::Instanced | Self::AccPublishedInstanced => Some(Evaluation::Instanced),
             Self::Geometry => Some(Evaluation::Geometry),
             Self::GeometryTwoPass => Some(Evaluation::GeometryTwoPass),
             Self::Subdivision => Some(Evaluation::Subdivision),
@@ -106,7 +111,7 @@ impl Path {
     /// The schemes whose patches it draws; none if it draws no patches.
     pub fn schemes(self) -> &'static [Scheme] {
         match self {
-            Self::AccPublished => &[Scheme::Acc],
+            _ if self.is_published_acc() => &[Scheme::Acc],
             Self::Subdivision | Self::Bilinear | Self::VertexBuffer => &[],
             _ => &Scheme::ALL,
         }
@@ -123,7 +128,12 @@ impl Path {
 
     /// Whether [`Bench::recording`] knows it: what the renderer draws by itself.
     pub fn is_recorded(self) -> bool {
-        !self.is_floor() && self != Self::AccPublished
+        !self.is_floor() && !self.is_published_acc()
+    }
+
+    /// Whether it is there to compare with only: ACC as published.
+    pub(super) fn is_published_acc(self) -> bool {
+        matches!(self, Self::AccPublished | Self::AccPublishedInstanced)
     }
 
     /// Whether it does less than draw the surface from control vertices that move: what the others cannot get below.
@@ -181,9 +191,9 @@ impl Contestant {
         if self.path.is_floor() {
             return vec![self];
         }
-        let culls_any = self.path != Path::AccPublished && self.path.evaluation().is_some_and(Evaluation::culls);
+        let culls_any = !self.path.is_published_acc() && self.path.evaluation().is_some_and(Evaluation::culls);
         let shares = match (self.path.evaluation(), self.patches) {
-            (Some(evaluation), Some((scheme, construction))) if self.path != Path::AccPublished => {
+            (Some(evaluation), Some((scheme, construction))) if !self.path.is_published_acc() => {
                 scheme.is_watertight() && evaluation.shares(construction)
             }
             _ => false,

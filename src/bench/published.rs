@@ -4,11 +4,13 @@
 
 use crate::gpu::shaders;
 
-/// What is drawn with in the place of the crate's shaders.
+/// What is drawn with in the place of the crate's shaders, through the tessellation stages or instanced.
 pub(super) fn shaders() -> Vec<(String, Vec<u32>)> {
     let pairs = [
         ("CONSTRUCT_ACC_TESC", shaders::BENCH_ACC_PUBLISHED_TESC),
         ("EVALUATE_ACC_TESE", shaders::BENCH_ACC_PUBLISHED_TESE),
+        ("COMPUTE_CONTROL_POINTS_COMP_ACC", shaders::BENCH_ACC_PUBLISHED_COMP),
+        ("EVALUATE_INSTANCED_VERT_ACC", shaders::BENCH_ACC_PUBLISHED_VERT),
     ];
     pairs.map(|(name, code)| (name.to_owned(), code.to_vec())).into()
 }

@@ -1,7 +1,7 @@
 //! The surface as the renderer draws it.
 
 use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
-use super::{BenchError, Contestant, Path, published};
+use super::{BenchError, Contestant, published};
 use crate::measure::statistics::Summary;
 use crate::renderer::{
     Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options, Renderer,
@@ -31,7 +31,7 @@ impl Surface {
         let Lane { headless, target, subject, passes, .. } = lane;
         let model_options = contestant.model_options(lane);
         let ModelOptions { scheme, evaluation, .. } = model_options;
-        let as_published = contestant.path == Path::AccPublished;
+        let as_published = contestant.path.is_published_acc();
         let (tables, tables_ms) = build_tables(lane, &model_options)?;
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];

@@ -2,10 +2,9 @@
 
 use super::factor::Cut;
 use super::lattice::MAX_GROUPS;
+use super::pipelines::ShaderCode;
 use super::stages::PatchStages;
-use crate::gpu::{
-    ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout, shaders,
-};
+use crate::gpu::{ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout};
 use crate::table::PatchPlan;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -64,11 +63,11 @@ impl CachedPipelines {
     }
 
     /// Makes what patches need.
-    pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
+    pub(super) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
         let stages = stages.for_control_points();
         let constants = stages.specialization(Cut::default(), self.context.properties());
-        self.make_one(Step::frames(stages), shaders::COMPUTE_FRAMES_COMP, &constants)?;
-        self.make_one(Step::Points(stages), shaders::named(&stages.control_points())?, &constants)
+        self.make_one(Step::frames(stages), code.find("COMPUTE_FRAMES_COMP")?, &constants)?;
+        self.make_one(Step::Points(stages), code.find(&stages.control_points())?, &constants)
     }
 
     fn make_one(&mut self, step: Step, code: &[u32], constants: &[Specialization]) -> Result<(), GpuError> {

@@ -1,9 +1,10 @@
 //! Control points made by the geometry shader, in a pass of their own before the draws (Ni et al. 2008).
 
+use super::pipelines::ShaderCode;
 use super::stages::{PatchStages, reads_texels};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Specialization, VkResultExt,
-    pipeline_layout, shaders,
+    pipeline_layout,
 };
 use crate::table::PatchPlan;
 use ash::vk;
@@ -64,7 +65,7 @@ impl Conversion {
     }
 
     /// Makes what patches need.
-    pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
+    pub(super) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
         let key = key(stages);
         if self.made.contains_key(&key) {
             return Ok(());
@@ -73,8 +74,8 @@ impl Conversion {
         let name = format!("CONSTRUCT_CONVERT_GEOM_OWNED_{owned}");
         let constants = [Specialization::uint(3, stride), reads_texels(self.context.properties())];
         let shaders = [
-            Shader::vertex(shaders::CONSTRUCT_CONVERT_VERT),
-            Shader::geometry(shaders::named(&name)?).specialized(&constants),
+            Shader::vertex(code.find("CONSTRUCT_CONVERT_VERT")?),
+            Shader::geometry(code.find(&name)?).specialized(&constants),
         ];
         let target = RenderTarget::RenderPass { render_pass: self.pass.raw(), subpass: 0, color_attachments: 0 };
         let desc = GraphicsPipelineDesc {

@@ -140,8 +140,8 @@ impl Renderer {
                 model.made |= each.bit();
             }
         }
-        for &stages in model.stages.iter().filter(|stages| lists && stages.has_hull()) {
-            self.pipelines.lists.make(stages, cut)?;
+        if lists {
+            self.pipelines.make_lists(&model.stages, cut)?;
         }
         // A factor that is none of a level is told by the draw.
         if model.evaluation == Evaluation::Subdivision

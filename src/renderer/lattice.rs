@@ -2,11 +2,12 @@
 
 use super::factor::Cut;
 use super::model::{device_buffer, upload_buffer};
+use super::pipelines::ShaderCode;
 use super::stages::{PatchStages, Sharing};
 use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{
     Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
-    pipeline_layout, shaders,
+    pipeline_layout,
 };
 use crate::table::{PatchPlan, lattice_indices, lattice_triangles, lattice_vertices};
 use ash::vk;
@@ -80,7 +81,7 @@ impl LatticePipelines {
     }
 
     /// Makes what patches need.
-    pub(super) fn make(&mut self, stages: PatchStages) -> Result<(), GpuError> {
+    pub(super) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
         if self.made.contains_key(&stages) {
             return Ok(());
         }
@@ -89,7 +90,7 @@ impl LatticePipelines {
         let desc = ComputePipelineDesc {
             name: &format!("subdiv {name}"),
             layout: self.layout.raw(),
-            shader: Shader::compute(shaders::named(&name)?).specialized(&constants),
+            shader: Shader::compute(code.find(&name)?).specialized(&constants),
             cache: self.cache,
         };
         // SAFETY: the shader is ours and matches the layout.

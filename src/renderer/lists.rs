@@ -3,10 +3,11 @@
 use super::factor::Cut;
 use super::gpu_data::{DrawConstants, ViewData};
 use super::model::device_buffer;
+use super::pipelines::ShaderCode;
 use super::stages::PatchStages;
 use crate::gpu::{
     Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
-    pipeline_layout, shaders,
+    pipeline_layout,
 };
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -168,16 +169,16 @@ impl ListPipelines {
     }
 
     /// Makes what patches need that are left out by these rules.
-    pub(super) fn make(&mut self, stages: PatchStages, cut: Cut) -> Result<(), GpuError> {
+    pub(super) fn make(&mut self, stages: PatchStages, cut: Cut, code: &ShaderCode) -> Result<(), GpuError> {
         let stages = stages.for_culling();
         if !self.looking.contains_key(&(stages, cut)) {
             let name = stages.culling();
             let constants = stages.specialization(cut, self.context.properties());
-            let shader = Shader::compute(shaders::named(&name)?).specialized(&constants);
+            let shader = Shader::compute(code.find(&name)?).specialized(&constants);
             self.looking.insert((stages, cut), self.create(&name, shader)?);
         }
         if self.packing.is_none() {
-            self.packing = Some(self.create("pack", Shader::compute(shaders::COMPUTE_PACK_COMP))?);
+            self.packing = Some(self.create("pack", Shader::compute(code.find("COMPUTE_PACK_COMP")?))?);
         }
         Ok(())
     }

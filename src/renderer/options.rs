@@ -186,9 +186,9 @@ pub struct Options {
     pub visible_lists: bool,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
-    /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]): such
-    /// as evaluation shaders with a `displace` function of your own, see `glsl/lib/displace.glsl`. Those of the stages of a draw:
-    /// what makes control points and vertices before the draws is not replaced.
+    /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]), but for
+    /// fragment shaders, which [`Style::fragment`] names: such as evaluation shaders with a `displace` function of your own, see
+    /// `glsl/lib/displace.glsl`.
     pub shaders: Vec<(String, Vec<u32>)>,
     /// Used for all pipelines; null for none.
     pub pipeline_cache: vk::PipelineCache,

@@ -54,13 +54,23 @@ pub(super) enum GeometryKey {
     Control,
 }
 
+/// The caller's own shaders in the place of ours, by name.
+pub(super) struct ShaderCode(HashMap<String, Vec<u32>>);
+
+impl ShaderCode {
+    /// A shader by its name: the caller's own, or ours.
+    pub(super) fn find(&self, name: &str) -> Result<&[u32], GpuError> {
+        self.0.get(name).map_or_else(|| shaders::named(name), |code| Ok(code))
+    }
+}
+
 /// Layouts and pipelines.
 pub(super) struct Pipelines {
     context: Arc<DeviceContext>,
     target: Target,
     styles: Vec<Style>,
     texcoords: bool,
-    replaced: HashMap<String, Vec<u32>>,
+    shaders: ShaderCode,
     capture: Capture,
     cache: vk::PipelineCache,
     pub view_layout: Owned<vk::DescriptorSetLayout>,
@@ -112,7 +122,7 @@ impl Pipelines {
             target: target.clone(),
             styles: options.styles.clone(),
             texcoords: options.texcoords,
-            replaced: options.shaders.iter().cloned().collect(),
+            shaders: ShaderCode(options.shaders.iter().cloned().collect()),
             capture,
             cache: options.pipeline_cache,
             view_layout,
@@ -140,12 +150,12 @@ impl Pipelines {
         let patches = || patches.iter().filter(|stages| stages.evaluation != Evaluation::Subdivision);
         for &stages in patches() {
             match (stages.construction, stages.evaluation) {
-                (Construction::Cached, Evaluation::GeometryTwoPass) => self.conversion()?.make(stages)?,
-                (Construction::Cached, _) => self.cached.make(stages)?,
+                (Construction::Cached, Evaluation::GeometryTwoPass) => self.convert(stages)?,
+                (Construction::Cached, _) => self.cached.make(stages, &self.shaders)?,
                 _ => {}
             }
             if stages.evaluation == Evaluation::Compute {
-                self.lattice.make(stages)?;
+                self.lattice.make(stages, &self.shaders)?;
             }
         }
         for style in 0..self.styles.len() {
@@ -170,12 +180,21 @@ impl Pipelines {
         Ok(())
     }
 
-    fn conversion(&mut self) -> Result<&mut Conversion, GpuError> {
-        let made = match self.conversion.take() {
+    /// Makes what the first of two passes needs.
+    fn convert(&mut self, stages: PatchStages) -> Result<(), GpuError> {
+        let mut made = match self.conversion.take() {
             Some(made) => made,
             None => Conversion::new(&self.context, [self.view_layout.raw(), self.model_layout.raw()], self.cache)?,
         };
-        Ok(self.conversion.insert(made))
+        made.make(stages, &self.shaders)?;
+        self.conversion = Some(made);
+        Ok(())
+    }
+
+    /// Makes what lists of the patches of these need that can be seen.
+    pub(super) fn make_lists(&mut self, patches: &[PatchStages], cut: Cut) -> Result<(), GpuError> {
+        let mut patches = patches.iter().filter(|stages| stages.has_hull());
+        patches.try_for_each(|&stages| self.lists.make(stages, cut, &self.shaders))
     }
 
     fn make_one(&mut self, key: PipelineKey) -> Result<(), GpuError> {
@@ -190,7 +209,7 @@ impl Pipelines {
             GeometryKey::Control => {
                 let name = format!("subdiv style {} of the control mesh", key.style);
                 let stages = [
-                    Shader::vertex(shaders::CONSTRUCT_CONTROL_MESH_VERT).specialized(&reads_texels),
+                    Shader::vertex(self.shaders.find("CONSTRUCT_CONTROL_MESH_VERT")?).specialized(&reads_texels),
                     fragment(style, Sharing::Positions, &encode),
                 ];
                 self.create(&name, key, &stages, 0)?
@@ -202,14 +221,14 @@ impl Pipelines {
                     (false, true) => ("EVALUATE_LATTICE_VERT_TEXCOORD", Sharing::Positions),
                     (false, false) => ("EVALUATE_LATTICE_VERT", Sharing::Positions),
                 };
-                let stages = [Shader::vertex(self.find(vertex)?), fragment(style, sharing, &encode)];
+                let stages = [Shader::vertex(self.shaders.find(vertex)?), fragment(style, sharing, &encode)];
                 self.create(&name, key, &stages, 0)?
             }
             GeometryKey::Subdivision(level) => {
                 let name = format!("subdiv style {} of faces subdivided {level} times", key.style);
-                let geometry = self.find(&subdivision::shader(level, self.capture, self.texcoords))?;
+                let geometry = self.shaders.find(&subdivision::shader(level, self.capture, self.texcoords))?;
                 let stages = [
-                    Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT),
+                    Shader::vertex(self.shaders.find("CONSTRUCT_STENCIL_VERT")?),
                     Shader::geometry(geometry).specialized(&reads_texels),
                     fragment(style, Sharing::Positions, &encode),
                 ];
@@ -218,14 +237,14 @@ impl Pipelines {
             GeometryKey::Patches(patch, cut) => {
                 let name = format!("subdiv style {} {patch:?}", key.style);
                 let fragment = fragment(style, patch.sharing, &encode);
-                let evaluation = self.find(&patch.evaluation(self.capture, self.texcoords))?;
+                let evaluation = self.shaders.find(&patch.evaluation(self.capture, self.texcoords))?;
                 let constants = patch.specialization(cut, properties);
                 match patch.evaluation {
                     Evaluation::Tessellation => {
                         self.create_tessellating(&name, key, patch, &constants, evaluation, fragment)?
                     }
                     Evaluation::Geometry => {
-                        let tile = Shader::vertex(shaders::CONSTRUCT_STENCIL_VERT);
+                        let tile = Shader::vertex(self.shaders.find("CONSTRUCT_STENCIL_VERT")?);
                         let evaluation = Shader::geometry(evaluation).specialized(&constants);
                         self.create(&name, key, &[tile, evaluation, fragment], 0)?
                     }
@@ -249,8 +268,8 @@ impl Pipelines {
         evaluation: &[u32],
         fragment: Shader,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
-        let vertex = self.find(&patch.vertex(self.capture))?;
-        let control = self.find(&patch.control(self.capture, self.texcoords))?;
+        let vertex = self.shaders.find(&patch.vertex(self.capture))?;
+        let control = self.shaders.find(&patch.control(self.capture, self.texcoords))?;
         let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
         let evaluation = spaced(evaluation, spacing);
         let mut stages = vec![
@@ -263,11 +282,6 @@ impl Pipelines {
         }
         stages.push(fragment);
         self.create(name, key, &stages, patch.input_points())
-    }
-
-    /// A shader by its name: the caller's own, or ours.
-    fn find(&self, name: &str) -> Result<&[u32], GpuError> {
-        self.replaced.get(name).map_or_else(|| shaders::named(name), |code| Ok(code))
     }
 
     fn create(

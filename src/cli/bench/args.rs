@@ -107,7 +107,9 @@ Rows of one mesh and factor draw in turns, so that a machine that becomes slower
 instance for each, which the vertex shader evaluates; in `geometry` the geometry shader evaluates, in `geometry-two-pass` it
 makes control points for `instanced`. They go with the construction `cached`, `geometry` also with `stencil`.
 `acc-published` is ACC as first published: its evaluation shader makes the tangents, at every vertex, that `tessellation` makes
-once a patch. The same surface, with the scheme acc and the construction two-stage.
+once a patch. The same surface, with the scheme acc and the construction two-stage; `acc-published-instanced` likewise with
+`cached`, to be compared with `instanced`. --cull is for `tessellation` and `instanced`: with `cached`, compute shaders leave
+patches out before they are drawn, else the control shader does.
 Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of several counts of passes,
 `compute wins from` says where its time and that of tessellating in every pass cross. Of meshes of several sizes, `grows`
 says by which power of patches. `more` is more than what was measured can tell.

@@ -1,0 +1,30 @@
+// ACC as published (Loop and Schaefer 2008), for the bench: of each corner is kept what the tangents are made of, b at the corner,
+// along its plus and minus edge and inside, then t+, with the ring's cosine, and t-. Otherwise as glsl/compute/control_points.comp,
+// in whose place it runs.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define ACC
+#define KEPT_FRAMES
+#define MAKES_POINTS
+#include "cached.glsl"
+#include "corner.glsl"
+#include "invocation.glsl"
+
+const uint CORNERS = 4u;
+
+void main() {
+    uint index = invocation_number();
+    if (index >= invocations.count) {
+        return;
+    }
+    for (uint k = 0u; k < CORNERS; ++k) {
+        uint number = invocations.first_corner + index * CORNERS + k;
+        Corner corner = corner_of_patch(number);
+        keep_vector(number, 0u, corner.limit.xyz);
+        keep_vector(number, 1u, corner.inner[3]);
+        keep_vector(number, 2u, corner.inner[4]);
+        keep_vector(number, 3u, corner.inner[0]);
+        control_points[STRIDE * number + 4u] = vec4(3.0 * corner.plus, corner.limit.w);
+        keep_vector(number, 5u, 3.0 * corner.minus);
+    }
+}
