@@ -9,7 +9,8 @@
 //! ```
 //!
 //! among the first lines of a shader asks for further compiles with those macros defined, embedded as
-//! `EVALUATE_GREGORY_QUAD_TESE_CAPTURE`, `..._CAPTURE_TEXCOORD` and `..._RINGS_2`.
+//! `EVALUATE_GREGORY_QUAD_TESE_CAPTURE`, `..._CAPTURE_TEXCOORD` and `..._RINGS_2`. `each+FAST` asks for each variant that was named
+//! before once more, with `FAST` besides.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -118,18 +119,23 @@ fn collect(root: &Path, directory: &Path, jobs: &mut Vec<Job>) -> Result<(), Str
             jobs.push(Job {
                 source: path.clone(),
                 defines: variant.split('+').map(|define| define.trim().to_owned()).collect(),
-                constant: format!("{name}_{}", constant_name(variant)),
+                constant: format!("{name}_{}", constant_name(&variant)),
             });
         }
     }
     Ok(())
 }
 
-fn variants(text: &str) -> impl Iterator<Item = &str> {
-    text.lines()
-        .take(HEADER_LINES)
-        .filter_map(|line| line.trim().strip_prefix("// variants:"))
-        .flat_map(|list| list.split(',').map(str::trim).filter(|variant| !variant.is_empty()))
+fn variants(text: &str) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    let lists = text.lines().take(HEADER_LINES).filter_map(|line| line.trim().strip_prefix("// variants:"));
+    for variant in lists.flat_map(|list| list.split(',').map(str::trim).filter(|variant| !variant.is_empty())) {
+        match variant.strip_prefix("each+") {
+            Some(more) => all.extend(all.iter().map(|before| format!("{before}+{more}")).collect::<Vec<_>>()),
+            None => all.push(variant.to_owned()),
+        }
+    }
+    all
 }
 
 fn constant_name(text: &str) -> String {

@@ -1,6 +1,6 @@
 // ACC as published (Loop and Schaefer 2008), for the bench: of each corner is kept what the tangents are made of, b at the corner,
-// along its plus and minus edge and inside, then t+, with the ring's cosine, and t-. Otherwise as glsl/compute/control_points.comp,
-// in whose place it runs.
+// along its plus and minus edge and inside, then t+, t- and the ring's cosine. Otherwise as glsl/compute/control_points.comp, in
+// whose place it runs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define ACC
@@ -24,7 +24,8 @@ void main() {
         keep_vector(number, 1u, corner.inner[3]);
         keep_vector(number, 2u, corner.inner[4]);
         keep_vector(number, 3u, corner.inner[0]);
-        control_points[STRIDE * number + 4u] = vec4(3.0 * corner.plus, corner.limit.w);
+        keep_vector(number, 4u, 3.0 * corner.plus);
         keep_vector(number, 5u, 3.0 * corner.minus);
+        control_points[4u * STRIDE * number + 18u] = corner.limit.w;
     }
 }

@@ -1,4 +1,5 @@
 // ACC as published (Loop and Schaefer 2008), for the bench, instanced: the tangents across the edges are made at every vertex.
+// variants: ATTRIBUTES
 // The surface is that of glsl/evaluate/instanced.vert with ACC, in whose place it is drawn; no face may fall back.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -15,6 +16,10 @@ float cosines[CORNERS];
 // A kind of patch of its own.
 #define KINDS_GLSL
 #include "lattice.glsl"
+// And the cosine.
+#define KEPT (OWNED + 1)
+// Of ours, which are eight vectors a corner.
+#define ATTRIBUTE_TEXELS 6
 #include "cached.glsl"
 #include "draw.glsl"
 
@@ -23,11 +28,12 @@ layout(location = 1) out vec3 world_normal;
 
 void main() {
     uint first_corner = draw.first_corner + uint(gl_InstanceIndex) * CORNERS;
-    for (uint k = 0u; k < CORNERS; ++k) {
-        for (uint i = 0u; i < OWNED; ++i) {
-            owned[k][i] = kept_vector(first_corner + k, i);
+    for (int k = 0; k < CORNERS; ++k) {
+        vec4 texels[KEPT_TEXELS] = texels_of_patch(first_corner, k);
+        for (int i = 0; i < OWNED; ++i) {
+            owned[k][i] = kept_vector(texels, i);
         }
-        cosines[k] = kept_texel(first_corner + k, 4u).w;
+        cosines[k] = kept_vector(texels, OWNED).x;
     }
     vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()), first_corner);
     Sample surface = lattice_sample(at);

@@ -18,6 +18,7 @@
 #define HULL OWNED
 #endif
 #define MAKES_LISTS
+#define KEPT OWNED
 #include "cached.glsl"
 #include "draw.glsl"
 #include "visible.glsl"
@@ -37,8 +38,9 @@ void main() {
         return;
     }
     for (uint k = 0u; k < CORNERS; ++k) {
-        for (uint i = 0u; i < OWNED; ++i) {
-            owned[k][i] = kept_vector(draw.first_corner + patch_number * CORNERS + k, i);
+        vec4 texels[KEPT_TEXELS] = kept_texels(draw.first_corner + patch_number * CORNERS + k);
+        for (int i = 0; i < OWNED; ++i) {
+            owned[k][i] = kept_vector(texels, i);
         }
     }
     float smallest = MAX_FACTOR;

@@ -11,11 +11,14 @@
 #endif
 #define KEPT_FRAMES
 #include "draw.glsl"
-#include "cached.glsl"
-#include "visible.glsl"
 #ifdef SHARED
 #include "shared.glsl"
+#define KEPT (OWNED + SHARED_VECTORS)
+#else
+#define KEPT OWNED
 #endif
+#include "cached.glsl"
+#include "visible.glsl"
 #ifdef DISPLACED
 #include "corner_lod.glsl"
 #endif
@@ -38,12 +41,13 @@ void main() {
     uint first = uint(gl_InstanceIndex) * draw.patches_per_instance;
     patch_number = patch_drawn(first + vertex / CORNERS);
     uint corner = draw.first_corner + patch_number * CORNERS + vertex % CORNERS;
-    for (uint i = 0u; i < OWNED; ++i) {
-        owned[i] = kept_vector(corner, i);
+    vec4 texels[KEPT_TEXELS] = kept_texels(corner);
+    for (int i = 0; i < OWNED; ++i) {
+        owned[i] = kept_vector(texels, i);
     }
 #ifdef SHARED
-    for (uint i = 0u; i < SHARED_VECTORS; ++i) {
-        shared_with[i] = kept_vector(corner, OWNED + i);
+    for (int i = 0; i < SHARED_VECTORS; ++i) {
+        shared_with[i] = kept_vector(texels, OWNED + i);
     }
     shared_bits = corner_bits(corner);
 #ifdef DISPLACED

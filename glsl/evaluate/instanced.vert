@@ -10,6 +10,8 @@
 // variants: BICUBIC+DISPLACED, GREGORY_QUAD+DISPLACED, GREGORY_TRIANGLE+DISPLACED
 // variants: BICUBIC+SHARED+CAPTURE, GREGORY_QUAD+SHARED+CAPTURE, GREGORY_TRIANGLE+SHARED+CAPTURE
 // variants: BICUBIC+DISPLACED+CAPTURE, GREGORY_QUAD+DISPLACED+CAPTURE, GREGORY_TRIANGLE+DISPLACED+CAPTURE
+// With ATTRIBUTES the control points come as vertex attributes that every instance has anew.
+// variants: each+ATTRIBUTES
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lattice.glsl"

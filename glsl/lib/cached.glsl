@@ -1,21 +1,27 @@
-// What the cached construction keeps of each corner: the control points that it owns and, after them, what it shares. Each vector
-// takes four numbers, of which the last is unused. Rust twin: `ModelTables::kept_bytes` in src/renderer/tables.rs.
+// What the cached construction keeps of each corner: the control points that it owns and, after them, what it shares; vectors
+// number by number without gaps, up to whole texels of four. Rust twin: `ModelTables::kept_bytes` in src/renderer/tables.rs.
 #ifndef CACHED_GLSL
 #define CACHED_GLSL
 
 #include "positions.glsl"
 
-// Vectors that a corner has room for: as many as the corners of any patch of the model need.
+// Texels that a corner has room for: as many as the corners of any patch of the model need.
 layout(constant_id = 3) const uint STRIDE = 8u;
 
 // `corner` counts through all patches.
 #ifdef MAKES_POINTS
-layout(set = 1, binding = 12, std430) writeonly buffer ControlPoints { vec4 control_points[]; };
+layout(set = 1, binding = 12, std430) writeonly buffer ControlPoints { float control_points[]; };
 
 void keep_vector(uint corner, uint i, vec3 x) {
-    control_points[STRIDE * corner + i].xyz = x;
+    uint at = 4u * STRIDE * corner + 3u * i;
+    control_points[at] = x.x;
+    control_points[at + 1u] = x.y;
+    control_points[at + 2u] = x.z;
 }
 #else
+// KEPT vectors are read of a corner.
+#define KEPT_TEXELS ((3 * KEPT + 3) / 4)
+
 layout(set = 1, binding = 12, std430) readonly buffer ControlPoints { vec4 control_points[]; };
 layout(set = 1, binding = 20) uniform samplerBuffer control_point_texels;
 
@@ -24,8 +30,46 @@ vec4 kept_texel(uint corner, uint i) {
     return READS_TEXELS ? texelFetch(control_point_texels, int(at)) : control_points[at];
 }
 
-vec3 kept_vector(uint corner, uint i) {
-    return kept_texel(corner, i).xyz;
+// The i-th vector of those in some texels.
+vec3 kept_vector(vec4 texels[KEPT_TEXELS], int i) {
+    vec4 a = texels[3 * i / 4], b = texels[min(3 * i / 4 + 1, KEPT_TEXELS - 1)];
+    switch (i & 3) {
+    case 0:
+        return a.xyz;
+    case 1:
+        return vec3(a.w, b.xy);
+    case 2:
+        return vec3(a.zw, b.x);
+    default:
+        return a.yzw;
+    }
+}
+
+#ifdef ATTRIBUTES
+// Of the patch that the instance is, corner by corner.
+#ifndef ATTRIBUTE_TEXELS
+#define ATTRIBUTE_TEXELS KEPT_TEXELS
+#endif
+layout(location = 0) in vec4 attributes[CORNERS * ATTRIBUTE_TEXELS];
+
+// Those of corner k of the patch whose first corner this is.
+vec4[KEPT_TEXELS] texels_of_patch(uint first_corner, int k) {
+    vec4 texels[KEPT_TEXELS];
+    for (int i = 0; i < KEPT_TEXELS; ++i) {
+        texels[i] = attributes[k * ATTRIBUTE_TEXELS + i];
+    }
+    return texels;
+}
+#else
+#define texels_of_patch(first_corner, k) kept_texels(first_corner + k)
+#endif
+
+vec4[KEPT_TEXELS] kept_texels(uint corner) {
+    vec4 texels[KEPT_TEXELS];
+    for (int i = 0; i < KEPT_TEXELS; ++i) {
+        texels[i] = kept_texel(corner, uint(i));
+    }
+    return texels;
 }
 #endif
 

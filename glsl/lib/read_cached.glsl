@@ -2,8 +2,13 @@
 #ifndef READ_CACHED_GLSL
 #define READ_CACHED_GLSL
 
-#include "cached.glsl"
 #include "lattice_sample.glsl"
+#ifdef SHARED
+#define KEPT (OWNED + SHARED_VECTORS)
+#else
+#define KEPT OWNED
+#endif
+#include "cached.glsl"
 #ifdef DISPLACED
 #include "map_lod.glsl"
 #include "shared_texcoords.glsl"
@@ -11,13 +16,14 @@
 
 // Of a patch whose first corner this is, for a lattice of so many segments.
 void read_cached(uint first_corner, uint segments) {
-    for (uint k = 0u; k < CORNERS; ++k) {
-        for (uint i = 0u; i < OWNED; ++i) {
-            owned[k][i] = kept_vector(first_corner + k, i);
+    for (int k = 0; k < CORNERS; ++k) {
+        vec4 texels[KEPT_TEXELS] = texels_of_patch(first_corner, k);
+        for (int i = 0; i < OWNED; ++i) {
+            owned[k][i] = kept_vector(texels, i);
         }
 #ifdef SHARED
-        for (uint i = 0u; i < SHARED_VECTORS; ++i) {
-            shared_with[k][i] = kept_vector(first_corner + k, OWNED + i);
+        for (int i = 0; i < SHARED_VECTORS; ++i) {
+            shared_with[k][i] = kept_vector(texels, OWNED + i);
         }
         shared_bits[k] = corner_bits(first_corner + k);
 #endif

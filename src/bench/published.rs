@@ -11,6 +11,7 @@ pub(super) fn shaders() -> Vec<(String, Vec<u32>)> {
         ("EVALUATE_ACC_TESE", shaders::BENCH_ACC_PUBLISHED_TESE),
         ("COMPUTE_CONTROL_POINTS_COMP_ACC", shaders::BENCH_ACC_PUBLISHED_COMP),
         ("EVALUATE_INSTANCED_VERT_ACC", shaders::BENCH_ACC_PUBLISHED_VERT),
+        ("EVALUATE_INSTANCED_VERT_ACC_ATTRIBUTES", shaders::BENCH_ACC_PUBLISHED_VERT_ATTRIBUTES),
     ];
     pairs.map(|(name, code)| (name.to_owned(), code.to_vec())).into()
 }

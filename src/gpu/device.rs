@@ -36,6 +36,8 @@ pub struct DeviceProperties {
     pub max_stage_storage_buffers: u32,
     /// Numbers that a control shader can hand on for each vertex.
     pub max_control_components: u32,
+    /// Vertex attributes of a pipeline.
+    pub max_vertex_attributes: u32,
     /// The most elements of a texel buffer.
     pub max_texel_buffer_elements: u64,
     /// Whether shaders read tables as texel buffers, as they do where these are as large as tables may be: on lavapipe that takes
@@ -86,6 +88,7 @@ impl DeviceProperties {
             max_storage_buffer_range: limits.max_storage_buffer_range.into(),
             max_stage_storage_buffers: limits.max_per_stage_descriptor_storage_buffers,
             max_control_components: limits.max_tessellation_control_per_vertex_output_components,
+            max_vertex_attributes: limits.max_vertex_input_attributes,
             max_texel_buffer_elements: limits.max_texel_buffer_elements.into(),
             reads_texels: limits.max_texel_buffer_elements >= 1 << 27,
             // Zero where the device is older than Vulkan 1.3 and does not say.

@@ -227,6 +227,11 @@ impl Renderer {
                     }
                     Drawn::Lattice(lattice) => {
                         self.push(cmd, &constants);
+                        if let Some(points) = model.control_points.as_ref().filter(|_| stages.attributes) {
+                            let of_corner = u64::from(stages.patch_bytes()) / stages.kind.corners() as u64;
+                            let offset = of_corner * group.first_corner as u64;
+                            device.cmd_bind_vertex_buffers(cmd, 0, &[points.raw()], &[offset]);
+                        }
                         lattice.cmd_draw(device, cmd, number);
                     }
                     Drawn::Tiles { segments } => {

@@ -5,6 +5,7 @@ use super::gpu_data::{DrawConstants, ViewData};
 use super::model::device_buffer;
 use super::pipelines::ShaderCode;
 use super::stages::PatchStages;
+use super::tables::TEXEL_BYTES;
 use crate::gpu::{
     Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
     pipeline_layout,
@@ -15,13 +16,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The most patches of a list. One workgroup makes it.
-pub(super) const MAX_PATCHES: u32 = 8192;
+const MAX_PATCHES: u64 = 8192;
 /// Bytes of a list before its patches. GLSL twin: `Visible` in `glsl/lib/visible.glsl`.
 const HEADER_BYTES: u64 = 4 * 8;
 /// Bytes of a list for each of its patches: its place on the list, and whether it can be seen.
 const PATCH_BYTES: u64 = 4 * 2;
-/// What shaders see from the start of a list on.
-const RANGE: u64 = HEADER_BYTES + PATCH_BYTES * MAX_PATCHES as u64;
+/// The most bytes of a list, which is what shaders see from its start on.
+const RANGE: u64 = 1 << 20;
 /// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
 /// Invocations in a workgroup of `glsl/compute/cull.comp`.
@@ -30,9 +31,33 @@ const GROUP: u32 = 64;
 /// From one command of a list to the next.
 pub(super) const COMMAND_BYTES: u32 = size_of::<vk::DrawIndirectCommand>() as u32;
 
-/// Bytes of a list of so many patches, up to the next.
-pub(super) fn list_bytes(patches: u32) -> u64 {
-    (HEADER_BYTES + PATCH_BYTES * u64::from(patches)).next_multiple_of(ALIGNMENT)
+/// How large a list is, and what is in it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ListLayout {
+    /// Bytes of a patch that are copied behind the list, for instances to have them as attributes; else 0.
+    copied: u64,
+}
+
+impl ListLayout {
+    pub(super) fn new(stages: PatchStages) -> Self {
+        Self { copied: if stages.attributes { stages.patch_bytes().into() } else { 0 } }
+    }
+
+    /// The most patches of a list.
+    pub(super) fn max_patches(self) -> u32 {
+        let most = (RANGE - HEADER_BYTES - TEXEL_BYTES) / (PATCH_BYTES + self.copied);
+        most.min(MAX_PATCHES) as u32
+    }
+
+    /// Bytes of a list of so many patches before the copies.
+    pub(super) fn copies_start(patches: u32) -> u64 {
+        (HEADER_BYTES + PATCH_BYTES * u64::from(patches)).next_multiple_of(TEXEL_BYTES)
+    }
+
+    /// Bytes of a list of so many patches, up to the next.
+    pub(super) fn bytes(self, patches: u32) -> u64 {
+        (Self::copies_start(patches) + self.copied * u64::from(patches)).next_multiple_of(ALIGNMENT)
+    }
 }
 
 /// What the indirect draws of a list are: push constants. GLSL twin: `Pack` in `glsl/compute/pack.comp`.
@@ -47,6 +72,15 @@ pub(super) struct Pack {
     pub first_index: u32,
     /// 0 for indexed draws with an instance for each patch.
     pub patches_per_instance: u32,
+}
+
+/// What is copied of patches on a list: push constants. GLSL twin: `Gather` in `glsl/compute/gather.comp`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct Gather {
+    first_corner: u32,
+    /// The word of the list after its header where the copies start.
+    copies: u32,
 }
 
 /// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
@@ -74,7 +108,7 @@ impl FrameLists {
         bytes: u64,
     ) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
-        let usage = Usage::STORAGE_BUFFER | Usage::INDIRECT_BUFFER;
+        let usage = Usage::STORAGE_BUFFER | Usage::INDIRECT_BUFFER | Usage::VERTEX_BUFFER;
         let make = || device_buffer(context, "subdiv lists of patches", bytes + RANGE, usage);
         let buffer = (bytes > 0).then(make).transpose()?;
         // Every descriptor has to be written; without lists no draw reads any.
@@ -97,10 +131,10 @@ impl FrameLists {
         self.used + bytes <= self.capacity()
     }
 
-    /// Takes room for a list, which there must be: where it starts.
-    pub(super) fn take(&mut self, patches: u32) -> u32 {
+    /// Takes room of so many bytes for a list, which there must be: where it starts.
+    pub(super) fn take(&mut self, bytes: u64) -> u32 {
         let offset = self.used;
-        self.used += list_bytes(patches);
+        self.used += bytes;
         offset as u32
     }
 
@@ -152,6 +186,7 @@ pub(super) struct ListPipelines {
     /// By [`PatchStages::for_culling`].
     looking: HashMap<(PatchStages, Cut), Owned<vk::Pipeline>>,
     packing: Option<Owned<vk::Pipeline>>,
+    gathering: HashMap<PatchStages, Owned<vk::Pipeline>>,
 }
 
 impl ListPipelines {
@@ -165,12 +200,25 @@ impl ListPipelines {
         let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
         // SAFETY: the set layouts are of this device.
         let layout = unsafe { pipeline_layout(context, "subdiv lists of patches", &sets, &constants)? };
-        Ok(Self { context: context.clone(), layout, cache, looking: HashMap::new(), packing: None })
+        Ok(Self {
+            context: context.clone(),
+            layout,
+            cache,
+            looking: HashMap::new(),
+            packing: None,
+            gathering: HashMap::new(),
+        })
     }
 
     /// Makes what patches need that are left out by these rules.
     pub(super) fn make(&mut self, stages: PatchStages, cut: Cut, code: &ShaderCode) -> Result<(), GpuError> {
+        let attributes = stages.attributes;
         let stages = stages.for_culling();
+        if attributes && !self.gathering.contains_key(&stages) {
+            let constants = stages.specialization(cut, self.context.properties());
+            let shader = Shader::compute(code.find("COMPUTE_GATHER_COMP")?).specialized(&constants);
+            self.gathering.insert(stages, self.create("gather", shader)?);
+        }
         if !self.looking.contains_key(&(stages, cut)) {
             let name = stages.culling();
             let constants = stages.specialization(cut, self.context.properties());
@@ -224,6 +272,26 @@ impl ListPipelines {
         let Some(pipeline) = &self.packing else { return };
         // SAFETY: as the caller promises.
         unsafe { self.cmd_dispatch(cmd, pipeline, &[set], offsets, bytemuck::bytes_of(pack), 1) };
+    }
+
+    /// Records the dispatch that copies what instances of so many patches, at most, read, which start with a corner.
+    ///
+    /// # Safety
+    /// As [`ListPipelines::cmd_pack`], which went before, with a barrier in between.
+    pub(super) unsafe fn cmd_gather(
+        &self,
+        cmd: vk::CommandBuffer,
+        stages: PatchStages,
+        sets: [vk::DescriptorSet; 2],
+        offsets: [u32; 2],
+        [first_corner, patches]: [u32; 2],
+    ) {
+        let Some(pipeline) = self.gathering.get(&stages.for_culling()) else { return };
+        let copies = (ListLayout::copies_start(patches) - HEADER_BYTES) / 4;
+        let gather = Gather { first_corner, copies: copies as u32 };
+        let groups = (patches * stages.kind.corners() as u32).div_ceil(GROUP);
+        // SAFETY: as the caller promises.
+        unsafe { self.cmd_dispatch(cmd, pipeline, &sets, offsets, bytemuck::bytes_of(&gather), groups) };
     }
 
     unsafe fn cmd_dispatch(

@@ -6,7 +6,7 @@ use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::Pipelines;
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
-use super::tables::VECTOR_BYTES;
+use super::tables::TEXEL_BYTES;
 use super::{DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation};
 use crate::table::PatchGroup;
@@ -33,7 +33,7 @@ pub(super) struct Model {
     corner_factors: Option<Streamed>,
     largest_edge_factor: f32,
     /// What the cached construction keeps of corners, and of rings.
-    control_points: Option<Buffer>,
+    pub control_points: Option<Buffer>,
     frames: Option<Buffer>,
     pub evaluation: Evaluation,
     /// What is drawn instead of patches, once it is known how finely.
@@ -116,12 +116,13 @@ impl Model {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
         let table_buffer = device_buffer(context, &format!("{name}: tables"), offset, storage)?;
 
-        let position_bytes = VECTOR_BYTES * tables.stored_vertices() as u64;
+        let position_bytes = TEXEL_BYTES * tables.stored_vertices() as u64;
         check("positions", position_bytes, 0)?;
         let in_flight = options.frames_in_flight;
         let kept = |what: &'static str, bytes: u64, binding: usize| -> Result<_, Error> {
             check(what, bytes, binding)?;
-            Ok((bytes > 0).then(|| device_buffer(context, &format!("{name}: {what}"), bytes, storage)).transpose()?)
+            let usage = storage | vk::BufferUsageFlags::VERTEX_BUFFER;
+            Ok((bytes > 0).then(|| device_buffer(context, &format!("{name}: {what}"), bytes, usage)).transpose()?)
         };
         let [point_bytes, frame_bytes] = tables.kept_bytes();
         let (control_points, frames) =
@@ -171,12 +172,25 @@ impl Model {
         // SAFETY: the buffers live as long as the model, and the map as long as the renderer.
         let set = unsafe { ModelSet::new(context, pipelines.model_layout.raw(), name, &parts, map)? };
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
-        let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_vectors(), tables.has_speakers());
+        let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_texels(), tables.has_speakers());
         // The control shader knows by its flags.
         let edge_factors = tables.edges().is_some() && evaluation != Evaluation::Tessellation;
         let stages = |group: &PatchGroup| {
             let PatchGroup { scheme, kind, .. } = *group;
-            PatchStages { scheme, kind, construction, evaluation, spacing, sharing, has_speakers, edge_factors, stride }
+            let attributes = false;
+            let stages = PatchStages {
+                scheme,
+                kind,
+                construction,
+                evaluation,
+                spacing,
+                sharing,
+                has_speakers,
+                edge_factors,
+                stride,
+                attributes,
+            };
+            PatchStages { attributes: stages.fit_attributes(context.properties()), ..stages }
         };
         Ok(Self {
             id,
@@ -256,6 +270,11 @@ impl Model {
     /// Whether compute shaders can list the patches of it that can be seen.
     pub(super) fn is_listed(&self) -> bool {
         self.computes() && self.evaluation.culls()
+    }
+
+    /// Whether instances of patches have their control points as vertex attributes.
+    pub(super) fn has_attributes(&self) -> bool {
+        self.stages.iter().any(|stages| stages.attributes)
     }
 
     /// Has the control points computed anew in the next frame, even though nothing moved.

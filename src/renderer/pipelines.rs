@@ -292,11 +292,7 @@ impl Pipelines {
         patch_control_points: u32,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
         let style = &self.styles[key.style];
-        let stride = match key.geometry {
-            GeometryKey::Evaluated { displaced: true } => vertex_bytes(self.texcoords, Sharing::Displacement),
-            GeometryKey::Evaluated { displaced: false } => vertex_bytes(self.texcoords, Sharing::Positions),
-            _ => 0,
-        };
+        let input = VertexInput::new(key.geometry, self.texcoords);
         let target = match &self.target.pass {
             Pass::Dynamic { color, depth, stencil, view_mask } => {
                 RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: *view_mask }
@@ -314,15 +310,10 @@ impl Pipelines {
             _ if style.geometry == Geometry::ControlEdges => vk::PrimitiveTopology::LINE_LIST,
             _ => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
-        let bindings = [vk::VertexInputBindingDescription { binding: 0, stride, ..Default::default() }];
-        let attributes = (0..).zip(VERTEX_PARTS).map(|(location, (offset, format))| {
-            vk::VertexInputAttributeDescription { location, binding: 0, format, offset }
-        });
-        let attributes: Vec<_> = attributes.filter(|attribute| attribute.offset < stride).collect();
         let desc = GraphicsPipelineDesc {
             patch_control_points,
-            vertex_bindings: if stride > 0 { &bindings } else { &[] },
-            vertex_attributes: &attributes,
+            vertex_bindings: input.bindings.as_slice(),
+            vertex_attributes: &input.attributes,
             topology,
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,
@@ -339,6 +330,43 @@ impl Pipelines {
         // SAFETY: the shaders are ours and match; the caller's fragment shader and target do by the contract of
         // `Renderer::new`.
         unsafe { desc.create(&self.context) }
+    }
+}
+
+/// What a vertex shader reads of vertices or instances.
+#[derive(Default)]
+struct VertexInput {
+    bindings: Vec<vk::VertexInputBindingDescription>,
+    attributes: Vec<vk::VertexInputAttributeDescription>,
+}
+
+impl VertexInput {
+    fn new(geometry: GeometryKey, texcoords: bool) -> Self {
+        match geometry {
+            GeometryKey::Evaluated { displaced } => {
+                let sharing = if displaced { Sharing::Displacement } else { Sharing::Positions };
+                let stride = vertex_bytes(texcoords, sharing);
+                let parts = VERTEX_PARTS.into_iter().filter(|(offset, _)| *offset < stride);
+                Self::of(vk::VertexInputRate::VERTEX, stride, parts)
+            }
+            GeometryKey::Patches(patch, _) if patch.attributes => {
+                let parts = patch.attribute_offsets().map(|offset| (offset, vk::Format::R32G32B32A32_SFLOAT));
+                Self::of(vk::VertexInputRate::INSTANCE, patch.patch_bytes(), parts)
+            }
+            _ => Self::default(),
+        }
+    }
+
+    /// Of parts at an offset, in the order of their locations.
+    fn of(input_rate: vk::VertexInputRate, stride: u32, parts: impl Iterator<Item = (u32, vk::Format)>) -> Self {
+        let attributes = (0..).zip(parts).map(|(location, (offset, format))| vk::VertexInputAttributeDescription {
+            location,
+            binding: 0,
+            format,
+            offset,
+        });
+        let bindings = vec![vk::VertexInputBindingDescription { binding: 0, stride, input_rate }];
+        Self { bindings, attributes: attributes.collect() }
     }
 }
 

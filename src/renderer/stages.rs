@@ -2,6 +2,7 @@
 
 use super::factor::Cut;
 use super::pipelines::GeometryKey;
+use super::tables::{TEXEL_BYTES, kept_texels};
 use super::{Capture, Construction, Evaluation};
 use crate::gpu::{DeviceProperties, Spacing, Specialization};
 use crate::patch::Scheme;
@@ -20,8 +21,10 @@ pub(super) struct PatchStages {
     pub has_speakers: bool,
     /// Whether edges of a lattice have factors of their own.
     pub edge_factors: bool,
-    /// Vectors that a corner has room for where they are kept between draws, else 0.
+    /// Texels that a corner has room for where its vectors are kept between draws, else 0.
     pub stride: u32,
+    /// Whether the vertex shader has the control points as attributes of an instance.
+    pub attributes: bool,
 }
 
 /// What patches share along edges and at corners.
@@ -89,7 +92,26 @@ impl PatchStages {
 
     /// What tells apart the pipelines that make cached control points: what is of no concern to them is as usual.
     pub(super) fn for_control_points(self) -> Self {
-        Self { evaluation: Evaluation::Tessellation, spacing: Spacing::Equal, edge_factors: false, ..self }
+        let (evaluation, spacing) = (Evaluation::Tessellation, Spacing::Equal);
+        Self { evaluation, spacing, edge_factors: false, attributes: false, ..self }
+    }
+
+    /// Whether the vertex shader evaluates instances, with no more control points than a device has attributes.
+    pub(super) fn fit_attributes(self, device: &DeviceProperties) -> bool {
+        let instanced = matches!(self.evaluation, Evaluation::Instanced | Evaluation::GeometryTwoPass);
+        instanced && self.attribute_offsets().count() <= device.max_vertex_attributes as usize
+    }
+
+    /// Where the attributes of an instance are in what is kept of a patch, in bytes.
+    pub(super) fn attribute_offsets(self) -> impl Iterator<Item = u32> {
+        let texels = kept_texels(self.scheme.owned(self.kind), self.sharing);
+        let of_corner = move |k| (0..texels).map(move |i| TEXEL_BYTES as u32 * (k * self.stride + i));
+        (0..self.kind.corners() as u32).flat_map(of_corner)
+    }
+
+    /// Bytes of what is kept of a patch.
+    pub(super) fn patch_bytes(self) -> u32 {
+        TEXEL_BYTES as u32 * self.stride * self.kind.corners() as u32
     }
 
     /// The name of the shader that makes control points for all draws of a frame.
@@ -202,6 +224,9 @@ impl PatchStages {
             Capture::Off if texcoords && self.sharing != Sharing::Displacement => "_TEXCOORD",
             Capture::Off | Capture::Points => "",
         };
+        if self.attributes {
+            name += "_ATTRIBUTES";
+        }
         name
     }
 }
@@ -257,6 +282,7 @@ mod tests {
                     continue;
                 }
                 let spacing = Spacing::Equal;
+                let attributes = matches!(evaluation, Evaluation::Instanced | Evaluation::GeometryTwoPass);
                 let stages = PatchStages {
                     scheme,
                     kind,
@@ -266,7 +292,8 @@ mod tests {
                     sharing,
                     has_speakers: true,
                     edge_factors: false,
-                    stride: 8,
+                    stride: 9,
+                    attributes,
                 };
                 for (capture, texcoords) in modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]) {
                     let made = [stages.vertex(capture), stages.control(capture, texcoords), stages.control_points()];

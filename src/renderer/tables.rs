@@ -68,10 +68,15 @@ impl Edges {
     }
 }
 
-/// Bytes of a stored vertex, and of a vector that is kept. GLSL twins: `glsl/lib/positions.glsl`, `cached.glsl`.
-pub(super) const VECTOR_BYTES: u64 = 16;
+/// Bytes of a stored vertex, and of a texel of what is kept. GLSL twins: `glsl/lib/positions.glsl`, `cached.glsl`.
+pub(super) const TEXEL_BYTES: u64 = 16;
 /// Bytes of a frame of a ring. GLSL twin: `glsl/lib/kept_frames.glsl`.
 const FRAME_BYTES: u64 = 4 * 12;
+
+/// Texels of four numbers for the vectors that a corner owns and shares. GLSL twin: `KEPT_TEXELS` in `glsl/lib/cached.glsl`.
+pub(super) fn kept_texels(owned: usize, sharing: Sharing) -> u32 {
+    (3 * (owned as u32 + sharing.vectors())).div_ceil(4)
+}
 
 /// Bytes of a table by its name.
 pub type TableBytes = (&'static str, u64);
@@ -181,19 +186,19 @@ impl ModelTables {
         self.construction
     }
 
-    /// How many vectors a corner has room for, where what it owns and shares is kept between draws; else 0. GLSL twin:
+    /// How many texels a corner has room for, where what it owns and shares is kept between draws; else 0. GLSL twin:
     /// `glsl/lib/cached.glsl`.
-    pub(super) fn kept_vectors(&self) -> u32 {
+    pub(super) fn kept_texels(&self) -> u32 {
         if self.construction != Construction::Cached || self.evaluation == Evaluation::Subdivision {
             return 0;
         }
         let owned = self.plan.groups().iter().map(|group| group.scheme.owned(group.kind)).max().unwrap_or(0);
-        owned as u32 + self.sharing().vectors()
+        kept_texels(owned, self.sharing())
     }
 
     /// How many rings have frames that are kept between draws.
     pub(super) fn kept_frames(&self) -> u32 {
-        let frames = self.kept_vectors() > 0 && self.evaluation != Evaluation::GeometryTwoPass;
+        let frames = self.kept_texels() > 0 && self.evaluation != Evaluation::GeometryTwoPass;
         self.rings.as_ref().filter(|_| frames).map_or(0, |rings| rings.headers.len() as u32)
     }
 
@@ -209,7 +214,7 @@ impl ModelTables {
     /// Bytes of what the cached construction keeps of corners, and of frames.
     pub(super) fn kept_bytes(&self) -> [u64; 2] {
         let corners: usize = self.plan.patches().iter().map(|patch| patch.kind.corners()).sum();
-        [VECTOR_BYTES * u64::from(self.kept_vectors()) * corners as u64, FRAME_BYTES * u64::from(self.kept_frames())]
+        [TEXEL_BYTES * u64::from(self.kept_texels()) * corners as u64, FRAME_BYTES * u64::from(self.kept_frames())]
     }
 
     /// How many patches of a kind there are.
@@ -228,7 +233,7 @@ impl ModelTables {
 
     /// Bytes of each table that drawing the surface reads.
     pub fn bytes(&self) -> Vec<TableBytes> {
-        let positions = ("positions", VECTOR_BYTES * self.stored_vertices() as u64);
+        let positions = ("positions", TEXEL_BYTES * self.stored_vertices() as u64);
         let tables = self.bindings().into_iter().filter(|(name, array)| *name != "texcoords" && !array.is_empty());
         let kept = ["control_points", "frames"].into_iter().zip(self.kept_bytes()).filter(|&(_, bytes)| bytes > 0);
         std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).chain(kept).collect()

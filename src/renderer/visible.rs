@@ -8,9 +8,10 @@ use super::draw::Bound;
 use super::evaluated::Drawn;
 use super::factor::{Cull, Cut};
 use super::gpu_data::DrawConstants;
-use super::lists::{COMMAND_BYTES, FrameLists, MAX_PATCHES, Pack, list_bytes};
+use super::lists::{COMMAND_BYTES, FrameLists, ListLayout, Pack};
 use super::model::Model;
 use super::pipelines::PipelineKey;
+use super::stages::PatchStages;
 use super::{DrawItem, Error, Evaluation, Geometry, Renderer, Retired, RetiredObject, View};
 use crate::gpu::Features;
 use crate::table::PatchGroup;
@@ -67,10 +68,13 @@ struct List {
 }
 
 impl List {
+    fn first_corner(self, group: &PatchGroup) -> u32 {
+        (group.first_corner + self.first as usize * group.kind.corners()) as u32
+    }
+
     fn constants(self, of_draw: &DrawConstants, group: &PatchGroup) -> DrawConstants {
-        let corners = group.kind.corners();
         DrawConstants {
-            first_corner: (group.first_corner + self.first as usize * corners) as u32,
+            first_corner: self.first_corner(group),
             first_patch: group.patches.start as u32 + self.first,
             ..*of_draw
         }
@@ -85,8 +89,8 @@ impl Renderer {
     /// [`DrawItem::cull`]: for [`Renderer::cmd_draw_visible`], as often as you like in this frame.
     ///
     /// It pays where control points are cached: for models that are [`Construction::Cached`](super::Construction::Cached) and
-    /// evaluated by the tessellation stages or [`Evaluation::Instanced`]. Others are drawn as by [`Renderer::cmd_draw`]. Takes eight
-    /// bytes of memory a patch.
+    /// evaluated by the tessellation stages or [`Evaluation::Instanced`]. Others are drawn as by [`Renderer::cmd_draw`]. Takes
+    /// memory: eight bytes a patch, and for instances what they read of it, 256 bytes of a Gregory patch.
     ///
     /// # Errors
     /// As [`Renderer::cmd_draw`]; [`Error::CullingNeeds`] without [`Options::visible_lists`](super::Options::visible_lists). What was recorded
@@ -112,8 +116,9 @@ impl Renderer {
         for item in items {
             self.check_item(view, item)?;
             self.make_pipelines(item.model, item.factor, item.cull)?;
-            for (_, group) in self.listed_groups(item)? {
-                bytes += pieces(group).map(|(_, count)| list_bytes(count)).sum::<u64>();
+            for (_, stages, group) in self.listed_groups(item)? {
+                let layout = ListLayout::new(stages);
+                bytes += pieces(group, layout).map(|(_, count)| layout.bytes(count)).sum::<u64>();
             }
         }
         self.make_room(frame_index, bytes)?;
@@ -167,13 +172,14 @@ impl Renderer {
         Ok(())
     }
 
-    /// The groups of which lists are made, if any, by their number.
-    fn listed_groups(&self, item: &DrawItem) -> Result<impl Iterator<Item = (usize, &PatchGroup)>, Error> {
+    /// The groups of which lists are made, if any, with their number.
+    fn listed_groups(&self, item: &DrawItem) -> Result<impl Iterator<Item = (usize, PatchStages, &PatchGroup)>, Error> {
         let model = self.model(item.model)?;
         let surface = self.style(item)?.geometry == Geometry::Surface;
         let any = surface && item.cull != Cull::NONE && model.is_listed();
         let groups = model.stages.iter().zip(model.tables.plan().groups()).enumerate();
-        Ok(groups.filter(move |(_, (stages, _))| any && stages.has_hull()).map(|(number, (_, group))| (number, group)))
+        let groups = groups.map(|(number, (&stages, group))| (number, stages, group));
+        Ok(groups.filter(move |(_, stages, _)| any && stages.has_hull()))
     }
 
     /// Makes room for lists of so many bytes in a frame.
@@ -197,18 +203,19 @@ impl Renderer {
         let most = self.check_item(view, item)?;
         let model = self.model(item.model)?;
         let mut lists = Vec::new();
-        for (number, group) in self.listed_groups(item)? {
-            for (first, count) in pieces(group) {
+        for (number, stages, group) in self.listed_groups(item)? {
+            let layout = ListLayout::new(stages);
+            for (first, count) in pieces(group, layout) {
                 let patches_per_instance = match model.evaluation {
-                    Evaluation::Tessellation => self.patches_per_instance(model.stages[number], count, most),
+                    Evaluation::Tessellation => self.patches_per_instance(stages, count, most),
                     _ => 0,
                 };
-                lists.push(List { group: number, first, count, offset: 0, patches_per_instance });
+                let list = List { group: number, first, count, offset: 0, patches_per_instance };
+                lists.push((list, layout.bytes(count)));
             }
         }
         let room = &mut self.lists[frame as usize];
-        lists.iter_mut().for_each(|list| list.offset = room.take(list.count));
-        Ok(lists)
+        Ok(lists.into_iter().map(|(list, bytes)| List { offset: room.take(bytes), ..list }).collect())
     }
 
     unsafe fn cmd_list(&self, cmd: vk::CommandBuffer, visible: &VisibleItems) -> Result<(), Error> {
@@ -245,8 +252,22 @@ impl Renderer {
                 unsafe { pipelines.cmd_pack(cmd, visible.set, [visible.view_offset, list.offset], &pack) };
             }
         }
-        let read = vk::AccessFlags::SHADER_READ | vk::AccessFlags::INDIRECT_COMMAND_READ;
-        barrier(Stage::DRAW_INDIRECT | Stage::VERTEX_SHADER, read);
+        if visible.items.iter().any(|(item, _)| self.model(item.model).is_ok_and(|model| model.has_attributes())) {
+            barrier(Stage::COMPUTE_SHADER, vk::AccessFlags::SHADER_READ);
+        }
+        for (item, lists) in &visible.items {
+            let model = self.model(item.model)?;
+            for list in lists.iter().filter(|list| model.stages[list.group].attributes) {
+                let (stages, group) = (model.stages[list.group], &model.tables.plan().groups()[list.group]);
+                let sets = [visible.set, model.set.raw];
+                let offsets = [visible.view_offset, list.offset];
+                // SAFETY: as the caller promises.
+                unsafe { pipelines.cmd_gather(cmd, stages, sets, offsets, [list.first_corner(group), list.count]) };
+            }
+        }
+        use vk::AccessFlags as Access;
+        let read = Access::SHADER_READ | Access::INDIRECT_COMMAND_READ | Access::VERTEX_ATTRIBUTE_READ;
+        barrier(Stage::DRAW_INDIRECT | Stage::VERTEX_INPUT | Stage::VERTEX_SHADER, read);
         Ok(())
     }
 
@@ -273,6 +294,10 @@ impl Renderer {
                 self.cmd_bind_view(cmd, visible.set, [visible.view_offset, list.offset]);
                 self.push(cmd, &constants);
                 let offset = u64::from(list.offset);
+                if model.stages[group].attributes {
+                    let copies = offset + ListLayout::copies_start(list.count);
+                    device.cmd_bind_vertex_buffers(cmd, 0, &[visible.buffer], &[copies]);
+                }
                 if list.patches_per_instance == 0 {
                     device.cmd_draw_indexed_indirect(cmd, visible.buffer, offset, 1, 0);
                     continue;
@@ -287,9 +312,9 @@ impl Renderer {
 }
 
 /// The patches of a group in pieces that a list has room for: from which on, and how many.
-fn pieces(group: &PatchGroup) -> impl Iterator<Item = (u32, u32)> {
-    let patches = group.patches.len() as u32;
-    (0..patches).step_by(MAX_PATCHES as usize).map(move |first| (first, MAX_PATCHES.min(patches - first)))
+fn pieces(group: &PatchGroup, layout: ListLayout) -> impl Iterator<Item = (u32, u32)> {
+    let (patches, most) = (group.patches.len() as u32, layout.max_patches());
+    (0..patches).step_by(most as usize).map(move |first| (first, most.min(patches - first)))
 }
 
 fn pack(model: &Model, drawn: Drawn, list: List) -> Pack {
