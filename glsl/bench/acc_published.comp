@@ -26,6 +26,6 @@ void main() {
         keep_vector(number, 3u, corner.inner[0]);
         keep_vector(number, 4u, 3.0 * corner.plus);
         keep_vector(number, 5u, 3.0 * corner.minus);
-        control_points[4u * STRIDE * number + 18u] = corner.limit.w;
+        keep_number(number, 18u, corner.limit.w);
     }
 }

@@ -17,7 +17,7 @@ float cosines[CORNERS];
 #define KINDS_GLSL
 #include "lattice.glsl"
 // And the cosine.
-#define KEPT (OWNED + 1)
+#define KEPT (3 * OWNED + 1)
 // Of ours, which are eight vectors a corner.
 #define ATTRIBUTE_TEXELS 6
 #include "cached.glsl"
@@ -33,7 +33,7 @@ void main() {
         for (int i = 0; i < OWNED; ++i) {
             owned[k][i] = kept_vector(texels, i);
         }
-        cosines[k] = kept_vector(texels, OWNED).x;
+        cosines[k] = kept_number(texels, 3 * OWNED);
     }
     vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()), first_corner);
     Sample surface = lattice_sample(at);

@@ -75,6 +75,7 @@ void main() {
         for (uint i = 0u; i < SHARED_VECTORS; ++i) {
             keep_vector(first + k, OWNED + i, corner.with[i]);
         }
+        keep_number(first + k, 3u * (OWNED + SHARED_VECTORS), corner_bits(first + k) != 0u ? 1.0 : 0.0);
 #endif
     }
 #ifdef GREGORY

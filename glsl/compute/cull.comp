@@ -18,7 +18,7 @@
 #define HULL OWNED
 #endif
 #define MAKES_LISTS
-#define KEPT OWNED
+#define KEPT (3 * OWNED)
 #include "cached.glsl"
 #include "draw.glsl"
 #include "visible.glsl"

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MAKES_LISTS
-#define KEPT 1
+#define KEPT 4
 #include "cached.glsl"
 #include "visible.glsl"
 

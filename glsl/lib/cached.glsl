@@ -1,5 +1,5 @@
-// What the cached construction keeps of each corner: the control points that it owns and, after them, what it shares; vectors
-// number by number without gaps, up to whole texels of four. Rust twin: `ModelTables::kept_bytes` in src/renderer/tables.rs.
+// What the cached construction keeps of each corner: the control points that it owns and, after them, what it shares and whether its
+// plus edge is sharp; number by number without gaps, up to whole texels of four. Rust twin: `ModelTables::kept_bytes` in src/renderer/tables.rs.
 #ifndef CACHED_GLSL
 #define CACHED_GLSL
 
@@ -12,15 +12,18 @@ layout(constant_id = 3) const uint STRIDE = 8u;
 #ifdef MAKES_POINTS
 layout(set = 1, binding = 12, std430) writeonly buffer ControlPoints { float control_points[]; };
 
+void keep_number(uint corner, uint i, float x) {
+    control_points[4u * STRIDE * corner + i] = x;
+}
+
 void keep_vector(uint corner, uint i, vec3 x) {
-    uint at = 4u * STRIDE * corner + 3u * i;
-    control_points[at] = x.x;
-    control_points[at + 1u] = x.y;
-    control_points[at + 2u] = x.z;
+    keep_number(corner, 3u * i, x.x);
+    keep_number(corner, 3u * i + 1u, x.y);
+    keep_number(corner, 3u * i + 2u, x.z);
 }
 #else
-// KEPT vectors are read of a corner.
-#define KEPT_TEXELS ((3 * KEPT + 3) / 4)
+// KEPT numbers are read of a corner.
+#define KEPT_TEXELS ((KEPT + 3) / 4)
 
 layout(set = 1, binding = 12, std430) readonly buffer ControlPoints { vec4 control_points[]; };
 layout(set = 1, binding = 20) uniform samplerBuffer control_point_texels;
@@ -63,6 +66,10 @@ vec4[KEPT_TEXELS] texels_of_patch(uint first_corner, int k) {
 #else
 #define texels_of_patch(first_corner, k) kept_texels(first_corner + k)
 #endif
+
+float kept_number(vec4 texels[KEPT_TEXELS], int i) {
+    return texels[i / 4][i & 3];
+}
 
 vec4[KEPT_TEXELS] kept_texels(uint corner) {
     vec4 texels[KEPT_TEXELS];

@@ -4,9 +4,9 @@
 
 #include "lattice_sample.glsl"
 #ifdef SHARED
-#define KEPT (OWNED + SHARED_VECTORS)
+#define KEPT (3 * (OWNED + SHARED_VECTORS) + 1)
 #else
-#define KEPT OWNED
+#define KEPT (3 * OWNED)
 #endif
 #include "cached.glsl"
 #ifdef DISPLACED
@@ -25,7 +25,7 @@ void read_cached(uint first_corner, uint segments) {
         for (int i = 0; i < SHARED_VECTORS; ++i) {
             shared_with[k][i] = kept_vector(texels, OWNED + i);
         }
-        shared_bits[k] = corner_bits(first_corner + k);
+        shared_bits[k] = kept_number(texels, KEPT - 1) != 0.0 ? SHARP_EDGE_BIT : 0u;
 #endif
 #ifdef DISPLACED
         SharedTexcoord shared_at = shared_texcoords[first_corner + k];

@@ -73,9 +73,11 @@ pub(super) const TEXEL_BYTES: u64 = 16;
 /// Bytes of a frame of a ring. GLSL twin: `glsl/lib/kept_frames.glsl`.
 const FRAME_BYTES: u64 = 4 * 12;
 
-/// Texels of four numbers for the vectors that a corner owns and shares. GLSL twin: `KEPT_TEXELS` in `glsl/lib/cached.glsl`.
+/// Texels of four numbers for the vectors that a corner owns and shares, and whether its plus edge is sharp. GLSL twin:
+/// `KEPT_TEXELS` in `glsl/lib/cached.glsl`.
 pub(super) fn kept_texels(owned: usize, sharing: Sharing) -> u32 {
-    (3 * (owned as u32 + sharing.vectors())).div_ceil(4)
+    let sharp = u32::from(sharing != Sharing::Positions);
+    (3 * (owned as u32 + sharing.vectors()) + sharp).div_ceil(4)
 }
 
 /// Bytes of a table by its name.
