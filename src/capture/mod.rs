@@ -3,6 +3,7 @@
 //! `subdiv screen`.
 
 mod draws;
+mod watch;
 
 use crate::gpu::{Domain, PatchBatch, tessellated_vertices};
 use crate::headless::Headless;
@@ -17,6 +18,8 @@ use crate::topology::PatchKind;
 use bytemuck::{Pod, Zeroable};
 use draws::{CONTROL_POINT_WORDS, EDGES_ONLY, FACTOR_WORDS, Head, RECORD_BYTES};
 use std::ops::Range;
+#[cfg(feature = "measure")]
+pub(crate) use watch::Idle;
 
 /// A vertex as the evaluation shader computed it, in object space.
 #[repr(C)]

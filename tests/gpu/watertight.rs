@@ -1,15 +1,13 @@
 //! What patches share on the GPU, to the bit; and vertices of high valence.
-#![cfg(feature = "headless")]
 
-mod common;
-
+use crate::common;
+use crate::common::edges::{bits, edge_points, shared_edges};
+use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::Scheme;
 use ash_subdiv::capture::{Captured, CapturedVertex};
 use ash_subdiv::table::{CpuSurface, grid_parameters, prepare};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, Spacing, shape};
-use common::edges::{bits, edge_points, shared_edges};
-use common::random::{random_creased_mesh, random_mesh};
 use glam::Vec3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;

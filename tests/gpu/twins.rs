@@ -1,8 +1,6 @@
 //! The shaders against their CPU twins: control points and evaluated vertices, captured.
-#![cfg(feature = "headless")]
 
-mod common;
-
+use crate::common;
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::table::{CpuSurface, Patch};

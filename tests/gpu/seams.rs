@@ -1,16 +1,15 @@
 //! Not one crack: bits of positions and normals where patches meet, under any factors, with displacement, for any order of
 //! faces; and that each of the things that make it so is needed.
-#![cfg(all(feature = "headless", feature = "measure", feature = "png"))]
+#![cfg(all(feature = "measure", feature = "png"))]
 
-mod common;
-
+use crate::common;
+use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::capture::{CaptureDraw, Captured, Which};
 use ash_subdiv::headless::{Headless, Texels, Texture};
 use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
 use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::renderer::{Cull, Evaluation, Factor};
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, ReadOptions, Spacing, View, read, shape, shapes};
-use common::random::{random_creased_mesh, random_mesh};
 use glam::Vec3;
 use std::path::Path;
 use std::process::Command;
