@@ -64,8 +64,8 @@ impl Captured<'_> {
     ) -> Result<(), Error> {
         let headless = self.headless;
         let kept = headless.kept::<Watchers>();
-        let watched = (mode, self.options.evaluation);
-        let new = || Watcher::new(headless, mode, watched.1, &self.shaders);
+        let watched = (mode, self.options.clone());
+        let new = || Watcher::new(headless, mode, self.options.evaluation, &self.shaders);
         let mut watcher = if self.shaders.is_empty() { kept.take(&watched, new)? } else { new()? };
         let Watcher { renderer, layout, target, idle } = &mut watcher;
         // SAFETY: as the caller of `displaced` promises. Only models look at maps, and this one goes before the map does.

@@ -3,13 +3,17 @@
 use super::draws::{HEAD_BYTES, Head, RECORD_BYTES, capture_buffer};
 use crate::gpu::{Buffer, Owned, descriptor_set_layout};
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
-use crate::renderer::{Capture, Error, Evaluation, Options, Renderer, STAGES, Style, Target};
+use crate::renderer::{Capture, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, Style, Target};
 use ash::vk;
 use bytemuck::Zeroable;
+use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
-/// What nobody is using, by what it is for.
-pub(crate) struct Idle<K, T>(Mutex<Vec<(K, T)>>);
+/// How many are kept of each sort: a driver may take 20 MB for a pipeline.
+const KEPT: usize = 4;
+
+/// What nobody is using, by what it is for; those used last.
+pub(crate) struct Idle<K, T>(Mutex<VecDeque<(K, T)>>);
 
 impl<K, T> Default for Idle<K, T> {
     fn default() -> Self {
@@ -21,16 +25,19 @@ impl<K: PartialEq, T> Idle<K, T> {
     /// One that was put back, else one that is made now.
     pub(crate) fn take(&self, key: &K, make: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
         let mut idle = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(index) = idle.iter().position(|(of, _)| of == key) {
-            return Ok(idle.swap_remove(index).1);
-        }
+        let found = idle.iter().position(|(of, _)| of == key).and_then(|index| idle.remove(index));
         drop(idle);
-        make()
+        found.map_or_else(make, |(_, kept)| Ok(kept))
     }
 
     /// For the next. What failed in some way is better dropped.
     pub(crate) fn put_back(&self, key: K, used: T) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push((key, used));
+        let mut idle = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        idle.push_back((key, used));
+        let oldest = if idle.len() > KEPT { idle.pop_front() } else { None };
+        // Destroying pipelines takes its time, too.
+        drop(idle);
+        drop(oldest);
     }
 }
 
@@ -45,7 +52,7 @@ pub(super) struct Watcher {
 }
 
 /// What watches with the crate's own shaders, for all models of a device ([`Headless::kept`]).
-pub(super) type Watchers = Idle<(Capture, Evaluation), Watcher>;
+pub(super) type Watchers = Idle<(Capture, ModelOptions), Watcher>;
 
 impl Watcher {
     /// `shaders` are in the place of the crate's own.

@@ -264,8 +264,9 @@ pub fn leaked_pixels(
     draw: &CaptureDraw,
     side: u32,
 ) -> Result<u64, Error> {
-    let kept = headless.kept::<Idle<u32, Layers>>();
-    let mut layers = kept.take(&side, || Layers::new(headless, side))?;
+    let kept = headless.kept::<Idle<(u32, ModelOptions), Layers>>();
+    let drawn = (side, options.clone());
+    let mut layers = kept.take(&drawn, || Layers::new(headless, side))?;
     let Layers { renderer, target } = &mut layers;
     // SAFETY: the texture outlives the model, and nothing else looks at it.
     let map = displacement.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
@@ -283,7 +284,7 @@ pub fn leaked_pixels(
     renderer.remove_model(model)?;
     // SAFETY: outside rendering, and all frames before are done. Frees the model.
     headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
-    kept.put_back(side, layers);
+    kept.put_back(drawn, layers);
     Ok(pixels.chunks_exact(4).filter(|pixel| pixel[0] != pixel[1]).count() as u64)
 }
 
