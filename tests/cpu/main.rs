@@ -1,4 +1,4 @@
-//! All that needs no Vulkan device, but for a test here and there.
+//! Tests that need no Vulkan device, but for one of `edge_normals`.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! All that needs a Vulkan device: one program, so that little is linked twice and both cores have work.
+//! Tests that need a Vulkan device: one program, so that less is linked and every core has work.
 #![cfg(feature = "headless")]
 
 mod batches;
