@@ -69,8 +69,9 @@ fn embed(root: &Path, out: &Path, rust_file: &str) -> Result<(), String> {
         return Err(format!("{a} and {b} would both be embedded as {}: rename one", pair[0].constant));
     }
 
-    // docs.rs has no shader compiler, and documentation needs none.
-    let compiled = env::var_os("DOCS_RS").is_none();
+    // docs.rs has no shader compiler, and documentation needs none. Nor do lints, for which Cargo keeps a folder of its own.
+    let lints = env::var("RUSTC_WORKSPACE_WRAPPER").is_ok_and(|wrapper| wrapper.contains("clippy-driver"));
+    let compiled = env::var_os("DOCS_RS").is_none() && !lints;
     let spirv = out.join(rust_file.trim_end_matches(".rs"));
     fs::create_dir_all(&spirv).map_err(|error| format!("{}: {error}", spirv.display()))?;
     if compiled && !jobs.is_empty() {

@@ -1,11 +1,10 @@
 //! The buffer that the shaders write to, and the draws that fill it.
 
+use super::watch::{Watcher, Watchers};
 use super::{CaptureDraw, Captured, CapturedVertex};
-use crate::gpu::{
-    Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt, descriptor_set_layout,
-};
-use crate::headless::{Headless, Offscreen, OffscreenDesc};
-use crate::renderer::{Capture, DrawItem, Error, Factor, ModelOptions, Options, Renderer, STAGES, Style, Target};
+use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
+use crate::headless::Headless;
+use crate::renderer::{Capture, DrawItem, Error, Factor, ModelOptions};
 use crate::topology::PatchKind;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -23,7 +22,7 @@ pub(super) struct Head {
     pub count: u32,
 }
 
-const HEAD_BYTES: u64 = size_of::<Head>() as u64;
+pub(super) const HEAD_BYTES: u64 = size_of::<Head>() as u64;
 pub(super) const RECORD_BYTES: u64 = size_of::<CapturedVertex>() as u64;
 /// Words that the control points of a patch take, whatever its kind.
 pub(super) const CONTROL_POINT_WORDS: usize = 96;
@@ -64,35 +63,14 @@ impl Captured<'_> {
         mut take: impl FnMut(PatchKind, Vec<f32>) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let headless = self.headless;
-        let context = headless.context();
-        let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, STAGES)];
-        // Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
-        let mut idle = None;
-        if mode == Capture::Triangles {
-            bindings.push((vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::GEOMETRY));
-            let mut buffer = capture_buffer(context, HEAD_BYTES + RECORD_BYTES)?;
-            buffer.write(0, &[Head::zeroed()])?;
-            idle = Some(buffer);
-        }
-        let layout = descriptor_set_layout(context, "capture", &bindings)?;
-        let target = Offscreen::new(headless, &OffscreenDesc::new(4, 4))?;
-        let options = Options {
-            styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
-            set_layouts: vec![layout.raw()],
-            shaders: self.shaders.clone(),
-            evaluations: vec![self.options.evaluation],
-            ..Options::default()
-        };
-        let desc = target.desc();
-        let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
-        // SAFETY: the set layout is that of the capture buffer and outlives the renderer, which is dropped when idle:
-        // every submission is waited for.
-        let mut renderer = unsafe { Renderer::with_capture(context, &render_target, &options, mode)? };
-        if let Some(map) = self.displacement {
-            // SAFETY: as the caller of `displaced` promises.
-            unsafe { renderer.add_displacement(map) };
-        }
-        let model_options = ModelOptions { evaluation: self.evaluation(mode), ..self.options.clone() };
+        let kept = headless.kept::<Watchers>();
+        let watched = (mode, self.options.clone());
+        let new = || Watcher::new(headless, mode, self.options.evaluation, &self.shaders);
+        let mut watcher = if self.shaders.is_empty() { kept.take(&watched, new)? } else { new()? };
+        let Watcher { renderer, layout, target, idle } = &mut watcher;
+        // SAFETY: as the caller of `displaced` promises. Only models look at maps, and this one goes before the map does.
+        let displacement = self.displacement.map(|map| unsafe { renderer.add_displacement(map) });
+        let model_options = ModelOptions { evaluation: self.evaluation(mode), displacement, ..self.options.clone() };
         let model = renderer.add_tables(self.tables.clone(), &self.positions, &model_options)?;
         if model_options.evaluation.needs_segments() {
             let most = match draw.factor {
@@ -115,7 +93,7 @@ impl Captured<'_> {
             for first in patches.clone().step_by(step) {
                 let window = first..patches.end.min(first + step as u32);
                 let size = HEAD_BYTES + window.len() as u64 * per_patch;
-                let mut buffer = capture_buffer(context, size)?;
+                let mut buffer = capture_buffer(headless.context(), size)?;
                 // What no shader writes is NaN.
                 buffer.write(0, &vec![f32::NAN; size as usize / 4])?;
                 let head = head(&window);
@@ -142,11 +120,17 @@ impl Captured<'_> {
                 take(kind, buffer.read(HEAD_BYTES, words as usize)?)?;
             }
         }
+        if self.shaders.is_empty() {
+            renderer.remove_model(model)?;
+            // SAFETY: the command buffer is being recorded; the frame before was waited for. Frees the model.
+            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+            kept.put_back(watched, watcher);
+        }
         Ok(())
     }
 }
 
-fn capture_buffer(context: &Arc<DeviceContext>, size: u64) -> Result<Buffer, GpuError> {
+pub(super) fn capture_buffer(context: &Arc<DeviceContext>, size: u64) -> Result<Buffer, GpuError> {
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
     Buffer::new(context, &BufferDesc { name: "capture", size, usage, location: MemoryLocation::Readback })
 }

@@ -3,6 +3,7 @@
 //! `subdiv screen`.
 
 mod draws;
+mod watch;
 
 use crate::gpu::{Domain, PatchBatch, tessellated_vertices};
 use crate::headless::Headless;
@@ -17,6 +18,8 @@ use crate::topology::PatchKind;
 use bytemuck::{Pod, Zeroable};
 use draws::{CONTROL_POINT_WORDS, EDGES_ONLY, FACTOR_WORDS, Head, RECORD_BYTES};
 use std::ops::Range;
+#[cfg(feature = "measure")]
+pub(crate) use watch::Idle;
 
 /// A vertex as the evaluation shader computed it, in object space.
 #[repr(C)]
@@ -82,6 +85,8 @@ impl CaptureDraw {
 
 /// A model whose stages before rasterization can be watched: those of tessellation, but for [`Captured::vertices`] also those
 /// of other evaluations ([`ModelOptions::evaluation`]) that have them.
+///
+/// The device keeps some of the pipelines for the next capture with the same options, of this model or another.
 pub struct Captured<'h> {
     headless: &'h Headless,
     options: ModelOptions,

@@ -4,6 +4,7 @@
 //! validation layer if asked or if `SUBDIV_VALIDATION` is set. [`Headless::submit`] runs commands and waits for them;
 //! [`Offscreen`] is an image to draw into and to read back; [`Headless::timed`] and [`Headless::counted`] measure.
 
+use std::any::Any;
 use std::env;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -54,6 +55,8 @@ pub struct Headless {
     queue_family: u32,
     queue: Mutex<vk::Queue>,
     messages: Arc<Messages>,
+    /// At most one of each type.
+    kept: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
 }
 
 /// Destroys the device, and then the instance.
@@ -120,7 +123,8 @@ impl Headless {
         // SAFETY: the device was made with one queue of this family.
         let queue = unsafe { raw.get_device_queue(queue_family, 0) };
         let queue = Mutex::new(queue);
-        Ok(Self { context, instance: instance_handle, physical_device, queue_family, queue, messages })
+        let kept = Mutex::default();
+        Ok(Self { context, instance: instance_handle, physical_device, queue_family, queue, messages, kept })
     }
 
     /// What buffers, images and pipelines are made from.
@@ -232,6 +236,16 @@ impl Headless {
         let _queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: no other thread uses the queue.
         unsafe { self.device().device_wait_idle() }.of("vkDeviceWaitIdle", "device")
+    }
+
+    /// What is made once for this device by those who build on it, and goes with it: one of each type.
+    pub(crate) fn kept<T: Default + Send + Sync + 'static>(&self) -> Arc<T> {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.iter().find_map(|kept| kept.clone().downcast().ok()).unwrap_or_else(|| {
+            let new = Arc::<T>::default();
+            kept.push(new.clone());
+            new
+        })
     }
 
     /// The warnings and errors of the validation layer so far.

@@ -1,6 +1,6 @@
 //! Whether neighbouring patches meet: to the last bit in their evaluated vertices, and in every pixel.
 
-use crate::capture::{CaptureDraw, Captured, CapturedVertex, Which};
+use crate::capture::{CaptureDraw, Captured, CapturedVertex, Idle, Which};
 use crate::gpu::{Blend, shaders};
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Texture};
 use crate::mesh::{ControlMesh, FaceVarying, MeshData};
@@ -264,19 +264,11 @@ pub fn leaked_pixels(
     draw: &CaptureDraw,
     side: u32,
 ) -> Result<u64, Error> {
-    let desc = OffscreenDesc { color: vk::Format::R8G8B8A8_UNORM, ..OffscreenDesc::new(side, side) };
-    let target = Offscreen::new(headless, &desc)?;
-    let style = Style {
-        fragment: Fragment::Spirv(shaders::SHADE_LAYERS_FRAG.to_vec()),
-        blend: Blend::Add,
-        depth: None,
-        ..Style::default()
-    };
-    let renderer_options = Options { styles: vec![style], ..Options::default() };
-    let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
-    // SAFETY: every submission is waited for, and the texture outlives the renderer.
-    let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &renderer_options)? };
-    // SAFETY: as above.
+    let kept = headless.kept::<Idle<(u32, ModelOptions), Layers>>();
+    let drawn = (side, options.clone());
+    let mut layers = kept.take(&drawn, || Layers::new(headless, side))?;
+    let Layers { renderer, target } = &mut layers;
+    // SAFETY: the texture outlives the model, and nothing else looks at it.
     let map = displacement.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
     let model = renderer.add_model(mesh, &ModelOptions { displacement: map, ..options.clone() })?;
     if let Factor::Edges(_) = draw.factor {
@@ -289,5 +281,33 @@ pub fn leaked_pixels(
     headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
     // SAFETY: likewise.
     let pixels = target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, 0, &view, &[item]) })?;
+    renderer.remove_model(model)?;
+    // SAFETY: outside rendering, and all frames before are done. Frees the model.
+    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+    kept.put_back(drawn, layers);
     Ok(pixels.chunks_exact(4).filter(|pixel| pixel[0] != pixel[1]).count() as u64)
+}
+
+/// A renderer that counts layers, without a model between pictures.
+struct Layers {
+    renderer: Renderer,
+    target: Offscreen,
+}
+
+impl Layers {
+    fn new(headless: &Headless, side: u32) -> Result<Self, Error> {
+        let desc = OffscreenDesc { color: vk::Format::R8G8B8A8_UNORM, ..OffscreenDesc::new(side, side) };
+        let style = Style {
+            fragment: Fragment::Spirv(shaders::SHADE_LAYERS_FRAG.to_vec()),
+            blend: Blend::Add,
+            depth: None,
+            ..Style::default()
+        };
+        let options = Options { frames_in_flight: 1, styles: vec![style], ..Options::default() };
+        let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
+        let target = Offscreen::new(headless, &desc)?;
+        // SAFETY: every submission is waited for.
+        let renderer = unsafe { Renderer::new(headless.context(), &render_target, &options)? };
+        Ok(Self { renderer, target })
+    }
 }

@@ -1,12 +1,11 @@
 //! The limit surface against OpenSubdiv's (`../shared/limit`).
 
-mod common;
-
+use crate::common;
+use crate::common::limit::{Limit, mesh_and_limit};
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::mesh::{Crease, ReadOptions, SHARPNESS_INFINITE, read};
 use ash_subdiv::topology::{RingKind, Topology};
 use ash_subdiv::{ControlMesh, MeshError};
-use common::limit::{Limit, mesh_and_limit};
 use std::collections::BTreeMap;
 
 /// Why the reference's normal at a corner is none to compare with. Nothing else is left out.

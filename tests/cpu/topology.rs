@@ -1,12 +1,10 @@
 //! One-rings, sectors between creases, corners, darts, boundaries, holes and vertices where fans touch.
 
-mod common;
-
+use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::mesh::{BoundaryRule, Corner, Crease};
 use ash_subdiv::table::{Notice, PatchPlan, prepare};
 use ash_subdiv::topology::{PatchKind, Ring, RingKind, Topology};
 use ash_subdiv::{ControlMesh, Fallback, MeshData, Scheme, shape, shapes};
-use common::random::{random_creased_mesh, random_mesh};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything that a ring promises, checked against the faces of the mesh alone.

@@ -1,13 +1,12 @@
 //! The scheme gregory-fitted: where its numbers come from, and what they are worth on meshes that they were not fitted to.
 #![cfg(feature = "measure")]
 
-mod common;
-
 #[allow(dead_code, reason = "its `main` prints")]
 #[allow(clippy::duplicate_mod, reason = "an example stands alone: it has its own copy of what tests have in common")]
-#[path = "../examples/fit_gregory.rs"]
+#[path = "../../examples/fit_gregory.rs"]
 mod fit_gregory;
 
+use crate::common;
 use ash_subdiv::measure::{ErrorOptions, FaceErrors, surface_errors};
 use ash_subdiv::mesh::{ReadOptions, read};
 use ash_subdiv::patch::fitted::Fit;

@@ -1,8 +1,7 @@
 //! The deviation of drawn triangles on the screen.
-#![cfg(all(feature = "headless", feature = "measure"))]
+#![cfg(feature = "measure")]
 
-mod common;
-
+use crate::common;
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::measure::{ScreenError, screen_error};

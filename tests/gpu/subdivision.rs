@@ -1,8 +1,7 @@
 //! Subdivision of faces in a geometry shader against refinement of the whole mesh on the CPU.
-#![cfg(feature = "headless")]
 
-mod common;
-
+use crate::common;
+use crate::common::edges::bits;
 use ash::vk;
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
@@ -15,7 +14,6 @@ use ash_subdiv::topology::{RingKind, Topology};
 use ash_subdiv::{
     ControlMesh, DrawItem, MeshData, ModelOptions, Options, Renderer, Target, View, requirements, shape, shapes,
 };
-use common::edges::bits;
 use glam::{DVec3, IVec2, Vec3};
 use std::collections::HashMap;
 

@@ -1,8 +1,8 @@
 //! The example is built and run as it stands, under the validation layer.
-#![cfg(all(feature = "gpu-allocator", feature = "png"))]
+#![cfg(feature = "png")]
 
 #[allow(dead_code, reason = "its `main` reads the command line, which is the test runner's here")]
-#[path = "../examples/minimal.rs"]
+#[path = "../../examples/minimal.rs"]
 mod minimal;
 
 use std::process::Command;
@@ -18,7 +18,7 @@ fn minimal_draws_the_creature_and_validation_is_silent() {
     }
     let path = concat!(env!("CARGO_TARGET_TMPDIR"), "/minimal.png");
     // The example knows nothing of validation, so the layer is put in from outside; it writes to standard output.
-    let this = "minimal_draws_the_creature_and_validation_is_silent";
+    let this = "example::minimal_draws_the_creature_and_validation_is_silent";
     let run = Command::new(std::env::current_exe().expect("a path"))
         .args([this, "--exact", "--nocapture"])
         .envs([(PATH, path), ("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation"), ("VK_LOADER_DEBUG", "layer")])

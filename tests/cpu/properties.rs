@@ -1,14 +1,13 @@
 //! What holds for the surface of any mesh: patches join, edges are smooth, weights are affine. No reference data.
 
-mod common;
-
+use crate::common;
+use crate::common::edges::{bits, corner_parameters, edge_parameters, edge_points, shared_edges};
+use crate::common::random::{Random, random_creased_mesh, random_mesh};
 use ash_subdiv::mesh::{ReadOptions, read};
 use ash_subdiv::patch::{Blend, Point, RingShape, RingValues, Row, Scheme};
 use ash_subdiv::table::prepare;
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData, shape, shapes};
-use common::edges::{bits, corner_parameters, edge_parameters, edge_points, shared_edges};
-use common::random::{Random, random_creased_mesh, random_mesh};
 use glam::{DAffine3, DVec3};
 
 /// Built-in shapes, after refinement where they need it, and random meshes with and without creases.

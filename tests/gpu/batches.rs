@@ -6,10 +6,8 @@
 //! What was seen with `PatchBatch::Unlimited` in their place: all counts and captured vertices stay right, the pictures
 //! do not. Of the million pixels of a sheet, at factor 1 none was wrong, at factor 16 (5000 patches) all, at factor 8
 //! (100 000 patches) half; and a frame took up to 60 times as long.
-#![cfg(feature = "headless")]
 
-mod common;
-
+use crate::common;
 use ash::vk;
 use ash_subdiv::Scheme;
 use ash_subdiv::capture::{Captured, CapturedVertex};

@@ -3,12 +3,11 @@
 //! Positions come from OBJ text as f64, as those of the reference did. Distances are in units of rounding at the
 //! largest coordinate of the mesh, or over the diagonal of its bounds.
 
-mod common;
-
+use crate::common;
+use crate::common::limit::{Limit, LimitSample, Record, mesh_and_limit};
 use ash_subdiv::mesh::SHARPNESS_INFINITE;
 use ash_subdiv::patch::{Blend, Scheme};
 use ash_subdiv::topology::{PatchKind, RingKind, Topology};
-use common::limit::{Limit, LimitSample, Record, mesh_and_limit};
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 

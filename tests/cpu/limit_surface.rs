@@ -1,7 +1,6 @@
 //! The limit surface against refinement and against itself.
 
-mod common;
-
+use crate::common;
 use ash_subdiv::limit::{LimitSample, LimitSurface, refine};
 use ash_subdiv::mesh::{BoundaryRule, Corner, Crease, CreaseMethod, ReadOptions, SHARPNESS_INFINITE, read};
 use ash_subdiv::patch::{RingValues, Scheme};

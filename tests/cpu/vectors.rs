@@ -1,14 +1,12 @@
 //! Control points, evaluation and refinement against the reference vectors of `../shared/reference/vectors`, which an
 //! independent float64 implementation wrote.
 
-mod common;
-
+use crate::common::vectors;
 use ash_subdiv::limit::refine;
 use ash_subdiv::mesh::{Corner, Crease, CreaseMethod};
 use ash_subdiv::patch::{Blend, Scheme};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData};
-use common::vectors;
 use glam::{DVec3, Vec3};
 use serde_json::Value;
 

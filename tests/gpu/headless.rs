@@ -1,5 +1,4 @@
 //! The Vulkan base on a real device, with the validation layer listening: every test ends in `finish_silent`.
-#![cfg(feature = "headless")]
 
 use ash::vk;
 use ash_subdiv::gpu::{

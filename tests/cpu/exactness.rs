@@ -1,16 +1,14 @@
 //! Surfaces against what they are known to be: bicubic B-splines on grids, cubic B-splines along boundaries, and
 //! themselves after refinement.
 
-mod common;
-
+use crate::common::edges::{corner_parameters, edge_points};
+use crate::common::random::{Random, random_creased_mesh, random_mesh};
 use ash_subdiv::limit::refine;
 use ash_subdiv::mesh::BoundaryRule;
 use ash_subdiv::patch::Scheme;
 use ash_subdiv::table::{CpuSurface, FaceOrigin};
 use ash_subdiv::topology::{PatchKind, RingKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData, shape};
-use common::edges::{corner_parameters, edge_points};
-use common::random::{Random, random_creased_mesh, random_mesh};
 use glam::DVec3;
 
 /// The uniform cubic B-spline of four points.

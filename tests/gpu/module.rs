@@ -1,6 +1,5 @@
 //! The drop-in module as a caller uses it: frames in flight, moving and removed models, the caller's own shaders, and
 //! what it says when it is used wrongly.
-#![cfg(feature = "headless")]
 
 use ash::vk;
 use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};

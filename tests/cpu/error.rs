@@ -1,8 +1,7 @@
 //! How far schemes are from the limit surface.
 #![cfg(feature = "measure")]
 
-mod common;
-
+use crate::common;
 use ash_subdiv::measure::{ErrorOptions, FaceErrors, surface_errors};
 use ash_subdiv::mesh::{ReadOptions, read};
 use ash_subdiv::{ControlMesh, Scheme, shape};

@@ -1,14 +1,12 @@
 //! The one normal of an edge, from data of the edge alone, is the normal of both its faces; on the GPU, too.
 
-mod common;
-
+use crate::common::edges::{SharedEdge, edge_parameters, shared_edges};
+use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::patch::edge::{Edge, edge_normal, edge_position};
 use ash_subdiv::patch::{Frame, RingValues, Scheme};
 use ash_subdiv::table::prepare;
 use ash_subdiv::topology::Topology;
 use ash_subdiv::{ControlMesh, shape, shapes};
-use common::edges::{SharedEdge, edge_parameters, shared_edges};
-use common::random::{random_creased_mesh, random_mesh};
 use glam::DVec3;
 
 const SCHEMES: [Scheme; 2] = [Scheme::Gregory, Scheme::GregoryFitted];
@@ -89,7 +87,7 @@ fn the_gpu_has_the_same_normals_on_edges() {
     use ash_subdiv::{Construction, ModelOptions};
     use glam::Vec3;
     use std::collections::HashMap;
-    let headless = common::headless();
+    let headless = crate::common::headless();
     for name in ["creature-mixed", "machine-part", "cloth"] {
         let mesh = shape(name).expect("built in");
         let topology = Topology::new(&mesh);

@@ -1,27 +1,30 @@
 //! What patches share on the GPU, to the bit; and vertices of high valence.
-#![cfg(feature = "headless")]
 
-mod common;
-
+use crate::common;
+use crate::common::edges::{SharedEdge, bits, edge_points, shared_edges};
+use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::Scheme;
 use ash_subdiv::capture::{Captured, CapturedVertex};
 use ash_subdiv::table::{CpuSurface, grid_parameters, prepare};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, Spacing, shape};
-use common::edges::{bits, edge_points, shared_edges};
-use common::random::{random_creased_mesh, random_mesh};
 use glam::Vec3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-fn meshes() -> Vec<(String, ControlMesh)> {
+/// With the edges between their faces.
+fn meshes() -> Vec<(String, ControlMesh, Vec<SharedEdge>)> {
     let shapes = ["creature-mixed", "machine-part", "polygons", "valences", "cloth", "fan"];
     let mut meshes: Vec<_> = shapes.map(|name| (name.to_owned(), shape(name).expect("built in"))).into();
     for seed in 0..4 {
         meshes.push((format!("random {seed}"), random_mesh(seed)));
         meshes.push((format!("random creased {seed}"), random_creased_mesh(seed)));
     }
-    meshes
+    let with_edges = |(name, mesh): (String, ControlMesh)| {
+        let edges = shared_edges(&Topology::new(&prepare(&mesh, 0).expect("small").mesh));
+        (name, mesh, edges)
+    };
+    meshes.into_iter().map(with_edges).collect()
 }
 
 /// The edge from corner `k` to the next on which an evaluated vertex lies, and where on it; two edges for a corner.
@@ -56,16 +59,15 @@ fn cases() -> impl Iterator<Item = (Construction, Scheme)> {
 #[test]
 fn control_points_of_shared_edges() {
     let headless = common::headless();
-    for (name, mesh) in meshes() {
-        let prepared = prepare(&mesh, 0).expect("small");
-        let topology = Topology::new(&prepared.mesh);
-        for (construction, scheme) in cases() {
-            let options = ModelOptions { construction, scheme, ..ModelOptions::default() };
-            let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+    let meshes = meshes();
+    for (construction, scheme) in cases() {
+        let options = ModelOptions { construction, scheme, ..ModelOptions::default() };
+        for (name, mesh, edges) in &meshes {
+            let captured = Captured::new(&headless, mesh, &options).expect("a model");
             let points = captured.control_points().expect("a capture");
             let patches = captured.tables().plan().patches();
             let of_face: HashMap<u32, usize> = patches.iter().enumerate().map(|(i, p)| (p.face, i)).collect();
-            for edge in shared_edges(&topology) {
+            for edge in edges {
                 let [a, mut b] = edge.sides.map(|(face, k)| {
                     let i = of_face[&face];
                     edge_points(patches[i].kind, &points[i], k)
@@ -84,20 +86,19 @@ fn control_points_of_shared_edges() {
 #[test]
 fn evaluated_vertices_of_shared_edges() {
     let headless = common::headless();
-    for (name, mesh) in meshes() {
-        let prepared = prepare(&mesh, 0).expect("small");
-        let topology = Topology::new(&prepared.mesh);
-        for (construction, scheme) in cases() {
-            for (spacing, factor, shared_normals) in [
-                (Spacing::Equal, 7.0, false),
-                (Spacing::Equal, 7.0, true),
-                (Spacing::FractionalOdd, 4.3, true),
-                (Spacing::FractionalEven, 4.3, true),
-            ] {
-                let options = ModelOptions { construction, scheme, spacing, shared_normals, ..ModelOptions::default() };
-                let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+    let meshes = meshes();
+    for (construction, scheme) in cases() {
+        for (spacing, factor, shared_normals) in [
+            (Spacing::Equal, 7.0, false),
+            (Spacing::Equal, 7.0, true),
+            (Spacing::FractionalOdd, 4.3, true),
+            (Spacing::FractionalEven, 4.3, true),
+        ] {
+            let options = ModelOptions { construction, scheme, spacing, shared_normals, ..ModelOptions::default() };
+            for (name, mesh, edges) in &meshes {
+                let captured = Captured::new(&headless, mesh, &options).expect("a model");
                 let on_edges = on_edges(&captured, factor);
-                for edge in shared_edges(&topology) {
+                for edge in edges {
                     let [a, b] = edge.sides.map(|side| &on_edges[&side]);
                     let count = spacing.segments(factor, 64) as usize + 1;
                     assert_eq!((a.len(), b.len()), (count, count), "{name} {spacing:?}");

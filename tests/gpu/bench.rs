@@ -1,14 +1,12 @@
 //! The bench draws what it says it draws.
-#![cfg(all(feature = "measure", feature = "headless"))]
+#![cfg(feature = "measure")]
 
-mod common;
-
+use crate::common::headless;
 use ash_subdiv::bench::{Bench, BenchOptions, Camera, Contestant, Crowd, Event, Normals, Path, Row, Subject, Subset};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::renderer::Cull;
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, Scheme, Spacing, shape};
-use common::headless;
 
 const GREGORY: Contestant = Contestant::new(Path::Tessellation, Some((Scheme::Gregory, Construction::TwoStage)));
 

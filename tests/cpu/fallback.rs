@@ -1,13 +1,12 @@
 //! Meshes of which a scheme draws a part and Gregory patches the rest: who draws what, and how they join.
 
-mod common;
-
+use crate::common;
+use crate::common::edges::{SharedEdge, edge_parameters, shared_edges};
+use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::patch::{Row, Sample};
 use ash_subdiv::table::{CpuSurface, Notice, Patch};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, Fallback, Scheme, shape, shapes};
-use common::edges::{SharedEdge, edge_parameters, shared_edges};
-use common::random::{random_creased_mesh, random_mesh};
 use glam::DVec3;
 
 const OTHERS: [Scheme; 3] = [Scheme::Acc, Scheme::Pm, Scheme::CPatch];

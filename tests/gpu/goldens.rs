@@ -1,10 +1,11 @@
 //! Golden pictures of every built-in shape, every style and every scheme, with both constructions against the same picture.
 //!
 //! Compared on the pinned driver only; elsewhere the tests say so and pass. `UPDATE_GOLDENS=1` rewrites the pictures.
-#![cfg(all(feature = "headless", feature = "png"))]
+#![cfg(feature = "png")]
 
-mod common;
-
+use crate::common;
+use crate::common::golden;
+use crate::common::render_pass::{Moment, RenderPassTarget};
 use ash::vk;
 use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
@@ -15,8 +16,6 @@ use ash_subdiv::{
     Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style, Target,
     View, shape, shapes,
 };
-use common::golden;
-use common::render_pass::{Moment, RenderPassTarget};
 use std::collections::BTreeSet;
 
 const SIDE: u32 = 192;

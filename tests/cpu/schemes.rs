@@ -1,13 +1,11 @@
 //! What the literature says of the schemes beside Gregory's: how their patches join. No reference data.
 
-mod common;
-
+use crate::common::edges::{corner_parameters, edge_parameters, shared_edges};
 use ash_subdiv::ControlMesh;
 use ash_subdiv::patch::{Row, Sample, Scheme};
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{Construction, MeshData, ModelOptions, shape, shapes};
-use common::edges::{corner_parameters, edge_parameters, shared_edges};
 use glam::DVec3;
 
 /// Closed meshes of quads without creases.

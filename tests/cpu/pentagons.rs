@@ -1,13 +1,11 @@
 //! Pm-patches of faces with five corners.
 
-mod common;
-
+use crate::common::edges::{edge_parameters, shared_edges};
+use crate::common::{pentagon_vector, pentagons};
 use ash_subdiv::patch::Row;
 use ash_subdiv::table::{CpuSurface, FaceOrigin, Notice};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, Fallback, MeshData, Scheme, shape};
-use common::edges::{edge_parameters, shared_edges};
-use common::{pentagon_vector, pentagons};
 use glam::DVec3;
 use std::collections::HashMap;
 

@@ -1,8 +1,6 @@
 //! Evaluation by compute: when it happens, and what evaluations say when they are used wrongly.
-#![cfg(feature = "headless")]
 
-mod common;
-
+use crate::common::stage::{Stage, read_vertices};
 use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError};
 use ash_subdiv::renderer::{Evaluation, Factor, ModelTables};
 use ash_subdiv::topology::Topology;
@@ -10,7 +8,6 @@ use ash_subdiv::{
     Construction, DeviceContext, DrawItem, Error, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style,
     Target, View, requirements, shape,
 };
-use common::stage::{Stage, read_vertices};
 use std::sync::Arc;
 
 fn compute(scheme: Scheme) -> ModelOptions {

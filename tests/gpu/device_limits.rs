@@ -1,5 +1,4 @@
 //! What a device cannot hold or make is an error that says so.
-#![cfg(feature = "headless")]
 
 use ash::vk::{Format, SampleCountFlags};
 use ash_subdiv::capture::Captured;

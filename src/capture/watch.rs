@@ -1,0 +1,91 @@
+//! Renderers that are kept from one use to the next: making their pipelines takes longer than most of what they are asked for.
+
+use super::draws::{HEAD_BYTES, Head, RECORD_BYTES, capture_buffer};
+use crate::gpu::{Buffer, Owned, descriptor_set_layout};
+use crate::headless::{Headless, Offscreen, OffscreenDesc};
+use crate::renderer::{Capture, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, Style, Target};
+use ash::vk;
+use bytemuck::Zeroable;
+use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
+
+/// How many are kept of each sort: a driver may take 20 MB for a pipeline.
+const KEPT: usize = 4;
+
+/// What nobody is using, by what it is for; those used last.
+pub(crate) struct Idle<K, T>(Mutex<VecDeque<(K, T)>>);
+
+impl<K, T> Default for Idle<K, T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<K: PartialEq, T> Idle<K, T> {
+    /// One that was put back, else one that is made now.
+    pub(crate) fn take(&self, key: &K, make: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+        let mut idle = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = idle.iter().position(|(of, _)| of == key).and_then(|index| idle.remove(index));
+        drop(idle);
+        found.map_or_else(make, |(_, kept)| Ok(kept))
+    }
+
+    /// For the next. What failed in some way is better dropped.
+    pub(crate) fn put_back(&self, key: K, used: T) {
+        let mut idle = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        idle.push_back((key, used));
+        let oldest = if idle.len() > KEPT { idle.pop_front() } else { None };
+        // Destroying pipelines takes its time, too.
+        drop(idle);
+        drop(oldest);
+    }
+}
+
+/// A renderer that watches, without a model between captures, and what it draws with.
+pub(super) struct Watcher {
+    pub renderer: Renderer,
+    /// Of set 2.
+    pub layout: Owned<vk::DescriptorSetLayout>,
+    pub target: Offscreen,
+    /// Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
+    pub idle: Option<Buffer>,
+}
+
+/// What watches with the crate's own shaders, for all models of a device ([`Headless::kept`]).
+pub(super) type Watchers = Idle<(Capture, ModelOptions), Watcher>;
+
+impl Watcher {
+    /// `shaders` are in the place of the crate's own.
+    pub fn new(
+        headless: &Headless,
+        mode: Capture,
+        evaluation: Evaluation,
+        shaders: &[(String, Vec<u32>)],
+    ) -> Result<Self, Error> {
+        let context = headless.context();
+        let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, STAGES)];
+        let mut idle = None;
+        if mode == Capture::Triangles {
+            bindings.push((vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::GEOMETRY));
+            let mut buffer = capture_buffer(context, HEAD_BYTES + RECORD_BYTES)?;
+            buffer.write(0, &[Head::zeroed()])?;
+            idle = Some(buffer);
+        }
+        let layout = descriptor_set_layout(context, "capture", &bindings)?;
+        let target = Offscreen::new(headless, &OffscreenDesc::new(4, 4))?;
+        let options = Options {
+            frames_in_flight: 1,
+            styles: vec![Style { rasterizer_discard: true, ..Style::default() }],
+            set_layouts: vec![layout.raw()],
+            shaders: shaders.to_vec(),
+            evaluations: vec![evaluation],
+            ..Options::default()
+        };
+        let desc = target.desc();
+        let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
+        // SAFETY: the set layout is that of the capture buffer and outlives the renderer, which is dropped when idle:
+        // every submission is waited for.
+        let renderer = unsafe { Renderer::with_capture(context, &render_target, &options, mode)? };
+        Ok(Self { renderer, layout, target, idle })
+    }
+}

@@ -1,0 +1,21 @@
+//! Tests that need no Vulkan device, but for one of `edge_normals`.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod edge_normals;
+mod error;
+mod exactness;
+mod face_varying;
+mod fallback;
+mod fitted;
+mod large;
+mod limit;
+mod limit_reference;
+mod limit_surface;
+mod pentagons;
+mod properties;
+mod reader_properties;
+mod readers;
+mod schemes;
+mod topology;
+mod vectors;

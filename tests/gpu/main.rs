@@ -1,0 +1,18 @@
+//! Tests that need a Vulkan device: one program, so that less is linked and every core has work.
+#![cfg(feature = "headless")]
+
+mod batches;
+mod bench;
+#[path = "../common/mod.rs"]
+mod common;
+mod compute;
+mod device_limits;
+mod example;
+mod goldens;
+mod headless;
+mod module;
+mod screen;
+mod seams;
+mod subdivision;
+mod twins;
+mod watertight;
