@@ -189,7 +189,7 @@ fn cached_control_points_are_made_in_every_frame_that_is_timed() {
     let subject = subject("creature-mixed");
     let patches = PatchKind::ALL.map(|kind| u64::from(subject.patch_count(kind)));
     let corners: u64 = patches.iter().zip(PatchKind::ALL).map(|(count, kind)| count * kind.corners() as u64).sum();
-    assert_eq!(points(&rows[1]), Some(16 * 5 * corners));
+    assert_eq!(points(&rows[1]), Some(16 * 4 * corners));
     // Every ring and every patch of three kinds once a frame, whatever the number of passes: 64 invocations a group.
     let things = shape("creature-mixed").unwrap().vertex_count() as u64 + patches.iter().sum::<u64>();
     let counted = rows[1].computed.expect("lavapipe counts");

@@ -1,6 +1,7 @@
 //! Tests that need a Vulkan device: one program, so that less is linked and every core has work.
 #![cfg(feature = "headless")]
 
+mod adaptive;
 mod batches;
 mod bench;
 #[path = "../common/mod.rs"]
@@ -10,9 +11,11 @@ mod device_limits;
 mod example;
 mod goldens;
 mod headless;
+mod lattices;
 mod module;
 mod screen;
 mod seams;
 mod subdivision;
 mod twins;
+mod visible;
 mod watertight;

@@ -1,15 +1,14 @@
 //! Factors from the view, patches that are left out, and displacement by known amounts.
-#![cfg(all(feature = "headless", feature = "png"))]
+#![cfg(feature = "png")]
 
-mod common;
-
+use crate::common;
+use crate::common::edges::edge_points;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors, CapturedVertex, Which};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor};
 use ash_subdiv::{
     Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Spacing, Style, Target, View, shape,
 };
-use common::edges::edge_points;
 use glam::{DVec3, Mat4, Vec3};
 use std::collections::HashMap;
 

@@ -1,16 +1,14 @@
 //! What every evaluation on a lattice has: the vertices of the tessellation stages, and along edges the same bits.
-#![cfg(feature = "headless")]
 
-mod common;
-
+use crate::common;
+use crate::common::edges::{bits, edge_parameters, shared_edges};
+use crate::common::stage::{Stage, read_vertices};
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedVertex, Which};
 use ash_subdiv::renderer::{Evaluation, Factor, Fragment, ModelTables};
 use ash_subdiv::table::{Patch, grid_parameters};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Scheme, Style, shape};
-use common::edges::{bits, edge_parameters, shared_edges};
-use common::stage::{Stage, read_vertices};
 use glam::Vec3;
 use std::collections::{BTreeSet, HashMap};
 

@@ -1,8 +1,7 @@
 //! Patches that compute leaves out before the draws.
-#![cfg(feature = "headless")]
 
-mod common;
-
+use crate::common;
+use crate::common::stage::Stage;
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::headless::Statistics;
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
@@ -10,7 +9,6 @@ use ash_subdiv::{
     Construction, ControlMesh, DrawItem, Error, Fallback, ModelId, ModelOptions, Options, Renderer, Scheme, Style,
     View, shape,
 };
-use common::stage::Stage;
 use glam::{Mat4, Vec3};
 
 const BACK: Cull = Cull { back: true, ..Cull::NONE };
