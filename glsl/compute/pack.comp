@@ -1,9 +1,17 @@
-// Lists the patches of a draw that glsl/compute/cull.comp can see, in their order, and writes the indirect draws of them. One
-// workgroup. Rust twin: `Pack` in src/renderer/lists.rs.
+// Lists the patches of a draw that glsl/compute/cull.comp can see, in their order, and writes the indirect draws of them; with COPIES
+// also copies what is kept of them to behind the list, one after the other, for instances to have it as attributes. One invocation
+// for each patch. Rust twin: `Pack` in src/renderer/lists.rs.
+// variants: COPIES
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MAKES_LISTS
 #include "visible.glsl"
+#ifdef COPIES
+#define KEPT 4
+#include "cached.glsl"
+
+layout(constant_id = 0) const uint CORNERS = 4u;
+#endif
 
 const uint INVOCATIONS = 64u;
 layout(local_size_x = 64) in;
@@ -13,9 +21,15 @@ layout(push_constant, std430) uniform Pack {
     uint vertices;              // of a patch in a draw: the points of its corners, or the indices of a lattice
     uint first_index;           // of a lattice
     uint patches_per_instance;  // 0: an indexed draw with an instance for each
+    uint first_corner;
+    uint copies;                // the word of the list after its header where they start
 } pack;
 
+// Of each invocation whether its patch can be seen, and in the upper bits how many it found before this group; then how many of the
+// group are before it.
 shared uint found[INVOCATIONS];
+shared uint before_group;
+shared uint in_group;
 
 void command(uint first, uvec4 words) {
     for (uint i = 0u; i < 4u; ++i) {
@@ -23,31 +37,7 @@ void command(uint first, uvec4 words) {
     }
 }
 
-void main() {
-    // Each takes a run.
-    uint id = gl_LocalInvocationID.x;
-    uint length = (pack.count + INVOCATIONS - 1u) / INVOCATIONS;
-    uint start = min(id * length, pack.count), end = min(start + length, pack.count);
-    uint own = 0u;
-    for (uint i = start; i < end; ++i) {
-        own += visible.patches[pack.count + i];
-    }
-    found[id] = own;
-    barrier();
-    uint before = 0u, all = 0u;
-    for (uint i = 0u; i < INVOCATIONS; ++i) {
-        before += i < id ? found[i] : 0u;
-        all += found[i];
-    }
-    for (uint i = start; i < end; ++i) {
-        if (visible.patches[pack.count + i] != 0u) {
-            visible.patches[before] = i;
-            ++before;
-        }
-    }
-    if (id != 0u) {
-        return;
-    }
+void write_commands(uint all) {
     if (pack.patches_per_instance == 0u) {
         // VkDrawIndexedIndirectCommand
         command(0u, uvec4(pack.vertices, all, pack.first_index, 0u));
@@ -58,4 +48,46 @@ void main() {
     uint whole = all / pack.patches_per_instance, rest = all % pack.patches_per_instance;
     command(0u, uvec4(pack.patches_per_instance * pack.vertices, whole, 0u, 0u));
     command(4u, uvec4(rest * pack.vertices, rest > 0u ? 1u : 0u, 0u, rest > 0u ? whole : 0u));
+}
+
+void main() {
+    uint id = gl_LocalInvocationID.x;
+    uint start = gl_WorkGroupID.x * INVOCATIONS, patch_number = start + id;
+    bool is_visible = patch_number < pack.count && visible.patches[pack.count + patch_number] != 0u;
+    uint before = 0u;
+    for (uint i = id; i < start; i += INVOCATIONS) {
+        before += visible.patches[pack.count + i];
+    }
+    found[id] = before << 8 | uint(is_visible);
+    barrier();
+    if (id == 0u) {
+        uint here = 0u, earlier = 0u;
+        for (uint i = 0u; i < INVOCATIONS; ++i) {
+            uint each = found[i];
+            found[i] = here;
+            here += each & 255u;
+            earlier += each >> 8;
+        }
+        before_group = earlier;
+        in_group = here;
+    }
+    barrier();
+    if (id == 0u && start + INVOCATIONS >= pack.count) {
+        write_commands(before_group + in_group);
+    }
+    if (!is_visible) {
+        return;
+    }
+    uint place = before_group + found[id];
+    visible.patches[place] = patch_number;
+#ifdef COPIES
+    uint texels = CORNERS * STRIDE;
+    for (uint i = 0u; i < texels; ++i) {
+        uvec4 texel = floatBitsToUint(kept_texel(pack.first_corner + patch_number * CORNERS, i));
+        uint to = pack.copies + 4u * (place * texels + i);
+        for (uint j = 0u; j < 4u; ++j) {
+            visible.patches[to + j] = texel[j];
+        }
+    }
+#endif
 }

@@ -15,8 +15,8 @@ use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The most patches of a list. One workgroup makes it.
-const MAX_PATCHES: u64 = 8192;
+/// The most patches of a list. Each workgroup that makes it looks at all before its own.
+const MAX_PATCHES: u64 = 2048;
 /// Bytes of a list before its patches. GLSL twin: `Visible` in `glsl/lib/visible.glsl`.
 const HEADER_BYTES: u64 = 4 * 8;
 /// Bytes of a list for each of its patches: its place on the list, and whether it can be seen.
@@ -25,7 +25,7 @@ const PATCH_BYTES: u64 = 4 * 2;
 const RANGE: u64 = 1 << 20;
 /// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
-/// Invocations in a workgroup of `glsl/compute/cull.comp`.
+/// Invocations in a workgroup of `glsl/compute/cull.comp` and `pack.comp`.
 const GROUP: u32 = 64;
 
 /// From one command of a list to the next.
@@ -54,13 +54,18 @@ impl ListLayout {
         (HEADER_BYTES + PATCH_BYTES * u64::from(patches)).next_multiple_of(TEXEL_BYTES)
     }
 
+    /// The same as a word after the header.
+    pub(super) fn copies_word(patches: u32) -> u32 {
+        ((Self::copies_start(patches) - HEADER_BYTES) / 4) as u32
+    }
+
     /// Bytes of a list of so many patches, up to the next.
     pub(super) fn bytes(self, patches: u32) -> u64 {
         (Self::copies_start(patches) + self.copied * u64::from(patches)).next_multiple_of(ALIGNMENT)
     }
 }
 
-/// What the indirect draws of a list are: push constants. GLSL twin: `Pack` in `glsl/compute/pack.comp`.
+/// What a list and its indirect draws are made of: push constants. GLSL twin: `Pack` in `glsl/compute/pack.comp`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(super) struct Pack {
@@ -72,15 +77,9 @@ pub(super) struct Pack {
     pub first_index: u32,
     /// 0 for indexed draws with an instance for each patch.
     pub patches_per_instance: u32,
-}
-
-/// What is copied of patches on a list: push constants. GLSL twin: `Gather` in `glsl/compute/gather.comp`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-struct Gather {
-    first_corner: u32,
+    pub first_corner: u32,
     /// The word of the list after its header where the copies start.
-    copies: u32,
+    pub copies: u32,
 }
 
 /// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
@@ -185,8 +184,13 @@ pub(super) struct ListPipelines {
     cache: vk::PipelineCache,
     /// By [`PatchStages::for_culling`].
     looking: HashMap<(PatchStages, Cut), Owned<vk::Pipeline>>,
-    packing: Option<Owned<vk::Pipeline>>,
-    gathering: HashMap<PatchStages, Owned<vk::Pipeline>>,
+    /// By [`packing_key`].
+    packing: HashMap<Option<PatchStages>, Owned<vk::Pipeline>>,
+}
+
+/// What tells apart the pipelines that make lists: what is copied, if anything is.
+fn packing_key(stages: PatchStages) -> Option<PatchStages> {
+    stages.attributes.then(|| stages.for_culling())
 }
 
 impl ListPipelines {
@@ -200,33 +204,23 @@ impl ListPipelines {
         let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
         // SAFETY: the set layouts are of this device.
         let layout = unsafe { pipeline_layout(context, "subdiv lists of patches", &sets, &constants)? };
-        Ok(Self {
-            context: context.clone(),
-            layout,
-            cache,
-            looking: HashMap::new(),
-            packing: None,
-            gathering: HashMap::new(),
-        })
+        Ok(Self { context: context.clone(), layout, cache, looking: HashMap::new(), packing: HashMap::new() })
     }
 
     /// Makes what patches need that are left out by these rules.
     pub(super) fn make(&mut self, stages: PatchStages, cut: Cut, code: &ShaderCode) -> Result<(), GpuError> {
-        let attributes = stages.attributes;
-        let stages = stages.for_culling();
-        if attributes && !self.gathering.contains_key(&stages) {
-            let constants = stages.specialization(cut, self.context.properties());
-            let shader = Shader::compute(code.find("COMPUTE_GATHER_COMP")?).specialized(&constants);
-            self.gathering.insert(stages, self.create("gather", shader)?);
+        let constants = stages.specialization(cut, self.context.properties());
+        let key = packing_key(stages);
+        if !self.packing.contains_key(&key) {
+            let name = if key.is_some() { "COMPUTE_PACK_COMP_COPIES" } else { "COMPUTE_PACK_COMP" };
+            let pipeline = self.create(name, Shader::compute(code.find(name)?).specialized(&constants))?;
+            self.packing.insert(key, pipeline);
         }
+        let stages = stages.for_culling();
         if !self.looking.contains_key(&(stages, cut)) {
             let name = stages.culling();
-            let constants = stages.specialization(cut, self.context.properties());
-            let shader = Shader::compute(code.find(&name)?).specialized(&constants);
-            self.looking.insert((stages, cut), self.create(&name, shader)?);
-        }
-        if self.packing.is_none() {
-            self.packing = Some(self.create("pack", Shader::compute(code.find("COMPUTE_PACK_COMP")?))?);
+            let pipeline = self.create(&name, Shader::compute(code.find(&name)?).specialized(&constants))?;
+            self.looking.insert((stages, cut), pipeline);
         }
         Ok(())
     }
@@ -255,7 +249,7 @@ impl ListPipelines {
         let Some(pipeline) = self.looking.get(&(stages.for_culling(), cut)) else { return };
         let groups = constants.patches_per_instance.div_ceil(GROUP);
         // SAFETY: as the caller promises.
-        unsafe { self.cmd_dispatch(cmd, pipeline, &sets, offsets, bytemuck::bytes_of(constants), groups) };
+        unsafe { self.cmd_dispatch(cmd, pipeline, sets, offsets, bytemuck::bytes_of(constants), groups) };
     }
 
     /// Records the dispatch that makes a list of what was found, and its draws.
@@ -265,40 +259,22 @@ impl ListPipelines {
     pub(super) unsafe fn cmd_pack(
         &self,
         cmd: vk::CommandBuffer,
-        set: vk::DescriptorSet,
-        offsets: [u32; 2],
-        pack: &Pack,
-    ) {
-        let Some(pipeline) = &self.packing else { return };
-        // SAFETY: as the caller promises.
-        unsafe { self.cmd_dispatch(cmd, pipeline, &[set], offsets, bytemuck::bytes_of(pack), 1) };
-    }
-
-    /// Records the dispatch that copies what instances of so many patches, at most, read, which start with a corner.
-    ///
-    /// # Safety
-    /// As [`ListPipelines::cmd_pack`], which went before, with a barrier in between.
-    pub(super) unsafe fn cmd_gather(
-        &self,
-        cmd: vk::CommandBuffer,
         stages: PatchStages,
         sets: [vk::DescriptorSet; 2],
         offsets: [u32; 2],
-        [first_corner, patches]: [u32; 2],
+        pack: &Pack,
     ) {
-        let Some(pipeline) = self.gathering.get(&stages.for_culling()) else { return };
-        let copies = (ListLayout::copies_start(patches) - HEADER_BYTES) / 4;
-        let gather = Gather { first_corner, copies: copies as u32 };
-        let groups = (patches * stages.kind.corners() as u32).div_ceil(GROUP);
+        let Some(pipeline) = self.packing.get(&packing_key(stages)) else { return };
+        let groups = pack.count.div_ceil(GROUP);
         // SAFETY: as the caller promises.
-        unsafe { self.cmd_dispatch(cmd, pipeline, &sets, offsets, bytemuck::bytes_of(&gather), groups) };
+        unsafe { self.cmd_dispatch(cmd, pipeline, sets, offsets, bytemuck::bytes_of(pack), groups) };
     }
 
     unsafe fn cmd_dispatch(
         &self,
         cmd: vk::CommandBuffer,
         pipeline: &Owned<vk::Pipeline>,
-        sets: &[vk::DescriptorSet],
+        sets: [vk::DescriptorSet; 2],
         offsets: [u32; 2],
         constants: &[u8],
         groups: u32,
@@ -307,7 +283,7 @@ impl ListPipelines {
         // SAFETY: as the caller promises.
         unsafe {
             device.cmd_bind_pipeline(cmd, point, pipeline.raw());
-            device.cmd_bind_descriptor_sets(cmd, point, layout, 0, sets, &offsets);
+            device.cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, &offsets);
             device.cmd_push_constants(cmd, layout, vk::ShaderStageFlags::COMPUTE, 0, constants);
             device.cmd_dispatch(cmd, groups, 1, 1);
         }

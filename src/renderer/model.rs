@@ -272,11 +272,6 @@ impl Model {
         self.computes() && self.evaluation.culls()
     }
 
-    /// Whether instances of patches have their control points as vertex attributes.
-    pub(super) fn has_attributes(&self) -> bool {
-        self.stages.iter().any(|stages| stages.attributes)
-    }
-
     /// Has the control points computed anew in the next frame, even though nothing moved.
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(super) fn forget_points(&mut self) {

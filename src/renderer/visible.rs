@@ -247,22 +247,11 @@ impl Renderer {
             let model = self.model(item.model)?;
             let drawn = model.drawn(item.factor)?;
             for list in lists {
+                let stages = model.stages[list.group];
                 let pack = pack(model, drawn, *list);
-                // SAFETY: as the caller promises.
-                unsafe { pipelines.cmd_pack(cmd, visible.set, [visible.view_offset, list.offset], &pack) };
-            }
-        }
-        if visible.items.iter().any(|(item, _)| self.model(item.model).is_ok_and(|model| model.has_attributes())) {
-            barrier(Stage::COMPUTE_SHADER, vk::AccessFlags::SHADER_READ);
-        }
-        for (item, lists) in &visible.items {
-            let model = self.model(item.model)?;
-            for list in lists.iter().filter(|list| model.stages[list.group].attributes) {
-                let (stages, group) = (model.stages[list.group], &model.tables.plan().groups()[list.group]);
                 let sets = [visible.set, model.set.raw];
-                let offsets = [visible.view_offset, list.offset];
                 // SAFETY: as the caller promises.
-                unsafe { pipelines.cmd_gather(cmd, stages, sets, offsets, [list.first_corner(group), list.count]) };
+                unsafe { pipelines.cmd_pack(cmd, stages, sets, [visible.view_offset, list.offset], &pack) };
             }
         }
         use vk::AccessFlags as Access;
@@ -318,10 +307,12 @@ fn pieces(group: &PatchGroup, layout: ListLayout) -> impl Iterator<Item = (u32, 
 }
 
 fn pack(model: &Model, drawn: Drawn, list: List) -> Pack {
-    let List { count, patches_per_instance, .. } = list;
+    let List { group, count, patches_per_instance, .. } = list;
     let (vertices, first_index) = match drawn {
-        Drawn::Lattice(lattice) => lattice.indices_of_patch(list.group),
-        _ => (model.stages[list.group].input_points(), 0),
+        Drawn::Lattice(lattice) => lattice.indices_of_patch(group),
+        _ => (model.stages[group].input_points(), 0),
     };
-    Pack { count, vertices, first_index, patches_per_instance }
+    let first_corner = list.first_corner(&model.tables.plan().groups()[group]);
+    let copies = ListLayout::copies_word(count);
+    Pack { count, vertices, first_index, patches_per_instance, first_corner, copies }
 }
