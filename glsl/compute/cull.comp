@@ -1,5 +1,5 @@
 // Which patches of a draw can be seen: of cached control points, one invocation for each patch, by the rules of the control
-// shaders. glsl/compute/pack.comp lists them.
+// shaders. glsl/compute/compact.comp lists them.
 // variants: OWNED=5, OWNED=5+TRIANGLE, OWNED=8
 #version 460
 #extension GL_GOOGLE_include_directive : require

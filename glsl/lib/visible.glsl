@@ -1,4 +1,4 @@
-// The patches of a draw that can be seen: what glsl/compute/cull.comp finds and glsl/compute/pack.comp lists. Rust twin:
+// The patches of a draw that can be seen: what glsl/compute/cull.comp finds and glsl/compute/compact.comp lists. Rust twin:
 // src/renderer/lists.rs.
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL

@@ -4,8 +4,8 @@ use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
 use super::{BenchError, Contestant, published};
 use crate::measure::statistics::Summary;
 use crate::renderer::{
-    Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options, Renderer,
-    Style, TableBytes, Target, VisibleItems, subdivision_level,
+    Construction, Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options,
+    Renderer, Style, TableBytes, Target, VisibleItems, subdivision_level,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -22,6 +22,8 @@ pub(super) struct Surface {
     control_point_bytes: u64,
     evaluation: Evaluation,
     cull: Cull,
+    /// Whether compute looks for what can be seen.
+    looks: bool,
     /// What is drawn of the next pass.
     visible: Option<VisibleItems>,
 }
@@ -30,12 +32,14 @@ impl Surface {
     pub(super) fn new(lane: Lane, contestant: Contestant) -> Result<Self, BenchError> {
         let Lane { headless, target, subject, passes, .. } = lane;
         let model_options = contestant.model_options(lane);
-        let ModelOptions { scheme, evaluation, .. } = model_options;
+        let ModelOptions { scheme, construction, evaluation, .. } = model_options;
         let as_published = contestant.path.is_published_acc();
         let (tables, tables_ms) = build_tables(lane, &model_options)?;
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
         let evaluations = vec![evaluation];
+        // Otherwise the control shader does.
+        let looks = contestant.cull != Cull::NONE && construction == Construction::Cached;
         let shaders = if as_published { published::shaders() } else { Vec::new() };
         let options = Options {
             frames_in_flight: 1,
@@ -43,7 +47,7 @@ impl Surface {
             styles,
             evaluations,
             shaders,
-            visible_lists: contestant.cull != Cull::NONE,
+            visible_lists: looks,
             ..Options::default()
         };
         let render_target = Target::dynamic(target.color, target.depth, target.samples);
@@ -82,12 +86,11 @@ impl Surface {
             control_point_bytes,
             evaluation,
             cull: contestant.cull,
+            looks,
             visible: None,
         })
     }
-}
 
-impl Surface {
     fn items(&self, frame: &Frame) -> Vec<DrawItem> {
         let style = usize::from(frame.pass == Pass::Geometry);
         let item = DrawItem { style, cull: self.cull, ..DrawItem::new(self.model, frame.factor) };
@@ -127,7 +130,7 @@ impl Drawable for Surface {
     }
 
     unsafe fn cmd_begin_pass(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
-        if self.cull != Cull::NONE {
+        if self.looks {
             let items = self.items(frame);
             // SAFETY: as the caller promises.
             self.visible = Some(unsafe { self.renderer.cmd_cull(cmd, 0, frame.view, &items)? });

@@ -122,6 +122,7 @@ impl Captured<'_> {
         }
         if self.shaders.is_empty() {
             renderer.remove_model(model)?;
+            renderer.forget_displacements();
             // SAFETY: the command buffer is being recorded; the frame before was waited for. Frees the model.
             headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
             kept.put_back(watched, watcher);

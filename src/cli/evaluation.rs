@@ -18,9 +18,8 @@ pub(super) struct EvaluationArgs {
 }
 
 impl EvaluationArgs {
-    /// The construction; `given` are further arguments, and whether they were given, that the evaluation does not go with unless it is
-    /// by the tessellation stages,
-    /// `shares` is one that was given and has patches share more than positions.
+    /// The construction; `given` are further arguments, and whether they were given, that only the tessellation stages go
+    /// with, `shares` is one that was given and has patches share more than positions.
     pub(super) fn construction(&self, given: &[(&str, bool)], shares: Option<&str>) -> Result<Construction, CliError> {
         let name = self.evaluation.name();
         let wrong = |what: &str| CliError::Usage(format!("--evaluation {name}: it does not go with {what}"));

@@ -93,6 +93,12 @@ impl Displacements {
         DisplacementId(self.maps.len() - 1)
     }
 
+    /// Forgets all maps.
+    #[cfg(feature = "headless")]
+    pub(super) fn clear(&mut self) {
+        self.maps.clear();
+    }
+
     pub(super) fn get(&self, id: Option<DisplacementId>) -> Result<DisplacementMap, Error> {
         match id {
             None => Ok(self.nothing),

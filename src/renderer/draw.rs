@@ -96,7 +96,7 @@ impl Renderer {
         unsafe { self.cmd_bind_view(cmd, set, [offset, 0]) };
         let mut bound = Bound::default();
         for item in items {
-            self.make_pipelines(item.model, item.factor, item.cull)?;
+            self.make_cuts(item.model, item.factor, item.cull, false)?;
             // SAFETY: as the caller promises.
             unsafe { self.cmd_draw_item(cmd, view, item, None, &mut bound)? };
         }
@@ -130,11 +130,19 @@ impl Renderer {
     /// # Errors
     /// [`Error::NoSuchModel`]; failed Vulkan calls.
     pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
+        if self.options.visible_lists && cull != Cull::NONE && self.model(id)?.is_listed() {
+            self.make_cuts(id, factor, cull, true)?;
+        }
+        self.make_cuts(id, factor, cull, false)
+    }
+
+    /// As [`Renderer::make_pipelines`], for draws of lists only, or for others only.
+    pub(super) fn make_cuts(&mut self, id: ModelId, factor: Factor, cull: Cull, lists: bool) -> Result<(), Error> {
         let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
         let cut = Cut::new(factor, cull);
-        let lists = self.options.visible_lists && cull != Cull::NONE && model.is_listed();
-        let of_lists = [Cut::new(factor, Cull::NONE), Cut::listed(factor)].into_iter().filter(|_| lists);
-        for each in of_lists.chain([cut]) {
+        // Of patches that are not looked at, all are drawn.
+        let cuts = if lists { vec![Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { vec![cut] };
+        for each in cuts {
             if model.made & each.bit() == 0 {
                 self.pipelines.make(&model.stages, each)?;
                 model.made |= each.bit();
@@ -194,6 +202,7 @@ impl Renderer {
                 return Ok(());
             }
             let drawn = model.drawn(item.factor)?;
+            lists.map_or(Ok(()), |lists| lists.check(drawn))?;
             match drawn {
                 Drawn::Patches => {}
                 Drawn::Lattice(lattice) => {

@@ -28,14 +28,18 @@ pub enum Error {
     NotPrepared { id: ModelId },
     #[error("frame index {given}: Options::frames_in_flight is {frames}, so frames are 0 to {}", frames - 1)]
     NoSuchFrame { given: u32, frames: u32 },
-    #[error("{max} views were already drawn in frame {frame}: raise Options::views_per_frame")]
+    #[error("{max} views were already drawn or culled in frame {frame}: raise Options::views_per_frame")]
     TooManyViews { frame: u32, max: u32 },
     #[error(
-        "frame {frame}: what can be seen was found before it was prepared, or for another frame: call cmd_cull after cmd_prepare, and draw in the same frame"
+        "frame {frame}: what can be seen was found before it was prepared, for another frame or by another renderer: call cmd_cull after cmd_prepare, and draw in the same frame"
     )]
     OtherFrame { frame: u32 },
-    #[error("leaving out patches by compute needs {}: set Options::visible_lists and make the device with what requirements lists then", missing.join(" and "))]
-    CullingNeeds { missing: Vec<&'static str> },
+    #[error(
+        "cmd_cull goes with Options::visible_lists only: set it, and make the device with what requirements lists then"
+    )]
+    NoVisibleLists,
+    #[error("lists of patches that can be seen take {bytes} bytes in a frame, {max} at most: draw fewer items")]
+    ListsTooLarge { bytes: u64, max: u64 },
     #[error("style {given}: Options::styles has {count}")]
     NoSuchStyle { given: usize, count: usize },
     #[error("model {}: {factor:?}: a tessellation factor is a number from 1 up, pixels and scales are above 0", id.0)]

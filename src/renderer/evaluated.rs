@@ -1,9 +1,10 @@
 //! Models that are not evaluated by the tessellation stages: what they go with, and what the caller sees of them.
 
-use super::lattice::{Lattice, vertex_bytes};
+use super::lattice::Lattice;
 use super::model::Model;
 use super::stages::Sharing;
 use super::subdivision;
+use super::vertex_input::vertex_bytes;
 use super::{Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Renderer, Retired, RetiredObject};
 use crate::gpu::{Features, Spacing};
 use crate::table::MAX_SEGMENTS;
@@ -140,6 +141,16 @@ pub(super) enum Drawn<'m> {
     Subdivided {
         level: u32,
     },
+}
+
+impl Drawn<'_> {
+    /// If it is a lattice.
+    pub(super) fn lattice_segments(self) -> Option<u32> {
+        match self {
+            Self::Lattice(lattice) => Some(lattice.segments),
+            _ => None,
+        }
+    }
 }
 
 impl Model {

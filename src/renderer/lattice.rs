@@ -4,6 +4,7 @@ use super::factor::Cut;
 use super::model::{device_buffer, upload_buffer};
 use super::pipelines::ShaderCode;
 use super::stages::{PatchStages, Sharing};
+use super::vertex_input::vertex_bytes;
 use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{
     Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
@@ -31,26 +32,6 @@ struct Dispatch {
     segments: u32,
     vertices: u32,
 }
-
-/// Bytes of a vertex: position, normal, and the texture coordinate if there is one. Where the surface is displaced there is one,
-/// and after it which way, where in the map, and at which of its levels. GLSL twin: `VERTEX_WORDS` in
-/// `glsl/evaluate/lattice.comp`.
-pub(super) fn vertex_bytes(texcoords: bool, sharing: Sharing) -> u32 {
-    match (sharing, texcoords) {
-        (Sharing::Displacement, _) => 56,
-        (_, true) => 32,
-        (_, false) => 24,
-    }
-}
-
-/// What the parts of a vertex are, and where, in the order of their locations: all that are not beyond its end.
-pub(super) const VERTEX_PARTS: [(u32, vk::Format); 5] = [
-    (0, vk::Format::R32G32B32_SFLOAT),
-    (12, vk::Format::R32G32B32_SFLOAT),
-    (24, vk::Format::R32G32_SFLOAT),
-    (32, vk::Format::R32G32B32_SFLOAT),
-    (44, vk::Format::R32G32B32_SFLOAT),
-];
 
 /// Pipelines by what they evaluate.
 pub(super) struct LatticePipelines {

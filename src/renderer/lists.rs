@@ -25,7 +25,7 @@ const PATCH_BYTES: u64 = 4 * 2;
 const RANGE: u64 = 1 << 20;
 /// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
-/// Invocations in a workgroup of `glsl/compute/cull.comp` and `pack.comp`.
+/// Invocations in a workgroup of `glsl/compute/cull.comp` and `compact.comp`.
 const GROUP: u32 = 64;
 
 /// From one command of a list to the next.
@@ -65,10 +65,10 @@ impl ListLayout {
     }
 }
 
-/// What a list and its indirect draws are made of: push constants. GLSL twin: `Pack` in `glsl/compute/pack.comp`.
+/// What a list and its indirect draws are made of: push constants. GLSL twin: `Compact` in `glsl/compute/compact.comp`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub(super) struct Pack {
+pub(super) struct Compact {
     /// Of all patches.
     pub count: u32,
     /// Vertices of a patch in a draw: the points of its corners, or the indices of a lattice.
@@ -177,19 +177,19 @@ fn view_set(
     }
 }
 
-/// The pipelines that look which patches can be seen, and list them.
+/// The pipelines that find which patches can be seen, and list them.
 pub(super) struct ListPipelines {
     context: Arc<DeviceContext>,
     layout: Owned<vk::PipelineLayout>,
     cache: vk::PipelineCache,
     /// By [`PatchStages::for_culling`].
-    looking: HashMap<(PatchStages, Cut), Owned<vk::Pipeline>>,
-    /// By [`packing_key`].
-    packing: HashMap<Option<PatchStages>, Owned<vk::Pipeline>>,
+    culling: HashMap<(PatchStages, Cut), Owned<vk::Pipeline>>,
+    /// By [`copying`].
+    compacting: HashMap<Option<PatchStages>, Owned<vk::Pipeline>>,
 }
 
 /// What tells apart the pipelines that make lists: what is copied, if anything is.
-fn packing_key(stages: PatchStages) -> Option<PatchStages> {
+fn copying(stages: PatchStages) -> Option<PatchStages> {
     stages.attributes.then(|| stages.for_culling())
 }
 
@@ -204,23 +204,23 @@ impl ListPipelines {
         let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
         // SAFETY: the set layouts are of this device.
         let layout = unsafe { pipeline_layout(context, "subdiv lists of patches", &sets, &constants)? };
-        Ok(Self { context: context.clone(), layout, cache, looking: HashMap::new(), packing: HashMap::new() })
+        Ok(Self { context: context.clone(), layout, cache, culling: HashMap::new(), compacting: HashMap::new() })
     }
 
     /// Makes what patches need that are left out by these rules.
     pub(super) fn make(&mut self, stages: PatchStages, cut: Cut, code: &ShaderCode) -> Result<(), GpuError> {
         let constants = stages.specialization(cut, self.context.properties());
-        let key = packing_key(stages);
-        if !self.packing.contains_key(&key) {
-            let name = if key.is_some() { "COMPUTE_PACK_COMP_COPIES" } else { "COMPUTE_PACK_COMP" };
+        let key = copying(stages);
+        if !self.compacting.contains_key(&key) {
+            let name = if key.is_some() { "COMPUTE_COMPACT_COMP_COPIES" } else { "COMPUTE_COMPACT_COMP" };
             let pipeline = self.create(name, Shader::compute(code.find(name)?).specialized(&constants))?;
-            self.packing.insert(key, pipeline);
+            self.compacting.insert(key, pipeline);
         }
         let stages = stages.for_culling();
-        if !self.looking.contains_key(&(stages, cut)) {
+        if !self.culling.contains_key(&(stages, cut)) {
             let name = stages.culling();
             let pipeline = self.create(&name, Shader::compute(code.find(&name)?).specialized(&constants))?;
-            self.looking.insert((stages, cut), pipeline);
+            self.culling.insert((stages, cut), pipeline);
         }
         Ok(())
     }
@@ -232,13 +232,13 @@ impl ListPipelines {
         unsafe { desc.create(&self.context) }
     }
 
-    /// Records the dispatch that looks which patches can be seen of as many as
+    /// Records the dispatch that finds which patches can be seen of as many as
     /// [`patches_per_instance`](DrawConstants::patches_per_instance) says.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering; the pipeline was made; the sets and the offsets in set 0 (of the view, of the
     /// list) are valid, and the list has room.
-    pub(super) unsafe fn cmd_look(
+    pub(super) unsafe fn cmd_cull(
         &self,
         cmd: vk::CommandBuffer,
         (stages, cut): (PatchStages, Cut),
@@ -246,7 +246,7 @@ impl ListPipelines {
         offsets: [u32; 2],
         constants: &DrawConstants,
     ) {
-        let Some(pipeline) = self.looking.get(&(stages.for_culling(), cut)) else { return };
+        let Some(pipeline) = self.culling.get(&(stages.for_culling(), cut)) else { return };
         let groups = constants.patches_per_instance.div_ceil(GROUP);
         // SAFETY: as the caller promises.
         unsafe { self.cmd_dispatch(cmd, pipeline, sets, offsets, bytemuck::bytes_of(constants), groups) };
@@ -255,19 +255,19 @@ impl ListPipelines {
     /// Records the dispatch that makes a list of what was found, and its draws.
     ///
     /// # Safety
-    /// As [`ListPipelines::cmd_look`], which went before, with a barrier in between.
-    pub(super) unsafe fn cmd_pack(
+    /// As [`ListPipelines::cmd_cull`], which went before, with a barrier in between.
+    pub(super) unsafe fn cmd_compact(
         &self,
         cmd: vk::CommandBuffer,
         stages: PatchStages,
         sets: [vk::DescriptorSet; 2],
         offsets: [u32; 2],
-        pack: &Pack,
+        compact: &Compact,
     ) {
-        let Some(pipeline) = self.packing.get(&packing_key(stages)) else { return };
-        let groups = pack.count.div_ceil(GROUP);
+        let Some(pipeline) = self.compacting.get(&copying(stages)) else { return };
+        let groups = compact.count.div_ceil(GROUP);
         // SAFETY: as the caller promises.
-        unsafe { self.cmd_dispatch(cmd, pipeline, sets, offsets, bytemuck::bytes_of(pack), groups) };
+        unsafe { self.cmd_dispatch(cmd, pipeline, sets, offsets, bytemuck::bytes_of(compact), groups) };
     }
 
     unsafe fn cmd_dispatch(

@@ -17,7 +17,7 @@
 //! | compute, cached | rings and their weights, positions | a frame for each ring, if the vertices moved |
 //! | compute, cached | those, patch corners, rings, positions | control points, and what corners share |
 //! | compute, evaluation | control points, what corners share | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
-//! | compute, culling | control points, the view | which patches can be seen: lists, and indirect draws of them |
+//! | compute, culling | control points, the view, factors of edges | which patches can be seen: lists and indirect draws of them, and for instances copies of what is kept of them |
 //! | GS, two passes | vertices and weights of the patches, positions | control points of models that are [`Evaluation::GeometryTwoPass`], if the vertices moved |
 //! | VS, evaluated | vertices; the displacement map | position, normal, texture coordinate |
 //! | VS, instanced | lists of patches; control points, what corners share; the displacement map | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
@@ -57,6 +57,7 @@ mod stages;
 mod streamed;
 mod subdivision;
 mod tables;
+mod vertex_input;
 mod view;
 mod visible;
 
@@ -164,7 +165,7 @@ pub struct Renderer {
     view_stride: u64,
     /// Of each frame.
     lists: Vec<FrameLists>,
-    /// How often each frame was prepared.
+    /// The number of each frame's last preparation; none has the number 0.
     preparations: Vec<u64>,
     /// Views drawn in each frame since it was prepared.
     views_drawn: Vec<u32>,

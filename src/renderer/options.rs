@@ -172,7 +172,8 @@ impl Style {
 pub struct Options {
     /// Frames that may be on the device at once: frame indices run from 0 to one less.
     pub frames_in_flight: u32,
-    /// Calls of [`Renderer::cmd_draw`](super::Renderer::cmd_draw) in a frame, at most.
+    /// Calls of [`Renderer::cmd_draw`](super::Renderer::cmd_draw) and [`Renderer::cmd_cull`](super::Renderer::cmd_cull) in a frame, at
+    /// most.
     pub views_per_frame: u32,
     /// Draws name these by their index.
     pub styles: Vec<Style>,
@@ -281,8 +282,8 @@ pub(super) fn check_properties(
         missing.push(format!("{} samples a pixel (it has {})", target.samples.as_raw(), counts.join(", ")));
     }
     for (what, least, has) in [
-        // Draws may have lists of patches besides, evaluation by compute its vertices.
-        ("storage buffers a shader stage", MODEL_BUFFERS as u32 + 1, properties.max_stage_storage_buffers),
+        // A list of patches besides; evaluation by compute has its vertices, too.
+        ("storage buffers a shader stage", MODEL_BUFFERS as u32 + 2, properties.max_stage_storage_buffers),
         ("numbers a vertex from the control shader", CONTROL_COMPONENTS, properties.max_control_components),
     ] {
         if has < least {
@@ -322,7 +323,7 @@ mod tests {
         let target = Target::dynamic(vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT, vk::SampleCountFlags::TYPE_1);
         let error = check_properties(&properties, properties.features, &target, &Options::default()).unwrap_err();
         let told = error.to_string();
-        assert!(told.contains("14 storage buffers a shader stage (it has 4)"), "{told}");
+        assert!(told.contains("15 storage buffers a shader stage (it has 4)"), "{told}");
         assert!(told.contains("120 numbers a vertex from the control shader (it has 64)"), "{told}");
     }
 }

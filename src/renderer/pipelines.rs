@@ -4,10 +4,11 @@ use super::bindings::model_layout;
 use super::cached::CachedPipelines;
 use super::conversion::Conversion;
 use super::factor::Cut;
-use super::lattice::{LatticePipelines, VERTEX_PARTS, vertex_bytes};
+use super::lattice::LatticePipelines;
 use super::lists::{ListPipelines, view_layout};
 use super::stages::{PatchStages, Sharing, reads_texels, spaced};
 use super::subdivision;
+use super::vertex_input::VertexInput;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
@@ -96,7 +97,7 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
-/// Four for each location that the control shaders write to: the last is in `glsl/lib/culling.glsl`.
+/// Four for each location that the control shaders write to: the last is in `glsl/lib/control.glsl`.
 pub(super) const CONTROL_COMPONENTS: u32 = 4 * 30;
 
 impl Pipelines {
@@ -330,43 +331,6 @@ impl Pipelines {
         // SAFETY: the shaders are ours and match; the caller's fragment shader and target do by the contract of
         // `Renderer::new`.
         unsafe { desc.create(&self.context) }
-    }
-}
-
-/// What a vertex shader reads of vertices or instances.
-#[derive(Default)]
-struct VertexInput {
-    bindings: Vec<vk::VertexInputBindingDescription>,
-    attributes: Vec<vk::VertexInputAttributeDescription>,
-}
-
-impl VertexInput {
-    fn new(geometry: GeometryKey, texcoords: bool) -> Self {
-        match geometry {
-            GeometryKey::Evaluated { displaced } => {
-                let sharing = if displaced { Sharing::Displacement } else { Sharing::Positions };
-                let stride = vertex_bytes(texcoords, sharing);
-                let parts = VERTEX_PARTS.into_iter().filter(|(offset, _)| *offset < stride);
-                Self::of(vk::VertexInputRate::VERTEX, stride, parts)
-            }
-            GeometryKey::Patches(patch, _) if patch.attributes => {
-                let parts = patch.attribute_offsets().map(|offset| (offset, vk::Format::R32G32B32A32_SFLOAT));
-                Self::of(vk::VertexInputRate::INSTANCE, patch.patch_bytes(), parts)
-            }
-            _ => Self::default(),
-        }
-    }
-
-    /// Of parts at an offset, in the order of their locations.
-    fn of(input_rate: vk::VertexInputRate, stride: u32, parts: impl Iterator<Item = (u32, vk::Format)>) -> Self {
-        let attributes = (0..).zip(parts).map(|(location, (offset, format))| vk::VertexInputAttributeDescription {
-            location,
-            binding: 0,
-            format,
-            offset,
-        });
-        let bindings = vec![vk::VertexInputBindingDescription { binding: 0, stride, input_rate }];
-        Self { bindings, attributes: attributes.collect() }
     }
 }
 

@@ -5,6 +5,10 @@ use super::model::Model;
 use super::{Construction, Evaluation};
 use super::{Error, Renderer, Retired, RetiredObject};
 use ash::vk;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// How many frames were prepared so far, by all renderers: each has a number of its own.
+static PREPARATIONS: AtomicU64 = AtomicU64::new(1);
 
 impl Renderer {
     /// Records what has to happen before this frame's draws: copies and barriers. Once a frame.
@@ -19,7 +23,7 @@ impl Renderer {
         self.check_frame(frame_index)?;
         self.views_drawn[frame_index as usize] = 0;
         self.lists[frame_index as usize].clear();
-        self.preparations[frame_index as usize] += 1;
+        self.preparations[frame_index as usize] = PREPARATIONS.fetch_add(1, Ordering::Relaxed);
         for retired in &mut self.retired {
             retired.frames[frame_index as usize] = false;
         }
@@ -96,6 +100,12 @@ impl Renderer {
         unsafe {
             device.cmd_pipeline_barrier(cmd, makers, Stage::VERTEX_INPUT, none, &evaluated, &[], &[]);
         }
+    }
+
+    /// Forgets the displacement maps, which no model may look at any more.
+    #[cfg(feature = "headless")]
+    pub(crate) fn forget_displacements(&mut self) {
+        self.displacements.clear();
     }
 
     /// Has a model's control points and vertices made anew in the next frame: the bench times them.

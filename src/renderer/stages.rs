@@ -148,18 +148,18 @@ impl PatchStages {
         format!("CONSTRUCT_TWO_STAGE_VERT{inner}{sharing}")
     }
 
-    /// Whether its control points enclose it, so that they tell whether it can be seen. GLSL twin: `HULL` in
-    /// `glsl/lib/culling.glsl`.
+    /// Whether its control points enclose it, so that they tell whether it can be seen. GLSL twins: `HULL` in
+    /// `glsl/lib/control.glsl`, `glsl/construct/cached.tesc` and `glsl/compute/cull.comp`.
     pub(super) fn has_hull(self) -> bool {
         !matches!(files(self.scheme, self.kind)[0], "PM")
     }
 
-    /// What tells apart the pipelines that look which patches can be seen.
+    /// What tells apart the pipelines that find which patches can be seen.
     pub(super) fn for_culling(self) -> Self {
         Self { sharing: Sharing::Positions, has_speakers: false, ..self.for_control_points() }
     }
 
-    /// The name of the shader that looks which patches can be seen.
+    /// The name of the shader that finds which patches can be seen.
     pub(super) fn culling(self) -> String {
         match self.scheme.owned(self.kind) {
             4 => "COMPUTE_CULL_COMP".to_owned(),
@@ -259,7 +259,7 @@ pub(crate) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
     code
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "headless"))]
 mod tests {
     use super::*;
     use crate::gpu::shaders;
@@ -310,6 +310,36 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn instances_have_attributes_where_there_are_enough() {
+        let headless = crate::headless::Headless::new(&crate::headless::HeadlessOptions::default()).unwrap();
+        let stages = |sharing, stride| PatchStages {
+            scheme: Scheme::Gregory,
+            kind: PatchKind::IrregularQuad,
+            construction: Construction::Cached,
+            evaluation: Evaluation::Instanced,
+            spacing: Spacing::Equal,
+            sharing,
+            has_speakers: false,
+            edge_factors: false,
+            stride,
+            attributes: false,
+        };
+        // As many as every Vulkan device has, unless patches share more.
+        for (sharing, stride, needed) in
+            [(Sharing::Positions, 4, 16), (Sharing::Normals, 8, 32), (Sharing::Displacement, 9, 36)]
+        {
+            let stages = stages(sharing, stride);
+            let fit = |max_vertex_attributes| {
+                stages.fit_attributes(&DeviceProperties { max_vertex_attributes, ..headless.properties().clone() })
+            };
+            assert!(fit(needed) && !fit(needed - 1), "{sharing:?}");
+            assert_eq!(stages.patch_bytes(), 16 * needed);
+        }
+        let tessellated = PatchStages { evaluation: Evaluation::Tessellation, ..stages(Sharing::Positions, 4) };
+        assert!(!tessellated.fit_attributes(headless.properties()));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::draw::Bound;
 use super::evaluated::Drawn;
 use super::factor::{Cull, Cut};
 use super::gpu_data::DrawConstants;
-use super::lists::{COMMAND_BYTES, FrameLists, ListLayout, Pack};
+use super::lists::{COMMAND_BYTES, Compact, FrameLists, ListLayout};
 use super::model::Model;
 use super::pipelines::PipelineKey;
 use super::stages::PatchStages;
@@ -28,14 +28,22 @@ pub struct VisibleItems {
     view_offset: u32,
     set: vk::DescriptorSet,
     buffer: vk::Buffer,
-    items: Vec<(DrawItem, Vec<List>)>,
+    items: Vec<VisibleItem>,
+}
+
+#[derive(Debug, Clone)]
+struct VisibleItem {
+    item: DrawItem,
+    lists: Vec<List>,
+    /// Of the lattice whose indices the draws count, if it is one.
+    segments: Option<u32>,
 }
 
 impl VisibleItems {
     /// The same, all in another of [`Options::styles`](super::Options::styles): such as for depth alone.
     pub fn in_style(&self, style: usize) -> Self {
         let mut other = self.clone();
-        other.items.iter_mut().for_each(|(item, _)| item.style = style);
+        other.items.iter_mut().for_each(|visible| visible.item.style = style);
         other
     }
 }
@@ -43,14 +51,23 @@ impl VisibleItems {
 /// The lists of an item.
 #[derive(Clone, Copy)]
 pub(super) struct ItemLists<'v> {
-    visible: &'v VisibleItems,
-    lists: &'v [List],
+    all: &'v VisibleItems,
+    own: &'v VisibleItem,
 }
 
 impl ItemLists<'_> {
     /// Whether there are none: then the item is drawn as without.
     pub(super) fn is_empty(self) -> bool {
-        self.lists.is_empty()
+        self.own.lists.is_empty()
+    }
+
+    /// Tells whether the lists are of what is drawn now.
+    pub(super) fn check(self, drawn: Drawn) -> Result<(), Error> {
+        let &VisibleItem { item: DrawItem { model: id, factor, .. }, segments, .. } = self.own;
+        match (drawn.lattice_segments(), segments) {
+            (now, then) if now == then => Ok(()),
+            (now, _) => Err(Error::OtherSegments { id, factor, segments: now.unwrap_or(0) }),
+        }
     }
 }
 
@@ -88,13 +105,12 @@ impl Renderer {
     /// Records the search for the patches of some items that can be seen in a view, by their
     /// [`DrawItem::cull`]: for [`Renderer::cmd_draw_visible`], as often as you like in this frame.
     ///
-    /// It pays where control points are cached: for models that are [`Construction::Cached`](super::Construction::Cached) and
-    /// evaluated by the tessellation stages or [`Evaluation::Instanced`]. Others are drawn as by [`Renderer::cmd_draw`]. Takes
-    /// memory: eight bytes a patch, and for instances what they read of it, 256 bytes of a Gregory patch.
+    /// It is for models that are [`Construction::Cached`](super::Construction::Cached) and whose
+    /// [evaluation leaves out patches](Evaluation::culls). Others are drawn as by [`Renderer::cmd_draw`]. Takes memory: eight bytes
+    /// a patch, and for instances what they read of it, 256 bytes of a Gregory patch.
     ///
     /// # Errors
-    /// As [`Renderer::cmd_draw`]; [`Error::CullingNeeds`] without [`Options::visible_lists`](super::Options::visible_lists). What was recorded
-    /// until then does no harm.
+    /// As [`Renderer::cmd_draw`]; [`Error::NoVisibleLists`]; [`Error::ListsTooLarge`]. What was recorded until then does no harm.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after [`Renderer::cmd_prepare`] of the same frame, for the same queue, which
@@ -107,15 +123,15 @@ impl Renderer {
         items: &[DrawItem],
     ) -> Result<VisibleItems, Error> {
         self.check_frame(frame_index)?;
-        let missing = self.context.features().missing(LIST_FEATURES);
-        if !missing.is_empty() {
-            return Err(Error::CullingNeeds { missing });
+        if !self.options.visible_lists {
+            return Err(Error::NoVisibleLists);
         }
         let view_offset = self.take_view(frame_index, view)?;
         let mut bytes = 0;
         for item in items {
             self.check_item(view, item)?;
-            self.make_pipelines(item.model, item.factor, item.cull)?;
+            let lists = self.listed_groups(item)?.next().is_some();
+            self.make_cuts(item.model, item.factor, item.cull, lists)?;
             for (_, stages, group) in self.listed_groups(item)? {
                 let layout = ListLayout::new(stages);
                 bytes += pieces(group, layout).map(|(_, count)| layout.bytes(count)).sum::<u64>();
@@ -124,7 +140,12 @@ impl Renderer {
         self.make_room(frame_index, bytes)?;
         let mut listed = Vec::with_capacity(items.len());
         for item in items {
-            listed.push((*item, self.take_lists(frame_index, view, item)?));
+            let lists = self.take_lists(frame_index, view, item)?;
+            let segments = match lists.is_empty() {
+                true => None,
+                false => self.model(item.model)?.drawn(item.factor)?.lattice_segments(),
+            };
+            listed.push(VisibleItem { item: *item, lists, segments });
         }
         let lists = &self.lists[frame_index as usize];
         let (set, buffer) = (lists.set, lists.raw());
@@ -147,8 +168,8 @@ impl Renderer {
     /// Records the draws of what [`Renderer::cmd_cull`] found. Otherwise as [`Renderer::cmd_draw`].
     ///
     /// # Errors
-    /// As [`Renderer::cmd_draw`]; [`Error::OtherFrame`] if `visible` was found for another frame, or before this one was last
-    /// prepared.
+    /// As [`Renderer::cmd_draw`]; [`Error::OtherFrame`] if `visible` was found for another frame or by another renderer, or before
+    /// this frame was last prepared; [`Error::OtherSegments`] if the segments were changed since.
     ///
     /// # Safety
     /// As [`Renderer::cmd_draw`]; after [`Renderer::cmd_cull`].
@@ -165,9 +186,10 @@ impl Renderer {
         let mut bound = Bound::default();
         // SAFETY: as the caller promises.
         unsafe { self.cmd_bind_view(cmd, visible.set, [visible.view_offset, 0]) };
-        for (item, lists) in &visible.items {
+        for own in &visible.items {
+            let lists = Some(ItemLists { all: visible, own });
             // SAFETY: as the caller promises.
-            unsafe { self.cmd_draw_item(cmd, &visible.view, item, Some(ItemLists { visible, lists }), &mut bound)? };
+            unsafe { self.cmd_draw_item(cmd, &visible.view, &own.item, lists, &mut bound)? };
         }
         Ok(())
     }
@@ -188,7 +210,12 @@ impl Renderer {
         if lists.has_room(bytes) {
             return Ok(());
         }
-        let capacity = bytes.max(2 * lists.capacity()).next_power_of_two();
+        // Offsets are of 32 bits.
+        let max = u64::from(u32::MAX >> 1);
+        if bytes > max {
+            return Err(Error::ListsTooLarge { bytes, max });
+        }
+        let capacity = bytes.max(2 * lists.capacity()).next_power_of_two().min(max + 1);
         let layout = self.pipelines.view_layout.raw();
         let larger = FrameLists::new(&self.context, layout, &self.views, capacity)?;
         let before = std::mem::replace(&mut self.lists[frame as usize], larger);
@@ -228,7 +255,7 @@ impl Renderer {
             // SAFETY: as the caller promises.
             unsafe { device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, to, none, &written, &[], &[]) };
         };
-        for (item, lists) in &visible.items {
+        for VisibleItem { item, lists, .. } in &visible.items {
             let model = self.model(item.model)?;
             let most = self.check_item(&visible.view, item)?;
             let of_draw = item.constants(model, most);
@@ -239,19 +266,19 @@ impl Renderer {
                 let key = (model.stages[list.group], Cut::new(item.factor, item.cull));
                 let sets = [visible.set, model.set.raw];
                 // SAFETY: as the caller promises.
-                unsafe { pipelines.cmd_look(cmd, key, sets, [visible.view_offset, list.offset], &constants) };
+                unsafe { pipelines.cmd_cull(cmd, key, sets, [visible.view_offset, list.offset], &constants) };
             }
         }
         barrier(Stage::COMPUTE_SHADER, vk::AccessFlags::SHADER_READ);
-        for (item, lists) in &visible.items {
+        for VisibleItem { item, lists, .. } in &visible.items {
             let model = self.model(item.model)?;
             let drawn = model.drawn(item.factor)?;
             for list in lists {
                 let stages = model.stages[list.group];
-                let pack = pack(model, drawn, *list);
+                let compact = compact(model, drawn, *list);
                 let sets = [visible.set, model.set.raw];
                 // SAFETY: as the caller promises.
-                unsafe { pipelines.cmd_pack(cmd, stages, sets, [visible.view_offset, list.offset], &pack) };
+                unsafe { pipelines.cmd_compact(cmd, stages, sets, [visible.view_offset, list.offset], &compact) };
             }
         }
         use vk::AccessFlags as Access;
@@ -267,7 +294,7 @@ impl Renderer {
     pub(super) unsafe fn cmd_draw_lists(
         &self,
         cmd: vk::CommandBuffer,
-        ItemLists { visible, lists }: ItemLists,
+        ItemLists { all: visible, own }: ItemLists,
         (item, model, group): (&DrawItem, &Model, usize),
         of_draw: &DrawConstants,
         bound: &mut Bound,
@@ -277,7 +304,7 @@ impl Renderer {
         // SAFETY: as the caller promises.
         unsafe {
             self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
-            for list in lists.iter().filter(|list| list.group == group) {
+            for list in own.lists.iter().filter(|list| list.group == group) {
                 let of_list = list.constants(of_draw, &model.tables.plan().groups()[group]);
                 let constants = DrawConstants { patches_per_instance: list.patches_per_instance, ..of_list };
                 self.cmd_bind_view(cmd, visible.set, [visible.view_offset, list.offset]);
@@ -306,7 +333,7 @@ fn pieces(group: &PatchGroup, layout: ListLayout) -> impl Iterator<Item = (u32, 
     (0..patches).step_by(most as usize).map(move |first| (first, most.min(patches - first)))
 }
 
-fn pack(model: &Model, drawn: Drawn, list: List) -> Pack {
+fn compact(model: &Model, drawn: Drawn, list: List) -> Compact {
     let List { group, count, patches_per_instance, .. } = list;
     let (vertices, first_index) = match drawn {
         Drawn::Lattice(lattice) => lattice.indices_of_patch(group),
@@ -314,5 +341,5 @@ fn pack(model: &Model, drawn: Drawn, list: List) -> Pack {
     };
     let first_corner = list.first_corner(&model.tables.plan().groups()[group]);
     let copies = ListLayout::copies_word(count);
-    Pack { count, vertices, first_index, patches_per_instance, first_corner, copies }
+    Compact { count, vertices, first_index, patches_per_instance, first_corner, copies }
 }

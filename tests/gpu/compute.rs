@@ -283,8 +283,7 @@ fn evaluations_that_need_features_say_so() {
     let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, &view, &[]) }).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "leaving out patches by compute needs drawIndirectFirstInstance: set Options::visible_lists and make the device with \
-         what requirements lists then"
+        "cmd_cull goes with Options::visible_lists only: set it, and make the device with what requirements lists then"
     );
     drop((renderer, context));
     stage.finish();

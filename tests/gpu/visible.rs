@@ -3,7 +3,7 @@
 use crate::common;
 use crate::common::stage::Stage;
 use ash_subdiv::capture::{CaptureDraw, Captured};
-use ash_subdiv::headless::Statistics;
+use ash_subdiv::headless::{Statistics, Texels, Texture};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
 use ash_subdiv::{
     Construction, ControlMesh, DrawItem, Error, Fallback, ModelId, ModelOptions, Options, Renderer, Scheme, Style,
@@ -34,19 +34,37 @@ fn views(mesh: &ControlMesh) -> [View; 2] {
 }
 
 fn cull(stage: &Stage, renderer: &mut Renderer, view: &View, items: &[DrawItem]) -> VisibleItems {
+    cull_in(stage, renderer, 0, view, items).expect("lists")
+}
+
+fn cull_in(
+    stage: &Stage,
+    renderer: &mut Renderer,
+    frame: u32,
+    view: &View,
+    items: &[DrawItem],
+) -> Result<VisibleItems, Error> {
     // SAFETY: the command buffer is being recorded, outside rendering, and every submission is waited for.
-    stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, view, items) }).expect("lists")
+    stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, frame, view, items) })
 }
 
 fn draw(stage: &Stage, renderer: &mut Renderer, visible: &VisibleItems) -> Result<Vec<u8>, Error> {
+    draw_in(stage, renderer, 0, visible)
+}
+
+fn draw_in(stage: &Stage, renderer: &mut Renderer, frame: u32, visible: &VisibleItems) -> Result<Vec<u8>, Error> {
     // SAFETY: as above, inside rendering.
-    let record = |cmd| unsafe { renderer.cmd_draw_visible(cmd, 0, visible) };
+    let record = |cmd| unsafe { renderer.cmd_draw_visible(cmd, frame, visible) };
     stage.target.draw(&stage.headless, [0.0; 4], record)
 }
 
 fn draw_all(stage: &Stage, renderer: &mut Renderer, view: &View, items: &[DrawItem]) -> Vec<u8> {
+    draw_all_in(stage, renderer, 0, view, items)
+}
+
+fn draw_all_in(stage: &Stage, renderer: &mut Renderer, frame: u32, view: &View, items: &[DrawItem]) -> Vec<u8> {
     // SAFETY: as above.
-    let record = |cmd| unsafe { renderer.cmd_draw(cmd, 0, view, items) };
+    let record = |cmd| unsafe { renderer.cmd_draw(cmd, frame, view, items) };
     stage.target.draw(&stage.headless, [0.0; 4], record).expect("a picture")
 }
 
@@ -142,7 +160,25 @@ fn pictures_stay_the_same() {
             }
         }
     }
-    drop(renderer);
+    // Displaced ones are moved into the picture, and have more control points than there are attributes.
+    let texels = Texels { width: 1, height: 1, channels: 1, values: vec![1.0] };
+    let texture = Texture::new(&stage.headless, "flat", &texels).expect("a texture");
+    // SAFETY: the texture outlives the renderer.
+    let displacement = Some(unsafe { renderer.add_displacement((&texture).into()) });
+    let mesh = shape("creature").expect("built in");
+    let model = ModelOptions { displacement, ..cached(Scheme::Gregory, Evaluation::Instanced) };
+    let model = renderer.add_model(&mesh, &model).expect("a model");
+    renderer.set_segments(model, 6).expect("segments");
+    for view in views(&mesh) {
+        stage.prepare(&mut renderer, 0);
+        let item = DrawItem { cull: Cull::ALL, displacement: [0.2, 0.0], ..moved(model, 6.0.into()) };
+        let all = draw_all(&stage, &mut renderer, &view, &[DrawItem { cull: Cull::NONE, ..item }]);
+        let visible = cull(&stage, &mut renderer, &view, &[item]);
+        assert!(draw(&stage, &mut renderer, &visible).unwrap() == all);
+        let [before, now] = [false, true].map(|lists| count(&stage, &mut renderer, &view, item, lists));
+        assert_eq!(before.clipping_invocations > now.clipping_invocations, view == views(&mesh)[1]);
+    }
+    drop((renderer, texture));
     stage.finish();
 }
 
@@ -203,7 +239,7 @@ fn lists_grow_with_what_is_drawn() {
     let instanced = ModelOptions { evaluation: Evaluation::Instanced, ..options };
     let instanced = renderer.add_model(&torus, &instanced).expect("a model");
     renderer.set_segments(instanced, 1).expect("segments");
-    assert!(renderer.tables(large).unwrap().plan().patches().len() > 2 * 8192);
+    assert!(renderer.tables(large).unwrap().plan().patches().len() > 2 * 2048);
     let away = |x: f32| Mat4::from_translation(Vec3::new(x, 0.3, -0.4)).to_cols_array_2d();
     let item = |model, factor: f32, x: f32| DrawItem {
         cull: Cull { small: false, ..Cull::ALL },
@@ -214,23 +250,28 @@ fn lists_grow_with_what_is_drawn() {
         vec![item(small, 5.0, 0.0)],
         vec![item(large, 1.0, 0.0), item(two_stage, 3.0, 0.4), item(small, 2.0, -0.3), item(instanced, 1.0, 0.2)],
     ];
-    for _ in 0..2 {
-        stage.prepare(&mut renderer, 0);
+    let mut before = 0;
+    for frame in [0, 1, 0] {
+        stage.prepare(&mut renderer, frame);
         let [view, near] = views(&creature);
         let views = [view, near, view];
         let visible: Vec<_> = views.iter().zip(scenes.iter().cycle()).collect();
-        let visible: Vec<_> =
-            visible.into_iter().map(|(view, items)| (view, items, cull(&stage, &mut renderer, view, items))).collect();
+        let mut find = |view, items| cull_in(&stage, &mut renderer, frame, view, items).expect("lists");
+        let visible: Vec<_> = visible.into_iter().map(|(view, items)| (view, items, find(view, items))).collect();
         for (view, items, visible) in visible {
             for style in [0, 1] {
                 let items: Vec<_> = items.iter().map(|&item| DrawItem { cull: Cull::NONE, style, ..item }).collect();
-                let all = draw_all(&stage, &mut renderer, view, &items);
-                assert!(draw(&stage, &mut renderer, &visible.in_style(style)).unwrap() == all, "{style}");
+                let all = draw_all_in(&stage, &mut renderer, frame, view, &items);
+                let drawn = draw_in(&stage, &mut renderer, frame, &visible.in_style(style)).unwrap();
+                assert!(drawn == all, "frame {frame}, style {style}");
             }
         }
+        // Each frame has its own, and keeps them.
+        let lists = renderer.memory_usage().lists;
+        let patches = renderer.tables(instanced).unwrap().plan().patches().len() as u64;
+        assert_eq!(lists > before + (8 + 256) * patches, before == 0 || frame == 1, "{lists} bytes");
+        before = lists;
     }
-    let lists = renderer.memory_usage().lists;
-    assert!(lists > 8 * 2 * 8192, "{lists} bytes");
     drop(renderer);
     stage.finish();
 }
@@ -253,13 +294,48 @@ fn wrong_use_is_told() {
     stage.prepare(&mut renderer, 0);
     assert_eq!(
         told(draw(&stage, &mut renderer, &visible).unwrap_err()),
-        "frame 0: what can be seen was found before it was prepared, or for another frame: call cmd_cull after cmd_prepare, \
-         and draw in the same frame"
+        "frame 0: what can be seen was found before it was prepared, for another frame or by another renderer: call cmd_cull \
+         after cmd_prepare, and draw in the same frame"
     );
+    stage.prepare(&mut renderer, 1);
+    let visible = cull(&stage, &mut renderer, &view, &[item]);
+    let mut other = stage.renderer(&options());
+    stage.prepare(&mut other, 0);
+    for error in [draw_in(&stage, &mut renderer, 1, &visible), draw(&stage, &mut other, &visible)] {
+        assert!(matches!(error, Err(Error::OtherFrame { .. })), "{error:?}");
+    }
+    drop(other);
+
+    // What changed between.
+    let options = ModelOptions { edge_factors: true, ..cached(Scheme::Gregory, Evaluation::Instanced) };
+    let lattice = renderer.add_model(&mesh, &options).expect("a model");
+    renderer.set_segments(lattice, 8).expect("segments");
+    stage.prepare(&mut renderer, 0);
+    let of_lattice = DrawItem { cull: BACK, ..DrawItem::new(lattice, Factor::Edges(1.0)) };
+    let visible = cull(&stage, &mut renderer, &view, &[item, of_lattice]);
+    renderer.set_segments(lattice, 2).expect("segments");
+    stage.prepare(&mut renderer, 1);
+    let error = draw(&stage, &mut renderer, &visible);
+    assert!(matches!(error, Err(Error::OtherSegments { segments: 2, .. })), "{error:?}");
+    renderer.remove_model(model).unwrap();
+    let error = draw(&stage, &mut renderer, &visible);
+    assert!(matches!(error, Err(Error::NoSuchModel { .. })), "{error:?}");
+    let model = renderer.add_model(&mesh, &cached(Scheme::Gregory, Evaluation::Tessellation)).expect("a model");
+    stage.prepare(&mut renderer, 0);
+    let item = DrawItem { model, ..item };
+
     let bad = DrawItem { factor: Factor::Uniform(0.5), ..item };
     // SAFETY: outside rendering, and every submission is waited for.
     let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, &view, &[item, bad]) }).unwrap_err();
     assert!(told(error).contains("a tessellation factor is a number from 1 up"));
+    stage.prepare(&mut renderer, 0);
+    let error = (0..17).find_map(|_| cull_in(&stage, &mut renderer, 0, &view, &[item]).err()).expect("an error");
+    assert!(matches!(error, Error::TooManyViews { max: 16, .. }), "{error}");
+    drop(renderer);
+    // The device could, but was not asked to.
+    let mut renderer = stage.renderer(&Options::default());
+    let error = cull_in(&stage, &mut renderer, 0, &view, &[]);
+    assert!(matches!(error, Err(Error::NoVisibleLists)), "{error:?}");
     drop(renderer);
     stage.finish();
 }

@@ -8,7 +8,7 @@ use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, ModelTables};
-use ash_subdiv::{ControlMesh, DrawItem, ModelOptions, Options, Renderer, Target, View};
+use ash_subdiv::{Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Target, View};
 
 /// What is drawn besides the model.
 pub(super) struct Picture<'p> {
@@ -72,7 +72,7 @@ impl RenderArgs {
         let target = Offscreen::new(headless, &desc)?;
         let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
         let errors = picture.map.map(|map| ErrorSet::new(headless.context(), map)).transpose()?;
-        let culls = self.factor.cull.cull() != Cull::NONE;
+        let culls = self.factor.cull.cull() != Cull::NONE && model_options.construction == Construction::Cached;
         let options = Options {
             styles: self.shading.styles(),
             texcoords: errors.is_some(),
