@@ -21,8 +21,8 @@ const MAX_PATCHES: u64 = 2048;
 const HEADER_BYTES: u64 = 4 * 8;
 /// Bytes of a list for each of its patches: its place on the list, and whether it can be seen.
 const PATCH_BYTES: u64 = 4 * 2;
-/// The most bytes of a list, which is what shaders see from its start on.
-const RANGE: u64 = 1 << 20;
+/// The most bytes of a list.
+const MAX_BYTES: u64 = 1 << 20;
 /// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
 const ALIGNMENT: u64 = 256;
 /// Invocations in a workgroup of `glsl/compute/cull.comp` and `compact.comp`.
@@ -45,7 +45,7 @@ impl ListLayout {
 
     /// The most patches of a list.
     pub(super) fn max_patches(self) -> u32 {
-        let most = (RANGE - HEADER_BYTES - TEXEL_BYTES) / (PATCH_BYTES + self.copied);
+        let most = (MAX_BYTES - HEADER_BYTES - TEXEL_BYTES) / (PATCH_BYTES + self.copied);
         most.min(MAX_PATCHES) as u32
     }
 
@@ -95,6 +95,8 @@ pub(super) struct FrameLists {
     pub set: vk::DescriptorSet,
     _pool: Owned<vk::DescriptorPool>,
     buffer: Option<Buffer>,
+    /// Bytes that lists may take.
+    pub capacity: u64,
     used: u64,
 }
 
@@ -108,12 +110,14 @@ impl FrameLists {
     ) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::INDIRECT_BUFFER | Usage::VERTEX_BUFFER;
-        let make = || device_buffer(context, "subdiv lists of patches", bytes + RANGE, usage);
+        // What shaders see from the start of a list on: also of the last.
+        let range = bytes.min(MAX_BYTES);
+        let make = || device_buffer(context, "subdiv lists of patches", bytes + range, usage);
         let buffer = (bytes > 0).then(make).transpose()?;
         // Every descriptor has to be written; without lists no draw reads any.
-        let lists = buffer.as_ref().map_or((views.raw(), 4), |lists| (lists.raw(), RANGE));
+        let lists = buffer.as_ref().map_or((views.raw(), 4), |lists| (lists.raw(), range));
         let (pool, set) = view_set(context, layout, [(views.raw(), size_of::<ViewData>() as u64), lists])?;
-        Ok(Self { set, _pool: pool, buffer, used: 0 })
+        Ok(Self { set, _pool: pool, buffer, capacity: bytes, used: 0 })
     }
 
     /// Forgets the lists that there are.
@@ -121,13 +125,8 @@ impl FrameLists {
         self.used = 0;
     }
 
-    /// Bytes that lists may take.
-    pub(super) fn capacity(&self) -> u64 {
-        self.buffer.as_ref().map_or(0, |buffer| buffer.size() - RANGE)
-    }
-
     pub(super) fn has_room(&self, bytes: u64) -> bool {
-        self.used + bytes <= self.capacity()
+        self.used + bytes <= self.capacity
     }
 
     /// Takes room of so many bytes for a list, which there must be: where it starts.

@@ -215,7 +215,7 @@ impl Renderer {
         if bytes > max {
             return Err(Error::ListsTooLarge { bytes, max });
         }
-        let capacity = bytes.max(2 * lists.capacity()).next_power_of_two().min(max + 1);
+        let capacity = bytes.max(2 * lists.capacity).next_power_of_two().min(max + 1);
         let layout = self.pipelines.view_layout.raw();
         let larger = FrameLists::new(&self.context, layout, &self.views, capacity)?;
         let before = std::mem::replace(&mut self.lists[frame as usize], larger);

@@ -63,10 +63,15 @@ fn wrong_usage_is_said_in_one_line() {
         2,
         "--evaluation geometry-two-pass: it does not go with --displacement: leave one of both out",
     );
-    for what in ["--pixels 3", "--bend 1", "--cull back", "--spacing odd"] {
+    for (evaluation, what) in [
+        ("instanced", "--pixels 3"),
+        ("instanced", "--bend 1"),
+        ("instanced", "--spacing odd"),
+        ("compute", "--cull back"),
+    ] {
         let (name, _) = what.split_once(' ').unwrap();
-        let message = format!("--evaluation instanced: it does not go with {name}: leave one of both out");
-        fails(&format!("render --shape cube -o x.png --evaluation instanced {what}"), 2, &message);
+        let message = format!("--evaluation {evaluation}: it does not go with {name}: leave one of both out");
+        fails(&format!("render --shape cube -o x.png --evaluation {evaluation} {what}"), 2, &message);
     }
     fails("render --shape cube -o x.jpg", 2, "--output x.jpg: pictures are PNG files: let the name end in .png");
     fails(
