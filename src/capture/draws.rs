@@ -2,8 +2,7 @@
 
 use super::watch::{Watcher, Watchers};
 use super::{CaptureDraw, Captured, CapturedVertex};
-use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
-use crate::headless::Headless;
+use crate::gpu::{Buffer, BufferDesc, DescriptorSet, DeviceContext, GpuError, MemoryLocation};
 use crate::renderer::{Capture, DrawItem, Error, Factor, ModelOptions};
 use crate::topology::PatchKind;
 use ash::vk;
@@ -98,15 +97,17 @@ impl Captured<'_> {
                 buffer.write(0, &vec![f32::NAN; size as usize / 4])?;
                 let head = head(&window);
                 buffer.write(0, &[head])?;
-                let buffers: Vec<&Buffer> = idle.iter().chain([&buffer]).collect();
-                let (_pool, set) = capture_set(headless, layout.raw(), &buffers)?;
+                let part = |buffer: &Buffer| (vk::DescriptorType::STORAGE_BUFFER, buffer.descriptor());
+                let parts: Vec<_> = idle.iter().chain([&buffer]).map(part).collect();
+                // SAFETY: the layout is of this device, and has as many; every submission is waited for.
+                let set = unsafe { DescriptorSet::of_buffers(headless.context(), layout.raw(), "capture", &parts)? };
                 let pipeline_layout = renderer.pipeline_layout();
                 // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
                 headless.try_submit(|cmd| unsafe {
                     renderer.cmd_prepare(cmd, 0)?;
                     target.cmd_begin(cmd, [0.0; 4]);
                     let point = vk::PipelineBindPoint::GRAPHICS;
-                    headless.device().cmd_bind_descriptor_sets(cmd, point, pipeline_layout, 2, &[set], &[]);
+                    headless.device().cmd_bind_descriptor_sets(cmd, point, pipeline_layout, 2, &[set.raw()], &[]);
                     renderer.cmd_draw(cmd, 0, &draw.view, &[item])?;
                     target.cmd_end(cmd);
                     Ok::<(), Error>(())
@@ -134,27 +135,4 @@ impl Captured<'_> {
 pub(super) fn capture_buffer(context: &Arc<DeviceContext>, size: u64) -> Result<Buffer, GpuError> {
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
     Buffer::new(context, &BufferDesc { name: "capture", size, usage, location: MemoryLocation::Readback })
-}
-
-fn capture_set(
-    headless: &Headless,
-    layout: vk::DescriptorSetLayout,
-    buffers: &[&Buffer],
-) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    let ty = vk::DescriptorType::STORAGE_BUFFER;
-    let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: buffers.len() as u32 }];
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let (device, layouts) = (headless.device(), [layout]);
-    let infos: Vec<_> = buffers.iter().map(|buffer| [buffer.descriptor()]).collect();
-    // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
-    unsafe {
-        let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", "capture")?;
-        let pool = Owned::new(headless.context(), pool, "capture");
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-        let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", "capture")?[0];
-        let write = vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty);
-        let writes: Vec<_> = (0..).zip(&infos).map(|(i, info)| write.dst_binding(i).buffer_info(info)).collect();
-        device.update_descriptor_sets(&writes, &[]);
-        Ok((pool, set))
-    }
 }

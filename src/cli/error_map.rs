@@ -3,9 +3,7 @@
 use super::error::CliError;
 use super::legend::{self, COLOURS};
 use ash::vk;
-use ash_subdiv::gpu::{
-    Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt, descriptor_set_layout,
-};
+use ash_subdiv::gpu::{Buffer, BufferDesc, DescriptorSet, DeviceContext, MemoryLocation, Owned, descriptor_set_layout};
 use ash_subdiv::measure::{Quantity, error_field};
 use ash_subdiv::mesh::{FaceVarying, MeshData};
 use ash_subdiv::table::{CpuSurface, grid_parameters};
@@ -110,8 +108,7 @@ fn round_up(value: f64) -> f64 {
 /// The errors on the device, with the descriptor set that the fragment shader finds them in.
 pub(super) struct ErrorSet {
     pub layout: Owned<vk::DescriptorSetLayout>,
-    pub set: vk::DescriptorSet,
-    _pool: Owned<vk::DescriptorPool>,
+    pub set: DescriptorSet,
     _buffer: Buffer,
 }
 
@@ -132,22 +129,9 @@ impl ErrorSet {
         buffer.write(0, &bytes)?;
         let ty = vk::DescriptorType::STORAGE_BUFFER;
         let layout = descriptor_set_layout(context, NAME, &[(ty, vk::ShaderStageFlags::FRAGMENT)])?;
-        let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: 1 }];
-        let pool = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-        let layouts = [layout.raw()];
-        // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
-        let (pool, set) = unsafe {
-            let device = context.device();
-            let pool = device.create_descriptor_pool(&pool, None).of("vkCreateDescriptorPool", NAME)?;
-            let pool = Owned::new(context, pool, NAME);
-            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-            let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", NAME)?[0];
-            let infos = [buffer.descriptor()];
-            let write = vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty).buffer_info(&infos);
-            device.update_descriptor_sets(&[write], &[]);
-            Ok::<_, GpuError>((pool, set))
-        }?;
-        Ok(Self { layout, set, _pool: pool, _buffer: buffer })
+        // SAFETY: the layout is of this device, with this descriptor; the buffer goes with the set.
+        let set = unsafe { DescriptorSet::of_buffers(context, layout.raw(), NAME, &[(ty, buffer.descriptor())])? };
+        Ok(Self { layout, set, _buffer: buffer })
     }
 }
 

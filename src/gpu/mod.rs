@@ -27,7 +27,7 @@ pub use device::{ContextOptions, DeviceContext, DeviceProperties};
 pub use error::{GpuError, VkResultExt};
 pub use features::Features;
 pub use image::{Image, ImageDesc, aspects};
-pub use layout::{descriptor_set_layout, pipeline_layout};
+pub use layout::{DescriptorSet, descriptor_set_layout, pipeline_layout};
 pub use owned::{DeviceHandle, Owned};
 pub use pipeline::{Blend, ComputePipelineDesc, DepthBias, DepthState, GraphicsPipelineDesc, RenderTarget};
 pub use stages::{Shader, Specialization};

@@ -2,7 +2,7 @@
 
 use super::DisplacementMap;
 use super::pipelines::STAGES;
-use crate::gpu::{Buffer, DeviceContext, GpuError, Owned, VkResultExt, descriptor_set_layout};
+use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, Owned, descriptor_set_layout};
 use ash::vk;
 use std::sync::Arc;
 
@@ -40,15 +40,15 @@ pub(super) fn model_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::Des
 /// A descriptor set, with the views that it shows.
 pub(super) struct ModelSet {
     pub raw: vk::DescriptorSet,
+    _set: DescriptorSet,
     _texels: Vec<Owned<vk::BufferView>>,
-    _pool: Owned<vk::DescriptorPool>,
 }
 
 impl ModelSet {
     /// Of parts of buffers, from an offset on so many bytes each, by binding.
     ///
     /// # Safety
-    /// The buffers and the map live as long as the set is used.
+    /// The layout is [`model_layout`]'s; the buffers and the map live as long as the set is used.
     pub(super) unsafe fn new(
         context: &Arc<DeviceContext>,
         layout: vk::DescriptorSetLayout,
@@ -61,33 +61,15 @@ impl ModelSet {
             buffer.texels(format, texel, offset, bytes)
         });
         let texels = texels.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let (pool, raw) = descriptor_set(context, layout, name)?;
-        write_set(context, raw, parts, map, &texels);
-        Ok(Self { raw, _texels: texels, _pool: pool })
-    }
-}
-
-fn descriptor_set(
-    context: &Arc<DeviceContext>,
-    layout: vk::DescriptorSetLayout,
-    name: &str,
-) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    let count = |ty, descriptor_count| vk::DescriptorPoolSize { ty, descriptor_count };
-    let sizes = [
-        count(vk::DescriptorType::STORAGE_BUFFER, MODEL_BUFFERS as u32),
-        count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1),
-        count(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, TEXELS.len() as u32),
-    ];
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let layouts = [layout];
-    // SAFETY: the pool is taken over by `Owned` and has room for the set.
-    unsafe {
-        let pool = context.device().create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", name)?;
-        let pool = Owned::new(context, pool, name);
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-        let sets = context.device().allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", name)?;
-        context.set_name(sets[0], name);
-        Ok((pool, sets[0]))
+        let descriptors = [
+            (vk::DescriptorType::STORAGE_BUFFER, MODEL_BUFFERS as u32),
+            (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1),
+            (vk::DescriptorType::UNIFORM_TEXEL_BUFFER, TEXELS.len() as u32),
+        ];
+        // SAFETY: the layout is of this device, and has these.
+        let set = unsafe { DescriptorSet::new(context, layout, name, &descriptors)? };
+        write_set(context, set.raw(), parts, map, &texels);
+        Ok(Self { raw: set.raw(), _set: set, _texels: texels })
     }
 }
 

@@ -91,7 +91,7 @@ impl Renderer {
     ) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         let offset = self.take_view(frame_index, view)?;
-        let set = self.lists[frame_index as usize].set;
+        let set = self.lists[frame_index as usize].set.raw();
         // SAFETY: as the caller promises.
         unsafe { self.cmd_bind_view(cmd, set, [offset, 0]) };
         let mut bound = Bound::default();

@@ -7,7 +7,7 @@ use super::stages::{PatchStages, Sharing};
 use super::vertex_input::vertex_bytes;
 use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{
-    Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
+    Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, Owned, Shader, descriptor_set_layout,
     pipeline_layout,
 };
 use crate::table::{PatchPlan, lattice_indices, lattice_triangles, lattice_vertices};
@@ -95,8 +95,7 @@ pub(super) struct Lattice {
 /// Evaluated vertices, group by group.
 pub(super) struct LatticeVertices {
     pub buffer: Buffer,
-    set: vk::DescriptorSet,
-    _pool: Owned<vk::DescriptorPool>,
+    set: DescriptorSet,
 }
 
 /// Patches of one kind.
@@ -193,7 +192,7 @@ impl Lattice {
         let (device, layout) = (pipelines.context.device(), pipelines.layout.raw());
         let point = vk::PipelineBindPoint::COMPUTE;
         // SAFETY: as the caller promises.
-        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model, vertices.set], &[]) };
+        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model, vertices.set.raw()], &[]) };
         for ((&stages, group), lattice) in stages.iter().zip(plan.groups()).zip(&self.groups) {
             let Some(pipeline) = pipelines.made.get(&stages) else { continue };
             // SAFETY: as the caller promises.
@@ -261,30 +260,10 @@ impl LatticeVertices {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC;
         let buffer = device_buffer(&pipelines.context, "subdiv vertices", bytes.max(4), usage)?;
-        let (pool, set) = vertex_set(&pipelines.context, pipelines.set_layout.raw(), &buffer)?;
-        Ok(Self { buffer, set, _pool: pool })
-    }
-}
-
-fn vertex_set(
-    context: &Arc<DeviceContext>,
-    layout: vk::DescriptorSetLayout,
-    vertices: &Buffer,
-) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    const NAME: &str = "subdiv vertices";
-    let ty = vk::DescriptorType::STORAGE_BUFFER;
-    let sizes = [vk::DescriptorPoolSize { ty, descriptor_count: 1 }];
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let (layouts, buffers) = ([layout], [vertices.descriptor()]);
-    // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
-    unsafe {
-        let device = context.device();
-        let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", NAME)?;
-        let pool = Owned::new(context, pool, NAME);
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-        let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", NAME)?[0];
-        let write = vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty).buffer_info(&buffers);
-        device.update_descriptor_sets(&[write], &[]);
-        Ok((pool, set))
+        let (context, layout) = (&pipelines.context, pipelines.set_layout.raw());
+        let parts = [(vk::DescriptorType::STORAGE_BUFFER, buffer.descriptor())];
+        // SAFETY: the layout is of this device, with this descriptor; the buffer goes with the set.
+        let set = unsafe { DescriptorSet::of_buffers(context, layout, "subdiv vertices", &parts)? };
+        Ok(Self { buffer, set })
     }
 }

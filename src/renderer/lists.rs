@@ -7,7 +7,7 @@ use super::pipelines::ShaderCode;
 use super::stages::PatchStages;
 use super::tables::TEXEL_BYTES;
 use crate::gpu::{
-    Buffer, ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, VkResultExt, descriptor_set_layout,
+    Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, Owned, Shader, descriptor_set_layout,
     pipeline_layout,
 };
 use ash::vk;
@@ -92,8 +92,7 @@ pub(super) fn view_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::Desc
 
 /// The lists of a frame, and set 0 with them.
 pub(super) struct FrameLists {
-    pub set: vk::DescriptorSet,
-    _pool: Owned<vk::DescriptorPool>,
+    pub set: DescriptorSet,
     buffer: Option<Buffer>,
     /// Bytes that lists may take.
     pub capacity: u64,
@@ -115,9 +114,15 @@ impl FrameLists {
         let make = || device_buffer(context, "subdiv lists of patches", bytes + range, usage);
         let buffer = (bytes > 0).then(make).transpose()?;
         // Every descriptor has to be written; without lists no draw reads any.
-        let lists = buffer.as_ref().map_or((views.raw(), 4), |lists| (lists.raw(), range));
-        let (pool, set) = view_set(context, layout, [(views.raw(), size_of::<ViewData>() as u64), lists])?;
-        Ok(Self { set, _pool: pool, buffer, capacity: bytes, used: 0 })
+        let (lists, range) = buffer.as_ref().map_or((views, 4), |lists| (lists, range));
+        let part = |buffer: &Buffer, range| vk::DescriptorBufferInfo { buffer: buffer.raw(), offset: 0, range };
+        let parts = [
+            (vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, part(views, size_of::<ViewData>() as u64)),
+            (vk::DescriptorType::STORAGE_BUFFER_DYNAMIC, part(lists, range)),
+        ];
+        // SAFETY: the layout is of this device, with these; the lists go with the set, and the views with the renderer.
+        let set = unsafe { DescriptorSet::of_buffers(context, layout, "subdiv view", &parts)? };
+        Ok(Self { set, buffer, capacity: bytes, used: 0 })
     }
 
     /// Forgets the lists that there are.
@@ -143,36 +148,6 @@ impl FrameLists {
 
     pub(super) fn bytes(&self) -> u64 {
         self.buffer.as_ref().map_or(0, Buffer::size)
-    }
-}
-
-fn view_set(
-    context: &Arc<DeviceContext>,
-    layout: vk::DescriptorSetLayout,
-    parts: [(vk::Buffer, u64); 2],
-) -> Result<(Owned<vk::DescriptorPool>, vk::DescriptorSet), GpuError> {
-    const NAME: &str = "subdiv view";
-    let types = [vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, vk::DescriptorType::STORAGE_BUFFER_DYNAMIC];
-    let sizes = types.map(|ty| vk::DescriptorPoolSize { ty, descriptor_count: 1 });
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-    let layouts = [layout];
-    let buffers = parts.map(|(buffer, range)| [vk::DescriptorBufferInfo { buffer, offset: 0, range }]);
-    // SAFETY: the pool is taken over by `Owned` and has room for the set, which is new.
-    unsafe {
-        let device = context.device();
-        let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", NAME)?;
-        let pool = Owned::new(context, pool, NAME);
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-        let set = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", NAME)?[0];
-        let write = |binding: usize| {
-            vk::WriteDescriptorSet::default()
-                .dst_set(set)
-                .dst_binding(binding as u32)
-                .descriptor_type(types[binding])
-                .buffer_info(&buffers[binding])
-        };
-        device.update_descriptor_sets(&[0, 1].map(write), &[]);
-        Ok((pool, set))
     }
 }
 

@@ -148,7 +148,7 @@ impl Renderer {
             listed.push(VisibleItem { item: *item, lists, segments });
         }
         let lists = &self.lists[frame_index as usize];
-        let (set, buffer) = (lists.set, lists.raw());
+        let (set, buffer) = (lists.set.raw(), lists.raw());
         let visible = VisibleItems {
             frame: frame_index,
             preparation: self.preparations[frame_index as usize],

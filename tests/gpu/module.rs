@@ -290,7 +290,10 @@ fn wrong_use_is_told() {
     }
     assert_eq!(draw(&mut renderer, 0, DrawItem { style: 1, ..item }), "style 1: Options::styles has 1");
     stage.draw(&mut renderer, 0, &[item]).unwrap();
-    assert_eq!(draw(&mut renderer, 0, item), "2 views were already drawn in frame 0: raise Options::views_per_frame");
+    assert_eq!(
+        draw(&mut renderer, 0, item),
+        "2 views were already drawn or culled in frame 0: raise Options::views_per_frame"
+    );
     let error = renderer.set_positions(model, 0, &[[0.0; 3]; 7]).unwrap_err().to_string();
     assert_eq!(error, "model 0: 7 positions are given, but its control mesh has 8 vertices");
     let error = renderer.set_positions(model, 5, &[[0.0; 3]; 8]).unwrap_err().to_string();

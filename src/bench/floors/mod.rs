@@ -10,8 +10,8 @@ pub(super) use vertex_buffer::VertexBuffer;
 use super::BenchError;
 use super::drawable::{Frame, Lane, Pass};
 use crate::gpu::{
-    Buffer, BufferDesc, DepthState, DeviceContext, GpuError, GraphicsPipelineDesc, MemoryLocation, Owned, RenderTarget,
-    Shader, VkResultExt, descriptor_set_layout, pipeline_layout, shaders,
+    Buffer, BufferDesc, DepthState, DescriptorSet, DeviceContext, GpuError, GraphicsPipelineDesc, MemoryLocation,
+    Owned, RenderTarget, Shader, descriptor_set_layout, pipeline_layout, shaders,
 };
 use crate::headless::Headless;
 use crate::renderer::{DrawConstants, STAGES, View, ViewData};
@@ -36,8 +36,7 @@ struct Kit {
     context: Arc<DeviceContext>,
     layout: Owned<vk::PipelineLayout>,
     _set_layouts: [Owned<vk::DescriptorSetLayout>; 2],
-    _pool: Owned<vk::DescriptorPool>,
-    sets: [vk::DescriptorSet; 2],
+    sets: [DescriptorSet; 2],
     view: Buffer,
     _position_texels: Owned<vk::BufferView>,
 }
@@ -62,30 +61,24 @@ impl Kit {
         let desc =
             BufferDesc { name: NAME, size: size_of::<ViewData>() as u64, usage, location: MemoryLocation::Upload };
         let view = Buffer::new(context, &desc)?;
-        let sizes = [
-            vk::DescriptorPoolSize { ty: uniform, descriptor_count: 1 },
-            vk::DescriptorPoolSize { ty: buffer, descriptor_count: BINDINGS as u32 },
-            vk::DescriptorPoolSize { ty: texels, descriptor_count: 1 },
-        ];
-        let pool_info = vk::DescriptorPoolCreateInfo::default().max_sets(2).pool_sizes(&sizes);
-        let device = context.device();
-        // SAFETY: the pool is taken over by `Owned` and has room for the sets, which are new.
-        let (pool, sets) = unsafe {
-            let pool = device.create_descriptor_pool(&pool_info, None).of("vkCreateDescriptorPool", NAME)?;
-            let pool = Owned::new(context, pool, NAME);
-            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&raw);
-            let sets = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", NAME)?;
-            (pool, [sets[0], sets[1]])
+        // SAFETY: the layouts are of this device, with these descriptors.
+        let sets = unsafe {
+            let of_model = [(buffer, BINDINGS as u32), (texels, 1)];
+            [
+                DescriptorSet::new(context, raw[0], NAME, &[(uniform, 1)])?,
+                DescriptorSet::new(context, raw[1], NAME, &of_model)?,
+            ]
         };
+        let device = context.device();
         let views = [view.descriptor()];
         let buffers = storage.map(Buffer::descriptor);
         let write = |set, ty| vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(ty);
         let position_texels = storage[0].texels(vk::Format::R32G32B32A32_SFLOAT, 16, 0, storage[0].size())?;
         let texel_views = [position_texels.raw()];
         let writes = [
-            write(sets[0], uniform).buffer_info(&views),
-            write(sets[1], buffer).buffer_info(&buffers),
-            write(sets[1], texels).dst_binding(BINDINGS as u32).texel_buffer_view(&texel_views),
+            write(sets[0].raw(), uniform).buffer_info(&views),
+            write(sets[1].raw(), buffer).buffer_info(&buffers),
+            write(sets[1].raw(), texels).dst_binding(BINDINGS as u32).texel_buffer_view(&texel_views),
         ];
         // SAFETY: the sets are new, and the buffers live as long as they.
         unsafe { device.update_descriptor_sets(&writes, &[]) };
@@ -93,7 +86,6 @@ impl Kit {
             context: context.clone(),
             layout,
             _set_layouts: set_layouts,
-            _pool: pool,
             sets,
             view,
             _position_texels: position_texels,
@@ -136,8 +128,9 @@ impl Kit {
     unsafe fn cmd_bind(&mut self, cmd: vk::CommandBuffer, view: &View) -> Result<(), GpuError> {
         self.view.write(0, &[view.data()])?;
         let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, self.layout.raw());
+        let sets = self.sets.each_ref().map(DescriptorSet::raw);
         // SAFETY: as the caller promises.
-        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, layout, 0, &self.sets, &[]) };
+        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, &[]) };
         Ok(())
     }
 

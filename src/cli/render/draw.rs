@@ -109,7 +109,14 @@ impl RenderArgs {
                 let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, renderer.pipeline_layout());
                 // SAFETY: the set is of the layout at this place, and outlives the submission.
                 unsafe {
-                    headless.context().device().cmd_bind_descriptor_sets(cmd, point, layout, 2, &[errors.set], &[]);
+                    headless.context().device().cmd_bind_descriptor_sets(
+                        cmd,
+                        point,
+                        layout,
+                        2,
+                        &[errors.set.raw()],
+                        &[],
+                    );
                 }
             }
             // SAFETY: inside rendering that fits the target, after the frame was prepared.
