@@ -141,7 +141,7 @@ impl Renderer {
         let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
         let cut = Cut::new(factor, cull);
         // Of patches that are not looked at, all are drawn.
-        let cuts = if lists { vec![Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { vec![cut] };
+        let cuts = if lists { [Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { [cut; 2] };
         for each in cuts {
             if model.made & each.bit() == 0 {
                 self.pipelines.make(&model.stages, each)?;
@@ -172,8 +172,8 @@ impl Renderer {
         lists: Option<ItemLists>,
         bound: &mut Bound,
     ) -> Result<(), Error> {
-        let (model, style) = (self.model(item.model)?, self.style(item)?);
-        let most = self.check_item(view, item)?;
+        let style = self.style(item)?;
+        let (model, most) = self.check_item(view, item)?;
         let device = self.context.device();
         let mut constants = item.constants(model, most);
         let lists = lists.filter(|lists| !lists.is_empty());
@@ -300,11 +300,10 @@ impl Renderer {
         styles.get(item.style).ok_or(Error::NoSuchStyle { given: item.style, count: styles.len() })
     }
 
-    /// Tells whether an item can be drawn. Gives the largest factor that any edge may have.
-    pub(super) fn check_item(&self, view: &View, item: &DrawItem) -> Result<f32, Error> {
+    /// Tells whether an item can be drawn. Gives its model, and the largest factor that any edge may have.
+    pub(super) fn check_item(&self, view: &View, item: &DrawItem) -> Result<(&Model, f32), Error> {
         let (id, factor) = (item.model, item.factor);
         let model = self.model(id)?;
-        self.style(item)?;
         if !model.prepared {
             return Err(Error::NotPrepared { id });
         }
@@ -319,14 +318,15 @@ impl Renderer {
             return Err(Error::BadDisplacement { id, scale, bias });
         }
         let max = self.context.properties().max_tessellation_level as f32;
-        match factor {
-            Factor::Uniform(factor) => Ok(factor.min(max)),
-            Factor::Pixels(_) | Factor::Curvature(_) => Ok(max),
+        let most = match factor {
+            Factor::Uniform(factor) => factor.min(max),
+            Factor::Pixels(_) | Factor::Curvature(_) => max,
             Factor::Edges(scale) => {
                 let largest = model.largest_edge_factor().ok_or(Error::NoEdgeFactors { id })?;
-                Ok((scale * largest).clamp(1.0, max))
+                (scale * largest).clamp(1.0, max)
             }
-        }
+        };
+        Ok((model, most))
     }
 
     pub(super) unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {

@@ -187,9 +187,9 @@ impl Pipelines {
             Some(made) => made,
             None => Conversion::new(&self.context, [self.view_layout.raw(), self.model_layout.raw()], self.cache)?,
         };
-        made.make(stages, &self.shaders)?;
+        let result = made.make(stages, &self.shaders);
         self.conversion = Some(made);
-        Ok(())
+        result
     }
 
     /// Makes what lists of the patches of these need that can be seen.

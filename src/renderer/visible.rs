@@ -227,8 +227,7 @@ impl Renderer {
     }
 
     fn take_lists(&mut self, frame: u32, view: &View, item: &DrawItem) -> Result<Vec<List>, Error> {
-        let most = self.check_item(view, item)?;
-        let model = self.model(item.model)?;
+        let (model, most) = self.check_item(view, item)?;
         let mut lists = Vec::new();
         for (number, stages, group) in self.listed_groups(item)? {
             let layout = ListLayout::new(stages);
@@ -256,8 +255,7 @@ impl Renderer {
             unsafe { device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, to, none, &written, &[], &[]) };
         };
         for VisibleItem { item, lists, .. } in &visible.items {
-            let model = self.model(item.model)?;
-            let most = self.check_item(&visible.view, item)?;
+            let (model, most) = self.check_item(&visible.view, item)?;
             let of_draw = item.constants(model, most);
             for list in lists {
                 let group = &model.tables.plan().groups()[list.group];
