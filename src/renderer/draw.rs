@@ -76,8 +76,8 @@ impl Renderer {
     /// push constants are overwritten.
     ///
     /// # Errors
-    /// Unknown models, styles and frames, factors below 1 and more views than [`Options::views_per_frame`](super::Options::views_per_frame). Items before
-    /// the wrong one are recorded.
+    /// Unknown models, styles and frames, factors below 1 and more views than
+    /// [`Options::views_per_frame`](super::Options::views_per_frame). Items before the wrong one are recorded.
     ///
     /// # Safety
     /// `cmd` is being recorded, inside rendering that fits [`Target`](super::Target), after [`Renderer::cmd_prepare`] of the same

@@ -107,7 +107,8 @@ impl Renderer {
     ///
     /// It is for models that are [`Construction::Cached`](super::Construction::Cached) and whose
     /// [evaluation leaves out patches](Evaluation::culls). Others are drawn as by [`Renderer::cmd_draw`]. Takes memory: eight bytes
-    /// a patch, and for instances what they read of it, 256 bytes of a Gregory patch.
+    /// a patch, and for instances what they read of it, 256 bytes of a Gregory patch. Binds compute pipelines, with sets 0 and
+    /// 1, and counts as one of [`Options::views_per_frame`](super::Options::views_per_frame).
     ///
     /// # Errors
     /// As [`Renderer::cmd_draw`]; [`Error::NoVisibleLists`]; [`Error::ListsTooLarge`]. What was recorded until then does no harm.
