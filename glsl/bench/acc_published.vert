@@ -1,6 +1,6 @@
 // ACC as published (Loop and Schaefer 2008), for the bench, instanced: the tangents across the edges are made at every vertex.
-// variants: ATTRIBUTES
 // The surface is that of glsl/evaluate/instanced.vert with ACC, in whose place it is drawn; no face may fall back.
+// variants: ATTRIBUTES
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define CORNERS 4

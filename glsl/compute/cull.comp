@@ -11,14 +11,7 @@
 #else
 #define CORNERS 4
 #endif
-// As in cached.tesc.
-#if OWNED == 8
-#define HULL 4
-#else
-#define HULL OWNED
-#endif
 #define MAKES_LISTS
-#define KEPT (3 * OWNED)
 #include "cached.glsl"
 #include "draw.glsl"
 #include "visible.glsl"

@@ -3,8 +3,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 8
-// The others are tangents.
-#define HULL 4
 #define INNER 5
 #include "control.glsl"
 #include "frames.glsl"

@@ -13,9 +13,6 @@
 #include "draw.glsl"
 #ifdef SHARED
 #include "shared.glsl"
-#define KEPT (3 * (OWNED + SHARED_VECTORS) + 1)
-#else
-#define KEPT (3 * OWNED)
 #endif
 #include "cached.glsl"
 #include "visible.glsl"
@@ -49,7 +46,7 @@ void main() {
     for (int i = 0; i < SHARED_VECTORS; ++i) {
         shared_with[i] = kept_vector(texels, OWNED + i);
     }
-    shared_bits = kept_number(texels, KEPT - 1) != 0.0 ? SHARP_EDGE_BIT : 0u;
+    shared_bits = kept_bits(texels);
 #ifdef DISPLACED
     shared_lod = corner_lod(corner, corner_speaker(corner, framed_ring(patch_corner(corner).x)));
 #endif

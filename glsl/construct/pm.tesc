@@ -4,8 +4,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 6
-// Its spokes may leave the hull of what corners own.
-#define HULL 0
 #define INNER 3
 #include "control.glsl"
 #include "frames.glsl"

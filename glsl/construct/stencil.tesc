@@ -15,12 +15,6 @@
 #ifndef OWNED
 #define OWNED 4
 #endif
-// As in acc.tesc and pm.tesc.
-#if OWNED == 8
-#define HULL 4
-#elif OWNED == 6
-#define HULL 0
-#endif
 #include "control.glsl"
 #include "stencils.glsl"
 #ifdef SHARED

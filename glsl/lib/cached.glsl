@@ -22,7 +22,17 @@ void keep_vector(uint corner, uint i, vec3 x) {
     keep_number(corner, 3u * i + 2u, x.z);
 }
 #else
-// KEPT numbers are read of a corner.
+// KEPT numbers are read of a corner: if not said otherwise, all that there are.
+#ifdef SHARED
+#include "shared_bits.glsl"
+#endif
+#ifndef KEPT
+#ifdef SHARED
+#define KEPT (3 * (OWNED + SHARED_VECTORS) + 1)
+#else
+#define KEPT (3 * OWNED)
+#endif
+#endif
 #define KEPT_TEXELS ((KEPT + 3) / 4)
 
 layout(set = 1, binding = 12, std430) readonly buffer ControlPoints { vec4 control_points[]; };
@@ -70,6 +80,13 @@ vec4[KEPT_TEXELS] texels_of_patch(uint first_corner, int k) {
 float kept_number(vec4 texels[KEPT_TEXELS], int i) {
     return texels[i / 4][i & 3];
 }
+
+#ifdef SHARED
+// As `corner_bits`.
+uint kept_bits(vec4 texels[KEPT_TEXELS]) {
+    return kept_number(texels, KEPT - 1) != 0.0 ? SHARP_EDGE_BIT : 0u;
+}
+#endif
 
 vec4[KEPT_TEXELS] kept_texels(uint corner) {
     vec4 texels[KEPT_TEXELS];

@@ -38,10 +38,6 @@ layout(location = 8) out vec2 texcoord[];
 layout(location = 9) patch out uint captured_patch;
 #endif
 
-// How many of a corner's control points enclose the patch, with those of the others.
-#ifndef HULL
-#define HULL OWNED
-#endif
 // For the first invocation to put together.
 layout(location = 28) out uint outside[];
 layout(location = 29) out vec4 pixel_box[];

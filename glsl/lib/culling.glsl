@@ -1,9 +1,22 @@
 // Patches that cannot be seen. All tests are conservative: a picture is the same with and without.
 //
-// To be included where CORNERS and the `owned` control points are known, and HULL of those that a corner owns enclose the
-// patch together; and where there are `outside` and `pixel_box` for what `examine` finds at each corner.
+// To be included where CORNERS and the `owned` control points are known, and where there are `outside` and `pixel_box` for what
+// `examine` finds at each corner.
 #ifndef CULLING_GLSL
 #define CULLING_GLSL
+
+// How many of a corner's control points enclose the patch, with those of the others. Rust twin: `PatchStages::has_hull`.
+#ifndef HULL
+#if OWNED == 8
+// Of ACC patches the others are tangents.
+#define HULL 4
+#elif OWNED == 6
+// The spokes of Pm-patches may leave the hull of what corners own.
+#define HULL 0
+#else
+#define HULL OWNED
+#endif
+#endif
 
 #include "factors.glsl"
 

@@ -3,11 +3,6 @@
 #define READ_CACHED_GLSL
 
 #include "lattice_sample.glsl"
-#ifdef SHARED
-#define KEPT (3 * (OWNED + SHARED_VECTORS) + 1)
-#else
-#define KEPT (3 * OWNED)
-#endif
 #include "cached.glsl"
 #ifdef DISPLACED
 #include "map_lod.glsl"
@@ -25,7 +20,7 @@ void read_cached(uint first_corner, uint segments) {
         for (int i = 0; i < SHARED_VECTORS; ++i) {
             shared_with[k][i] = kept_vector(texels, OWNED + i);
         }
-        shared_bits[k] = kept_number(texels, KEPT - 1) != 0.0 ? SHARP_EDGE_BIT : 0u;
+        shared_bits[k] = kept_bits(texels);
 #endif
 #ifdef DISPLACED
         SharedTexcoord shared_at = shared_texcoords[first_corner + k];

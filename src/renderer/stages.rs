@@ -148,8 +148,8 @@ impl PatchStages {
         format!("CONSTRUCT_TWO_STAGE_VERT{inner}{sharing}")
     }
 
-    /// Whether its control points enclose it, so that they tell whether it can be seen. GLSL twins: `HULL` in
-    /// `glsl/lib/control.glsl`, `glsl/construct/cached.tesc` and `glsl/compute/cull.comp`.
+    /// Whether its control points enclose it, so that they tell whether it can be seen. GLSL twin: `HULL` in
+    /// `glsl/lib/culling.glsl`.
     pub(super) fn has_hull(self) -> bool {
         !matches!(files(self.scheme, self.kind)[0], "PM")
     }

@@ -272,6 +272,14 @@ fn lists_grow_with_what_is_drawn() {
         assert_eq!(lists > before + (8 + 256) * patches, before == 0 || frame == 1, "{lists} bytes");
         before = lists;
     }
+    // More than offsets of 32 bits reach, which takes no memory to find out.
+    stage.prepare(&mut renderer, 0);
+    let many = vec![item(instanced, 1.0, 0.2); 400];
+    let error = cull_in(&stage, &mut renderer, 0, &views(&creature)[0], &many).unwrap_err().to_string();
+    let told = error.strip_suffix(" bytes in a frame, 2147483647 at most: draw fewer items").expect(&error);
+    let bytes = told.strip_prefix("lists of patches that can be seen take ").expect(&error);
+    assert!(bytes.parse::<u64>().unwrap() > 400 * (8 + 192) * 32_768, "{error}");
+    assert_eq!(renderer.memory_usage().lists, before);
     drop(renderer);
     stage.finish();
 }
