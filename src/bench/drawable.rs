@@ -1,6 +1,6 @@
 //! What every path is to the race: something that can be drawn.
 
-use super::{BenchError, Contestant, Normals, Path, Subject};
+use super::{BenchError, Contestant, Motion, Normals, Path, Subject};
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
 use crate::renderer::{ModelOptions, TableBytes, View};
@@ -75,11 +75,11 @@ pub(super) trait Drawable {
         Ok(())
     }
 
-    /// Records what a frame does before it draws.
+    /// Records what a frame does before it draws, of which the control vertices moved or did not.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering; the device is done with earlier frames.
-    unsafe fn cmd_prepare(&mut self, _cmd: vk::CommandBuffer) -> Result<(), BenchError> {
+    unsafe fn cmd_prepare(&mut self, _cmd: vk::CommandBuffer, _motion: Motion) -> Result<(), BenchError> {
         Ok(())
     }
 

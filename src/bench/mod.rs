@@ -7,7 +7,7 @@
 //! What is measured, in milliseconds:
 //!
 //! * **gpu**: from the first command of a frame to the last, by timestamps of the device: attachments are cleared, the
-//!   control points made anew, the surface drawn with pixels.
+//!   control points made anew if the vertices [move](Motion), the surface drawn with pixels.
 //! * **geometry**: the same with the rasterizer switched off, into attachments of no size to speak of.
 //! * **fence**: for each of the two, on the host's clock: recording, submission, and the wait for the fence.
 //! * **construction**: geometry at factor 1 less that of the bilinear floor at factor 1: making the control points, and
@@ -32,7 +32,7 @@ mod surface;
 
 pub use drawable::{Setup, Traffic};
 pub use error::BenchError;
-pub use options::{BenchOptions, Camera};
+pub use options::{BenchOptions, Camera, Motion};
 pub use race::{Bench, Event};
 pub use recording::{Crowd, Recording};
 pub use row::{Row, Series};

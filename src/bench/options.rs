@@ -25,6 +25,29 @@ impl Camera {
     }
 }
 
+/// Whether the control vertices move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Motion {
+    /// In every frame: what depends on them is made anew.
+    #[default]
+    Moving,
+    /// Never: what was kept of the frame before is drawn.
+    Still,
+}
+
+impl Motion {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Moving, Self::Still];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Moving => "moving",
+            Self::Still => "still",
+        }
+    }
+}
+
 /// How to measure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BenchOptions {
@@ -32,6 +55,8 @@ pub struct BenchOptions {
     pub factors: Vec<f32>,
     /// Where the tessellator puts its vertices.
     pub spacing: Spacing,
+    /// What every frame has to make anew.
+    pub motion: Motion,
     /// Pixels of the picture.
     pub size: [u32; 2],
     /// From where each contestant draws, in turns.
@@ -47,11 +72,12 @@ pub struct BenchOptions {
 }
 
 impl Default for BenchOptions {
-    /// Factors 4, 8, 16 and 32, equal spacing, 1024 x 1024 pixels with all in the picture, one instance, one pass, 21 frames after 3.
+    /// Factors 4, 8, 16 and 32, equal spacing, moving vertices, 1024 x 1024 pixels with all in the picture, one instance, one pass, 21 frames after 3.
     fn default() -> Self {
         Self {
             factors: vec![4.0, 8.0, 16.0, 32.0],
             spacing: Spacing::Equal,
+            motion: Motion::Moving,
             size: [1024, 1024],
             cameras: vec![Camera::Fit],
             instances: 1,

@@ -141,7 +141,7 @@ impl<'h> Bench<'h> {
         // SAFETY: the command buffer is being recorded, outside rendering; each submission is waited for.
         let frame = scenes[0].frame(factor, Pass::Pixels);
         self.headless.try_submit(|cmd| unsafe {
-            drawable.cmd_prepare(cmd)?;
+            drawable.cmd_prepare(cmd, self.options.motion)?;
             drawable.cmd_begin_pass(cmd, &frame)
         })?;
         target.draw(self.headless, [0.0; 4], |cmd| {
@@ -241,7 +241,7 @@ impl<'h> Bench<'h> {
         let target = &self.targets[usize::from(frame.pass == Pass::Geometry)];
         // SAFETY: as the caller promises.
         unsafe {
-            drawable.cmd_prepare(cmd)?;
+            drawable.cmd_prepare(cmd, self.options.motion)?;
             for _ in 0..self.options.passes {
                 drawable.cmd_begin_pass(cmd, frame)?;
                 target.cmd_begin(cmd, [0.0; 4]);

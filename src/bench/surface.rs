@@ -1,7 +1,7 @@
 //! The surface as the renderer draws it.
 
 use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
-use super::{BenchError, Contestant, published};
+use super::{BenchError, Contestant, Motion, published};
 use crate::measure::statistics::Summary;
 use crate::renderer::{
     Construction, Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options,
@@ -121,9 +121,10 @@ impl Drawable for Surface {
         Ok(())
     }
 
-    unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer) -> Result<(), BenchError> {
-        // Frames are timed as if the vertices had moved.
-        self.renderer.forget_control_points(self.model)?;
+    unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, motion: Motion) -> Result<(), BenchError> {
+        if motion == Motion::Moving {
+            self.renderer.forget_control_points(self.model)?;
+        }
         // SAFETY: as the caller promises.
         unsafe { self.renderer.cmd_prepare(cmd, 0)? };
         Ok(())

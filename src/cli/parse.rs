@@ -1,6 +1,6 @@
 //! Values of options.
 
-use ash_subdiv::bench::{Camera, Normals, Path, Subset};
+use ash_subdiv::bench::{Camera, Motion, Normals, Path, Subset};
 use ash_subdiv::renderer::Evaluation;
 use ash_subdiv::{Construction, Fallback, Scheme, Spacing};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -59,6 +59,11 @@ pub(super) fn normals() -> impl TypedValueParser<Value = Normals> {
 /// A camera of the bench by its name.
 pub(super) fn camera() -> impl TypedValueParser<Value = Camera> {
     named(Camera::ALL.map(|camera| (camera.name(), camera)))
+}
+
+/// Whether vertices move, by its name.
+pub(super) fn motion() -> impl TypedValueParser<Value = Motion> {
+    named(Motion::ALL.map(|motion| (motion.name(), motion)))
 }
 
 /// Some of the patches by their name.

@@ -2,7 +2,9 @@
 #![cfg(feature = "measure")]
 
 use crate::common::headless;
-use ash_subdiv::bench::{Bench, BenchOptions, Camera, Contestant, Crowd, Event, Normals, Path, Row, Subject, Subset};
+use ash_subdiv::bench::{
+    Bench, BenchOptions, Camera, Contestant, Crowd, Event, Motion, Normals, Path, Row, Subject, Subset,
+};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::renderer::Cull;
 use ash_subdiv::topology::PatchKind;
@@ -180,7 +182,7 @@ fn contestants_that_cannot_are_left_out() {
 }
 
 #[test]
-fn cached_control_points_are_made_in_every_frame_that_is_timed() {
+fn cached_control_points_are_made_in_every_frame_in_which_vertices_move() {
     let headless = headless();
     let cached = Contestant { patches: Some((Scheme::Gregory, Construction::Cached)), ..GREGORY };
     let rows = race(&headless, BenchOptions { passes: 3, ..options() }, "creature-mixed", &[GREGORY, cached]);
@@ -195,6 +197,10 @@ fn cached_control_points_are_made_in_every_frame_that_is_timed() {
     let counted = rows[1].computed.expect("lavapipe counts");
     assert!(counted >= things && counted < things + 4 * 64, "{counted} for {things}");
     assert_eq!(rows[0].computed, Some(0));
+    let still = BenchOptions { motion: Motion::Still, ..options() };
+    let compute = Contestant { path: Path::Compute, ..cached };
+    let rows = race(&headless, still, "creature-mixed", &[cached, compute]);
+    assert!(rows.iter().all(|row| row.computed == Some(0) && row.triangles > Some(0)), "{rows:?}");
     headless.finish_silent();
 }
 

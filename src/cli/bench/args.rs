@@ -5,7 +5,7 @@ use super::super::error::CliError;
 use super::super::parse;
 use super::super::source::DeviceArgs;
 use super::presets::{self, Preset};
-use ash_subdiv::bench::{Camera, Contestant, Normals, Path, Subject, Subset};
+use ash_subdiv::bench::{Camera, Contestant, Motion, Normals, Path, Subject, Subset};
 use ash_subdiv::mesh::{ReadOptions, read, replicate, shape};
 use ash_subdiv::renderer::Cull;
 use ash_subdiv::{Construction, ControlMesh, Scheme, Spacing};
@@ -52,6 +52,9 @@ pub(in super::super) struct BenchArgs {
     /// Several counts with commas, to see from how many on it pays to evaluate once, by compute.
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(super) passes: Vec<u32>,
+    /// Whether the control vertices move, with commas: if not, cached control points and vertices made by compute are kept.
+    #[arg(long, value_name = "WHETHER", value_delimiter = ',', default_value = "moving", value_parser = parse::motion())]
+    pub(super) motion: Vec<Motion>,
     /// Where the eye is, with commas: `clipped` shows the middle three times as large, and cuts off what is around.
     #[arg(long, value_name = "WHERE", value_delimiter = ',', default_value = "fit", value_parser = parse::camera())]
     pub(super) view: Vec<Camera>,
@@ -89,7 +92,7 @@ pub(in super::super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "schemes", "constructions", "paths", "normals", "cull", "factors", "patches", "instances", "passes", "view", "replicate", "spacing"]
+        conflicts_with_all = ["mesh", "shape", "schemes", "constructions", "paths", "normals", "cull", "factors", "patches", "instances", "passes", "motion", "view", "replicate", "spacing"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]
@@ -123,7 +126,7 @@ mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low, high}, geome
 tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name}, fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[],
 geometry[]}}], growth[{setting, who, factor, geometry{value, low, high}, gpu{..}, bytes}], break_even[{..}], views[{..}],
 published[], changes[], recording[{mesh, who, crowd, models, prepare_ms{median, min, max, mad}, draw_ms{..}, frame_ms{..}}];
-setting: mesh, spacing, view, passes; who: scheme, construction, path, normals, cull.
+setting: mesh, spacing, motion, view, passes; who: scheme, construction, path, normals, cull.
 
 Examples:
   subdiv bench --shape creature --factors 8,16

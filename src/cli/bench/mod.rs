@@ -126,23 +126,27 @@ impl BenchArgs {
         results: &mut Results,
     ) -> Result<(), CliError> {
         let spacings: Vec<Spacing> = parse::spacings().filter(|spacing| self.spacing.contains(spacing)).collect();
-        let of_passes = |&passes: &u32| spacings.iter().map(move |&spacing| (passes, spacing));
-        let races: Vec<(u32, Spacing)> = unique(&self.passes, |&passes| passes).iter().flat_map(of_passes).collect();
+        let options_of = |motion, passes, spacing| BenchOptions { motion, passes, spacing, ..options.clone() };
+        let mut races: Vec<BenchOptions> = Vec::new();
+        for motion in unique(&self.motion, |&motion| motion) {
+            for passes in unique(&self.passes, |&passes| passes) {
+                races.extend(spacings.iter().map(|&spacing| options_of(motion, passes, spacing)));
+            }
+        }
         let frames = Bench::new(headless, options.clone())?.frames(contestants.len());
         let progress = Progress::bar("drawing", frames * (subjects.len() * races.len()) as u64);
         for subject in subjects {
-            for &(passes, spacing) in &races {
+            for options in &races {
                 let mut printed = Ok(());
-                let options = BenchOptions { spacing, passes, ..options.clone() };
                 Bench::new(headless, options.clone())?.race(subject, contestants, |event| match event {
                     Event::Frames(frames) => progress.advance(frames),
                     Event::LeftOut(contestant, factor, error) => {
-                        let left = LeftOut::new(subject, &options, contestant, factor, &error);
+                        let left = LeftOut::new(subject, options, contestant, factor, &error);
                         progress.suspend(|| note(&left));
                         results.left_out.push(left);
                     }
                     Event::Rows(rows) => {
-                        let rows = Row::all(subject, &options, &rows);
+                        let rows = Row::all(subject, options, &rows);
                         if show && printed.is_ok() {
                             printed = progress.suspend(|| text::rows(&rows));
                         }

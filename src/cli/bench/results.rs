@@ -8,7 +8,7 @@ use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line};
 use super::findings::Findings;
 use super::presets::Beside;
 use super::recorded::Recorded;
-use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Normals, Series, Subject};
+use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -60,6 +60,7 @@ pub(super) struct Interval {
 pub(super) struct Setting {
     pub mesh: String,
     pub spacing: String,
+    pub motion: String,
     pub view: String,
     pub passes: u32,
 }
@@ -143,6 +144,7 @@ impl Results {
             "normals",
             "cull",
             "spacing",
+            "motion",
             "view",
             "passes",
             "factor",
@@ -167,9 +169,9 @@ impl Results {
         for row in &self.rows {
             let count = |count: Option<u64>| count.map(|n| n.to_string()).unwrap_or_default();
             let value = |interval: Option<Interval>| interval.map(|i| i.value.to_string()).unwrap_or_default();
-            let (Setting { mesh, spacing, view, passes }, who) = (&row.setting, &row.who);
+            let (Setting { mesh, spacing, motion, view, passes }, who) = (&row.setting, &row.who);
             let Who { scheme, construction, path, normals, cull } = who;
-            let names = [mesh, scheme, construction, path, normals, cull, spacing, view].map(Clone::clone);
+            let names = [mesh, scheme, construction, path, normals, cull, spacing, motion, view].map(Clone::clone);
             let numbers = [
                 passes.to_string(),
                 row.factor.to_string(),
@@ -203,6 +205,7 @@ impl Setting {
         Self {
             mesh: subject.name.clone(),
             spacing: parse::spacing_name(options.spacing).to_owned(),
+            motion: options.motion.name().to_owned(),
             view: camera.name().to_owned(),
             passes: options.passes,
         }
@@ -211,6 +214,9 @@ impl Setting {
     /// What is not as always, after the spacing.
     pub(super) fn title(&self) -> String {
         let mut title = format!("{} spacing", self.spacing);
+        if self.motion != Motion::Moving.name() {
+            title += &format!(", {} vertices", self.motion);
+        }
         if self.view != Camera::Fit.name() {
             title += &format!(", {} view", self.view);
         }

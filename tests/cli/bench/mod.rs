@@ -53,6 +53,7 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
                 "gpu_ms",
                 "gpu_ratio",
                 "mesh",
+                "motion",
                 "normals",
                 "passes",
                 "patches",
@@ -99,12 +100,13 @@ fn bench_writes_tables_and_csv() {
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
     assert_eq!((lines.len(), lines[0][..3].join(" ")), (9, "mesh scheme construction".into()));
-    assert_eq!((lines[5][0], lines[5][10]), ("cube x4", "24"));
-    let text = run(&format!("bench {SMALL} {few} --replicate 1,4"));
+    assert_eq!((lines[5][0], lines[5][11]), ("cube x4", "24"));
+    let text = run(&format!("bench {SMALL} {few} --replicate 1,4 --motion moving,still"));
     let text = String::from_utf8(text.stdout).unwrap();
+    assert!(text.contains("\ncube x4: 24 patches, factor 2, equal spacing, still vertices\n"), "{text}");
     assert_eq!(
         text.split("\ntime grows as patches^").nth(1).map(|grown| grown.trim_end().lines().count()),
-        Some(5),
+        Some(9),
         "{text}"
     );
 }
