@@ -6,6 +6,11 @@ use ash::vk;
 
 use super::{Allocator, Features, PatchBatch};
 
+/// The largest alignment of offsets into buffers that any Vulkan device asks for, of uniform, storage and texel buffers.
+pub const MAX_OFFSET_ALIGNMENT: u64 = 256;
+/// Every Vulkan device can dispatch as many workgroups along an axis.
+pub const MAX_WORKGROUPS: u32 = 65_535;
+
 /// What a device is and can do: limits, and the driver bugs to work around, as named properties.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -34,7 +39,7 @@ pub struct DeviceProperties {
     pub max_storage_buffer_range: u64,
     /// Storage buffers that a shader stage can have.
     pub max_stage_storage_buffers: u32,
-    /// Numbers that a control shader can hand on for each vertex.
+    /// Numbers of each vertex that a control shader can hand on and an evaluation shader can take.
     pub max_control_components: u32,
     /// Vertex attributes of a pipeline.
     pub max_vertex_attributes: u32,
@@ -87,7 +92,9 @@ impl DeviceProperties {
             max_patch_size: limits.max_tessellation_patch_size,
             max_storage_buffer_range: limits.max_storage_buffer_range.into(),
             max_stage_storage_buffers: limits.max_per_stage_descriptor_storage_buffers,
-            max_control_components: limits.max_tessellation_control_per_vertex_output_components,
+            max_control_components: limits
+                .max_tessellation_control_per_vertex_output_components
+                .min(limits.max_tessellation_evaluation_input_components),
             max_vertex_attributes: limits.max_vertex_input_attributes,
             max_texel_buffer_elements: limits.max_texel_buffer_elements.into(),
             reads_texels: limits.max_texel_buffer_elements >= 1 << 27,

@@ -1,10 +1,11 @@
 //! The cached construction: frames of rings, and from these control points, by compute.
 
 use super::factor::Cut;
-use super::lattice::MAX_GROUPS;
 use super::pipelines::ShaderCode;
 use super::stages::PatchStages;
-use crate::gpu::{ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout};
+use crate::gpu::{
+    ComputePipelineDesc, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, Shader, Specialization, pipeline_layout,
+};
 use crate::table::PatchPlan;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -136,7 +137,7 @@ impl CachedPipelines {
     unsafe fn cmd_dispatch(&self, cmd: vk::CommandBuffer, step: Step, invocations: Invocations) {
         let Some(pipeline) = self.made.get(&step) else { return };
         let groups = invocations.count.div_ceil(GROUP);
-        let rows = groups.div_ceil(MAX_GROUPS);
+        let rows = groups.div_ceil(MAX_WORKGROUPS);
         let device = self.context.device();
         // SAFETY: as the caller promises.
         unsafe {

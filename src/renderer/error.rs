@@ -24,7 +24,7 @@ pub enum Error {
     PositionCount { id: ModelId, given: usize, needed: usize },
     #[error("model {}: {} take {bytes} bytes, but a shader can see {max} at once on this device: split the mesh", id.0, table.replace('_', " "))]
     TableTooLarge { id: ModelId, table: &'static str, bytes: u64, max: u64 },
-    #[error("model {}: it was not yet prepared: record cmd_prepare after add_model and before cmd_draw", id.0)]
+    #[error("model {}: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw", id.0)]
     NotPrepared { id: ModelId },
     #[error("frame index {given}: Options::frames_in_flight is {frames}, so frames are 0 to {}", frames - 1)]
     NoSuchFrame { given: u32, frames: u32 },
@@ -48,7 +48,7 @@ pub enum Error {
     NoViewport { id: ModelId },
     #[error("deviations on the screen need its size in pixels: set View::viewport")]
     NoScreen,
-    #[error("model {}: its edges have no factors: call set_edge_factors first", id.0)]
+    #[error("model {}: its edges have no factors: set ModelOptions::edge_factors when you add it, or draw with another Factor", id.0)]
     NoEdgeFactors { id: ModelId },
     #[error("model {}: {given} factors are given, but its patches have {needed} edges", id.0)]
     EdgeFactorCount { id: ModelId, given: usize, needed: usize },
@@ -62,6 +62,8 @@ pub enum Error {
     NotConstructedBy { id: ModelId, evaluation: Evaluation, construction: Construction },
     #[error("model {}: its tables were built for Evaluation::{built:?}, not for {evaluation:?}: build them with the same options", id.0)]
     OtherTables { id: ModelId, built: Evaluation, evaluation: Evaluation },
+    #[error("model {}: its tables were built {} ModelOptions::displacement, unlike its options: build them with the same options", id.0, if *displaced { "with" } else { "without" })]
+    OtherDisplacement { id: ModelId, displaced: bool },
     #[error("model {}: Evaluation::{evaluation:?} needs {}: name it in Options::evaluations and make the device with what requirements lists then, or choose another evaluation", id.0, missing.join(" and "))]
     EvaluationNeeds { id: ModelId, evaluation: Evaluation, missing: Vec<&'static str> },
     #[error("model {}: {factor:?}: Evaluation::{evaluation:?} has one factor for all edges: draw with a uniform one", id.0)]
@@ -76,7 +78,7 @@ pub enum Error {
     NotComputed { id: ModelId },
     #[error("model {}: {given} segments: from 1 to {max} are possible along an edge", id.0)]
     BadSegments { id: ModelId, given: u32, max: u32 },
-    #[error("model {}: {factor:?}: its edges have {segments} segments: call set_segments before cmd_prepare, and draw with that number as uniform factor", id.0)]
+    #[error("model {}: {factor:?}: its edges have {segments} segments: call set_segments before cmd_prepare, and draw with that number as uniform factor (with Factor::Edges(1.0) if edges have factors of their own)", id.0)]
     OtherSegments { id: ModelId, factor: Factor, segments: u32 },
     #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
     BadGrid { given: u32, max: u32 },

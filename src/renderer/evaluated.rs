@@ -5,7 +5,7 @@ use super::model::Model;
 use super::stages::Sharing;
 use super::subdivision;
 use super::vertex_input::vertex_bytes;
-use super::{Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Renderer, Retired, RetiredObject};
+use super::{Error, Evaluation, Factor, ModelId, ModelOptions, ModelTables, Renderer, RetiredObject};
 use crate::gpu::{Features, Spacing};
 use crate::table::MAX_SEGMENTS;
 use ash::vk;
@@ -25,6 +25,10 @@ pub(super) fn check_evaluation(
     let tables_of = |evaluation| [Evaluation::GeometryTwoPass, Evaluation::Subdivision].map(|own| evaluation == own);
     if tables_of(tables.evaluation) != tables_of(evaluation) {
         return Err(Error::OtherTables { id, built: tables.evaluation, evaluation });
+    }
+    let displaced = tables.sharing() == Sharing::Displacement;
+    if displaced != options.displacement.is_some() {
+        return Err(Error::OtherDisplacement { id, displaced });
     }
     if !evaluation.constructions().contains(&construction) {
         return Err(Error::NotConstructedBy { id, evaluation, construction });
@@ -69,8 +73,9 @@ pub struct EvaluatedVertices {
 }
 
 impl Renderer {
-    /// Sets how many segments every edge of a model has, where [`Evaluation::needs_segments`]: from the next
-    /// [`Renderer::cmd_prepare`] on, until others are set. Draws name the same number as their [`Factor::Uniform`].
+    /// Sets how many segments every edge of a model has, where [`Evaluation::needs_segments`], until others are set. The
+    /// model cannot be drawn from now on before the next [`Renderer::cmd_prepare`], also not in a frame that was prepared. Draws
+    /// name the same number as their [`Factor::Uniform`].
     ///
     /// With [`ModelOptions::edge_factors`] it is the most that an edge has, and what every patch has inside: edges with
     /// smaller factors have fewer segments, their factors rounded up. Draws have [`Factor::Edges`]`(1.0)`.
@@ -102,8 +107,7 @@ impl Renderer {
             segments,
         )?;
         if let Some(before) = model.set_lattice(lattice) {
-            let frames = vec![true; self.options.frames_in_flight as usize];
-            self.retired.push(Retired { frames, _what: RetiredObject::Lattice(Box::new(before)) });
+            self.retire(None, RetiredObject::Lattice(Box::new(before)));
         }
         Ok(())
     }

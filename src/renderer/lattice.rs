@@ -7,8 +7,8 @@ use super::stages::{PatchStages, Sharing};
 use super::vertex_input::vertex_bytes;
 use super::{Capture, Error, Evaluation, ModelId};
 use crate::gpu::{
-    Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, Owned, Shader, descriptor_set_layout,
-    pipeline_layout,
+    Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, Shader,
+    descriptor_set_layout, pipeline_layout,
 };
 use crate::table::{PatchPlan, lattice_indices, lattice_triangles, lattice_vertices};
 use ash::vk;
@@ -18,8 +18,6 @@ use std::sync::Arc;
 
 /// Vertices of a patch that a workgroup takes. GLSL twin: `GROUP_VERTICES` in `glsl/evaluate/lattice.comp`.
 const GROUP_VERTICES: u32 = 256;
-/// Every Vulkan device has as many workgroups along an axis.
-pub(super) const MAX_GROUPS: u32 = 65_535;
 /// About as many evaluated vertices are drawn with the same indices, of one patch at least.
 const BLOCK_VERTICES: u64 = 65_536;
 
@@ -198,14 +196,14 @@ impl Lattice {
             // SAFETY: as the caller promises.
             unsafe { device.cmd_bind_pipeline(cmd, point, pipeline.raw()) };
             let corners = group.kind.corners() as u32;
-            for patch in (0..lattice.patches).step_by(MAX_GROUPS as usize) {
+            for patch in (0..lattice.patches).step_by(MAX_WORKGROUPS as usize) {
                 let dispatch = Dispatch {
                     first_corner: group.first_corner as u32 + patch * corners,
                     first_vertex: lattice.first_vertex + patch * lattice.vertices,
                     segments: self.segments,
                     vertices: lattice.vertices,
                 };
-                let patches = MAX_GROUPS.min(lattice.patches - patch);
+                let patches = MAX_WORKGROUPS.min(lattice.patches - patch);
                 // SAFETY: as the caller promises.
                 unsafe {
                     let stage = vk::ShaderStageFlags::COMPUTE;

@@ -7,8 +7,8 @@ use super::pipelines::ShaderCode;
 use super::stages::PatchStages;
 use super::tables::TEXEL_BYTES;
 use crate::gpu::{
-    Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, Owned, Shader, descriptor_set_layout,
-    pipeline_layout,
+    Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, Owned, Shader,
+    descriptor_set_layout, pipeline_layout,
 };
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -23,8 +23,6 @@ const HEADER_BYTES: u64 = 4 * 8;
 const PATCH_BYTES: u64 = 4 * 2;
 /// The most bytes of a list.
 const MAX_BYTES: u64 = 1 << 20;
-/// The largest `minStorageBufferOffsetAlignment` that Vulkan allows.
-const ALIGNMENT: u64 = 256;
 /// Invocations in a workgroup of `glsl/compute/cull.comp` and `compact.comp`.
 const GROUP: u32 = 64;
 
@@ -61,7 +59,7 @@ impl ListLayout {
 
     /// Bytes of a list of so many patches, up to the next.
     pub(super) fn bytes(self, patches: u32) -> u64 {
-        (Self::copies_start(patches) + self.copied * u64::from(patches)).next_multiple_of(ALIGNMENT)
+        (Self::copies_start(patches) + self.copied * u64::from(patches)).next_multiple_of(MAX_OFFSET_ALIGNMENT)
     }
 }
 

@@ -42,6 +42,7 @@ mod cached;
 mod conversion;
 mod displacement;
 mod draw;
+mod edge_factors;
 mod error;
 mod evaluated;
 mod factor;
@@ -82,7 +83,7 @@ pub(crate) use {
     subdivision::level as subdivision_level,
 };
 
-use crate::gpu::{Buffer, BufferDesc, DeviceContext, MemoryLocation};
+use crate::gpu::{Buffer, BufferDesc, DeviceContext, MAX_OFFSET_ALIGNMENT, MemoryLocation};
 use crate::mesh::ControlMesh;
 use crate::table::Notice;
 use ash::vk;
@@ -145,7 +146,7 @@ struct Retired {
 #[expect(dead_code, reason = "kept only to be dropped later")]
 enum RetiredObject {
     Model(Box<Model>),
-    Staging(Buffer),
+    Staging(Vec<Buffer>),
     Lattice(Box<Lattice>),
     Lists(Box<FrameLists>),
 }
@@ -196,8 +197,7 @@ impl Renderer {
     ) -> Result<Self, Error> {
         options::check_properties(context.properties(), context.features(), target, options)?;
         let pipelines = Pipelines::new(context, target, options, capture)?;
-        // The largest alignment of uniform offsets that Vulkan allows.
-        let view_stride = (size_of::<ViewData>() as u64).next_multiple_of(256);
+        let view_stride = (size_of::<ViewData>() as u64).next_multiple_of(MAX_OFFSET_ALIGNMENT);
         let count = u64::from(options.frames_in_flight) * u64::from(options.views_per_frame);
         let views = Buffer::new(
             context,
@@ -241,7 +241,7 @@ impl Renderer {
     /// options.
     ///
     /// # Errors
-    /// As [`Renderer::add_model`]; [`Error::PositionCount`]; [`Error::OtherTables`].
+    /// As [`Renderer::add_model`]; [`Error::PositionCount`]; [`Error::OtherTables`], [`Error::OtherDisplacement`].
     pub fn add_tables(
         &mut self,
         tables: ModelTables,
@@ -279,9 +279,14 @@ impl Renderer {
     /// [`Error::NoSuchModel`].
     pub fn remove_model(&mut self, id: ModelId) -> Result<(), Error> {
         let model = self.models.remove(&id).ok_or(Error::NoSuchModel { id })?;
-        let frames = vec![true; self.options.frames_in_flight as usize];
-        self.retired.push(Retired { frames, _what: RetiredObject::Model(Box::new(model)) });
+        self.retire(None, RetiredObject::Model(Box::new(model)));
         Ok(())
+    }
+
+    /// Keeps what may still be used: in this frame, or in any.
+    fn retire(&mut self, frame: Option<u32>, what: RetiredObject) {
+        let frames = (0..self.options.frames_in_flight).map(|each| frame.is_none_or(|frame| frame == each));
+        self.retired.push(Retired { frames: frames.collect(), _what: what });
     }
 
     /// The tables of a model.
@@ -318,8 +323,8 @@ impl Renderer {
     /// The last use of `frame_index` must be done on the device.
     ///
     /// # Errors
-    /// [`Error::NoSuchModel`], [`Error::NoSuchFrame`], [`Error::EdgeFactorCount`], [`Error::BadEdgeFactor`]; failed Vulkan
-    /// calls.
+    /// [`Error::NoSuchModel`], [`Error::NoSuchFrame`], [`Error::NoEdgeFactors`], [`Error::EdgeFactorCount`],
+    /// [`Error::BadEdgeFactor`]; failed Vulkan calls.
     pub fn set_edge_factors(&mut self, id: ModelId, frame_index: u32, factors: &[f32]) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_edge_factors(frame_index, factors)

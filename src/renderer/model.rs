@@ -1,6 +1,7 @@
 //! A model on the GPU.
 
 use super::bindings::{FRAMES_BINDING, ModelSet, POINTS_BINDING, TEXELS};
+use super::edge_factors::EdgeFactors;
 use super::evaluated::check_evaluation;
 use super::lattice::{Lattice, LatticePipelines};
 use super::pipelines::Pipelines;
@@ -8,13 +9,10 @@ use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
 use super::tables::TEXEL_BYTES;
 use super::{DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
-use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation};
+use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, MemoryLocation};
 use crate::table::PatchGroup;
 use ash::vk;
 use std::sync::Arc;
-
-/// The largest `minStorageBufferOffsetAlignment` and `minTexelBufferOffsetAlignment` that Vulkan allows.
-const ALIGNMENT: u64 = 256;
 
 pub(super) struct Model {
     pub id: ModelId,
@@ -29,17 +27,18 @@ pub(super) struct Model {
     positions: Streamed,
     /// To put the vertices in that are then written.
     stored: Vec<[f32; 4]>,
-    /// The factor of each patch corner's plus edge, if edges are to have their own.
-    corner_factors: Option<Streamed>,
-    largest_edge_factor: f32,
+    /// If edges are to have their own.
+    edge_factors: Option<EdgeFactors>,
     /// What the cached construction keeps of corners, and of rings.
     pub control_points: Option<Buffer>,
     frames: Option<Buffer>,
     pub evaluation: Evaluation,
     /// What is drawn instead of patches, once it is known how finely.
     pub lattice: Option<Lattice>,
-    /// Whether control points and vertices are out of date.
-    stale: bool,
+    /// Whether control points are out of date.
+    stale_points: bool,
+    /// Whether vertices that compute evaluates are.
+    stale_vertices: bool,
     /// Edges, then faces of the control mesh, if a style draws them.
     pub control: Option<ControlIndices>,
     /// What was not copied to the device yet.
@@ -76,10 +75,11 @@ impl Model {
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
         let max = context.properties().max_storage_buffer_range;
         let most_texels = context.properties().max_texel_buffer_elements;
-        // Fans are read as storage buffers only.
-        let reads_texels = context.properties().reads_texels && model_options.evaluation != Evaluation::Subdivision;
         // `binding` is that of set 1.
         let check = |table: &'static str, bytes: u64, binding: usize| {
+            // Fans are read as storage buffers only, positions are not.
+            let fans = model_options.evaluation == Evaluation::Subdivision && binding > 0;
+            let reads_texels = context.properties().reads_texels && !fans;
             let texels = TEXELS.iter().find(|(of, ..)| *of == binding).filter(|_| reads_texels);
             let max = texels.map_or(max, |(.., texel)| max.min(most_texels * texel));
             if bytes > max { Err(Error::TableTooLarge { id, table, bytes, max }) } else { Ok(()) }
@@ -107,7 +107,7 @@ impl Model {
             // An empty table still gets a range, so that every descriptor is written, and has a texel.
             let size = (array.len() as u64).max(16);
             ranges.push((offset, size));
-            offset = (offset + size).next_multiple_of(ALIGNMENT);
+            offset = (offset + size).next_multiple_of(MAX_OFFSET_ALIGNMENT);
         }
         let mut staged_tables = upload_buffer(context, &format!("{name}: tables to copy"), offset)?;
         for ((_, array), (offset, _)) in arrays.iter().zip(&ranges) {
@@ -130,13 +130,7 @@ impl Model {
         let mut stored = Vec::new();
         tables.store_positions(control, &mut stored);
         let positions = Streamed::new(context, &format!("{name}: positions"), &stored, in_flight)?;
-        let corner_factors = match tables.edges() {
-            Some(edges) => {
-                let ones = vec![1.0f32; edges.of_corners.len()];
-                Some(Streamed::new(context, &format!("{name}: factors of edges"), &ones, in_flight)?)
-            }
-            None => None,
-        };
+        let edge_factors = tables.edges().map(|edges| EdgeFactors::new(context, name, edges, in_flight)).transpose()?;
 
         let mut uploads = vec![(staged_tables, table_buffer.raw())];
         let control = if options.styles.iter().any(|s| s.geometry != Geometry::Surface) {
@@ -167,14 +161,14 @@ impl Model {
             parts[FRAMES_BINDING] = whole(frames);
         }
         // Every descriptor has to be written; without factors of its own a model's edges never read any.
-        parts.push(whole(corner_factors.as_ref().unwrap_or(&positions).buffer()));
+        parts.push(whole(edge_factors.as_ref().map_or(positions.buffer(), EdgeFactors::buffer)));
         parts.push(whole(control_points.as_ref().unwrap_or(positions.buffer())));
         // SAFETY: the buffers live as long as the model, and the map as long as the renderer.
         let set = unsafe { ModelSet::new(context, pipelines.model_layout.raw(), name, &parts, map)? };
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_texels(), tables.has_speakers());
         // The control shader knows by its flags.
-        let edge_factors = tables.edges().is_some() && evaluation != Evaluation::Tessellation;
+        let lattice_edges = edge_factors.is_some() && evaluation != Evaluation::Tessellation;
         let stages = |group: &PatchGroup| {
             let PatchGroup { scheme, kind, .. } = *group;
             let attributes = false;
@@ -186,7 +180,7 @@ impl Model {
                 spacing,
                 sharing,
                 has_speakers,
-                edge_factors,
+                edge_factors: lattice_edges,
                 stride,
                 attributes,
             };
@@ -201,13 +195,13 @@ impl Model {
             table_buffer,
             positions,
             stored,
-            corner_factors,
-            largest_edge_factor: 1.0,
+            edge_factors,
             control_points,
             frames,
             evaluation,
             lattice: None,
-            stale: false,
+            stale_points: false,
+            stale_vertices: false,
             control,
             uploads,
             map,
@@ -225,25 +219,15 @@ impl Model {
     }
 
     pub(super) fn set_edge_factors(&mut self, frame: u32, factors: &[f32]) -> Result<(), Error> {
-        let id = self.id;
-        let (Some(edges), Some(streamed)) = (self.tables.edges(), &mut self.corner_factors) else {
-            return Err(Error::NoEdgeFactors { id });
-        };
-        let needed = edges.vertices.len();
-        if factors.len() != needed {
-            return Err(Error::EdgeFactorCount { id, given: factors.len(), needed });
+        match (self.tables.edges(), &mut self.edge_factors) {
+            (Some(edges), Some(own)) => own.write(self.id, frame, edges, factors),
+            _ => Err(Error::NoEdgeFactors { id: self.id }),
         }
-        if let Some(edge) = factors.iter().position(|factor| !factor.is_finite()) {
-            return Err(Error::BadEdgeFactor { id, edge, factor: factors[edge] });
-        }
-        let of_corners: Vec<f32> = edges.of_corners.iter().map(|&edge| factors[edge as usize]).collect();
-        self.largest_edge_factor = factors.iter().copied().fold(1.0, f32::max);
-        Ok(streamed.write(frame, &of_corners)?)
     }
 
-    /// The largest factor of an edge, if they have any.
+    /// The largest factor of an edge, if they have any: of the frame that was last prepared.
     pub(super) fn largest_edge_factor(&self) -> Option<f32> {
-        self.corner_factors.as_ref().map(|_| self.largest_edge_factor)
+        self.edge_factors.as_ref().map(EdgeFactors::largest)
     }
 
     /// The bits of a draw's flags that displacement by this scale and bias takes.
@@ -252,14 +236,14 @@ impl Model {
     }
 
     pub(super) fn needs_copies(&self, frame: u32) -> bool {
-        let streams = std::iter::once(&self.positions).chain(&self.corner_factors);
         let indices = self.lattice.as_ref().is_some_and(Lattice::needs_copies);
-        !self.prepared || indices || streams.into_iter().any(|stream| stream.is_due(frame))
+        let factors = self.edge_factors.as_ref().is_some_and(|factors| factors.is_due(frame));
+        !self.prepared || indices || factors || self.positions.is_due(frame)
     }
 
-    /// Whether control points are to be computed in this frame.
-    pub(super) fn needs_points(&self, frame: u32) -> bool {
-        self.control_points.is_some() && (self.stale || self.needs_copies(frame))
+    /// Whether nothing has to be copied or computed in this frame.
+    pub(super) fn is_at_rest(&self, frame: u32) -> bool {
+        !self.needs_copies(frame) && !self.stale_points
     }
 
     /// Whether compute shaders make something of it.
@@ -275,23 +259,31 @@ impl Model {
     /// Has the control points computed anew in the next frame, even though nothing moved.
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(super) fn forget_points(&mut self) {
-        self.stale = true;
+        self.stale_points = self.control_points.is_some();
     }
 
     /// Takes a lattice in place of another, to be evaluated in the next frame.
     pub(super) fn set_lattice(&mut self, lattice: Lattice) -> Option<Lattice> {
-        self.stale = true;
         self.lattice.replace(lattice)
     }
 
     /// Has what follows from the copies of this frame computed after them; before they are recorded.
     pub(super) fn mark_stale(&mut self, frame: u32) {
-        self.stale = self.needs_points(frame);
+        if self.control_points.is_some() {
+            self.stale_points |= !self.prepared || self.positions.is_due(frame);
+            // They depend on the lattice and on the factors of edges, too.
+            self.stale_vertices = self.stale_points || self.needs_copies(frame);
+        }
     }
 
-    /// Whether control points, and vertices, are to be computed now.
+    /// Whether control points are to be computed now.
+    pub(super) fn has_stale_points(&self) -> bool {
+        self.stale_points
+    }
+
+    /// Whether anything is.
     pub(super) fn is_stale(&self) -> bool {
-        self.stale
+        self.stale_points || self.stale_vertices
     }
 
     /// Records the evaluation of the lattice, if there is one, which is the last of what was out of date.
@@ -299,7 +291,7 @@ impl Model {
     /// # Safety
     /// As [`Lattice::cmd_evaluate`].
     pub(super) unsafe fn cmd_evaluate(&mut self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
-        self.stale = false;
+        (self.stale_points, self.stale_vertices) = (false, false);
         if let Some(lattice) = &self.lattice {
             // SAFETY: as the caller promises.
             unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set.raw, &self.stages, &self.tables.plan) };
@@ -340,8 +332,9 @@ impl Model {
         self.uploads.extend(self.lattice.as_mut().and_then(Lattice::take_upload));
         // SAFETY: as the caller promises; both buffers hold the whole range.
         unsafe {
-            for stream in std::iter::once(&mut self.positions).chain(&mut self.corner_factors) {
-                stream.cmd_send(device, cmd, frame);
+            self.positions.cmd_send(device, cmd, frame);
+            if let Some(factors) = &mut self.edge_factors {
+                factors.cmd_send(device, cmd, frame);
             }
             for (staged, target) in &self.uploads {
                 let region = vk::BufferCopy { size: staged.size(), ..vk::BufferCopy::default() };
@@ -356,7 +349,7 @@ impl Model {
     pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
         usage.tables += self.table_buffer.size();
         let [positions, staged_positions] = self.positions.bytes();
-        let [factors, staged_factors] = self.corner_factors.as_ref().map_or([0; 2], Streamed::bytes);
+        let [factors, staged_factors] = self.edge_factors.as_ref().map_or([0; 2], EdgeFactors::bytes);
         usage.positions += positions + factors;
         usage.control_points += self.control_points.iter().chain(&self.frames).map(Buffer::size).sum::<u64>();
         usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());

@@ -3,7 +3,7 @@
 use super::model::Model;
 #[cfg(doc)]
 use super::{Construction, Evaluation};
-use super::{Error, Renderer, Retired, RetiredObject};
+use super::{Error, Renderer, RetiredObject};
 use ash::vk;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -11,7 +11,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 static PREPARATIONS: AtomicU64 = AtomicU64::new(1);
 
 impl Renderer {
-    /// Records what has to happen before this frame's draws: copies and barriers. Once a frame.
+    /// Records what has to happen before this frame's draws: copies, barriers, and what compute shaders make. Once a frame.
+    ///
+    /// Where there is something to compute, it binds compute pipelines, with set 1, and pushes constants; models that are
+    /// [`Evaluation::GeometryTwoPass`] have a render pass of their own here. What is bound for draws is to be bound after it.
     ///
     /// # Errors
     /// [`Error::NoSuchFrame`]; nothing is recorded then.
@@ -29,8 +32,7 @@ impl Renderer {
             retired.frames[frame_index as usize] = false;
         }
         self.retired.retain(|retired| retired.frames.contains(&true));
-        let at_rest = |model: &Model| !model.needs_copies(frame_index) && !model.needs_points(frame_index);
-        if self.models.values().all(at_rest) {
+        if self.models.values().all(|model| model.is_at_rest(frame_index)) {
             return Ok(());
         }
         let device = self.context.device();
@@ -48,15 +50,15 @@ impl Renderer {
             // The frame before may still read what is overwritten here.
             device.cmd_pipeline_barrier(cmd, readers | transfer, transfer, none, &after_writes, &[], &[]);
             self.models.values_mut().for_each(|model| model.mark_stale(frame_index));
+            let mut staged = Vec::new();
             for model in self.models.values_mut().filter(|model| model.needs_copies(frame_index)) {
-                for staging in model.cmd_copy(device, cmd, frame_index) {
-                    let mut frames = vec![false; self.options.frames_in_flight as usize];
-                    frames[frame_index as usize] = true;
-                    self.retired.push(Retired { frames, _what: RetiredObject::Staging(staging) });
-                }
+                staged.extend(model.cmd_copy(device, cmd, frame_index));
             }
             device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
             self.cmd_compute(cmd);
+            if !staged.is_empty() {
+                self.retire(Some(frame_index), RetiredObject::Staging(staged));
+            }
         }
         Ok(())
     }
@@ -81,11 +83,11 @@ impl Renderer {
         let device = context.device();
         // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
         unsafe {
-            for model in models.values().filter(|model| model.is_stale()) {
+            for model in models.values().filter(|model| model.has_stale_points()) {
                 model.cmd_frames(pipelines, cmd);
             }
             device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]);
-            for model in models.values().filter(|model| model.is_stale()) {
+            for model in models.values().filter(|model| model.has_stale_points()) {
                 model.cmd_points(pipelines, cmd);
             }
             device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]);

@@ -12,7 +12,7 @@ use super::lists::{COMMAND_BYTES, Compact, FrameLists, ListLayout};
 use super::model::Model;
 use super::pipelines::PipelineKey;
 use super::stages::PatchStages;
-use super::{DrawItem, Error, Evaluation, Geometry, Renderer, Retired, RetiredObject, View};
+use super::{DrawItem, Error, Evaluation, Geometry, Renderer, RetiredObject, View};
 use crate::gpu::Features;
 use crate::table::PatchGroup;
 use ash::vk;
@@ -107,7 +107,7 @@ impl Renderer {
     ///
     /// It is for models that are [`Construction::Cached`](super::Construction::Cached) and whose
     /// [evaluation leaves out patches](Evaluation::culls). Others are drawn as by [`Renderer::cmd_draw`]. Takes memory: eight bytes
-    /// a patch, and for instances what they read of it, 256 bytes of a Gregory patch. Binds compute pipelines, with sets 0 and
+    /// a patch, and for instances what they read of it, 256 bytes of a Gregory patch, which is kept for later frames. Binds compute pipelines, with sets 0 and
     /// 1, and counts as one of [`Options::views_per_frame`](super::Options::views_per_frame).
     ///
     /// # Errors
@@ -221,9 +221,7 @@ impl Renderer {
         let larger = FrameLists::new(&self.context, layout, &self.views, capacity)?;
         let before = std::mem::replace(&mut self.lists[frame as usize], larger);
         // What was found in this frame so far is in there.
-        let mut frames = vec![false; self.options.frames_in_flight as usize];
-        frames[frame as usize] = true;
-        self.retired.push(Retired { frames, _what: RetiredObject::Lists(Box::new(before)) });
+        self.retire(Some(frame), RetiredObject::Lists(Box::new(before)));
         Ok(())
     }
 

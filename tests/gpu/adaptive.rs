@@ -5,7 +5,7 @@ use crate::common;
 use crate::common::edges::edge_points;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors, CapturedVertex, Which};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
-use ash_subdiv::renderer::{Cull, Evaluation, Factor};
+use ash_subdiv::renderer::{Cull, Evaluation, Factor, ModelTables};
 use ash_subdiv::{
     Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Spacing, Style, Target, View, shape,
 };
@@ -300,7 +300,7 @@ fn wrong_use_is_told() {
     let plain = Captured::new(&headless, &cube, &ModelOptions::default()).expect("a model");
     assert_eq!(
         plain.factors(&CaptureDraw::new(Factor::Edges(1.0))).expect_err("an error").to_string(),
-        "model 0: its edges have no factors: call set_edge_factors first"
+        "model 0: its edges have no factors: set ModelOptions::edge_factors when you add it, or draw with another Factor"
     );
     assert_eq!(
         error(CaptureDraw { displacement: [f32::INFINITY, 0.0], ..CaptureDraw::new(1.0) }),
@@ -359,6 +359,16 @@ fn wrong_displacement_is_told() {
             "model 0: Evaluation::{evaluation:?} does not go with {what}: do without, or choose Evaluation::Tessellation"
         );
         assert_eq!(first.add_model(&mesh, &options).unwrap_err().to_string(), told);
+    }
+    let of = |displacement| ModelOptions { displacement, ..ModelOptions::default() };
+    for (built, options, how) in [(displacement, None, "with"), (None, displacement, "without")] {
+        let tables = ModelTables::new(&mesh, &of(built)).expect("tables");
+        let told = format!(
+            "model 0: its tables were built {how} ModelOptions::displacement, unlike its options: build them with the same \
+             options"
+        );
+        let error = first.add_tables(tables, &mesh.positions_f32(), &of(options)).unwrap_err();
+        assert_eq!(error.to_string(), told);
     }
     drop((first, second, texture));
     headless.finish_silent();

@@ -75,16 +75,30 @@ fn vertices_follow_positions_and_segments() {
     stage.finish();
 }
 
-/// Invocations of compute shader and geometry shader in frames of three passes, in which the vertices move or not.
-fn counts(options: &ModelOptions, moves: [bool; 3]) -> [[u64; 2]; 3] {
+/// What happens before a frame.
+#[derive(Clone, Copy, PartialEq)]
+enum Change {
+    None,
+    Vertices,
+    Segments(u32),
+}
+
+/// Invocations of compute shader and geometry shader in frames of three passes.
+fn counts<const FRAMES: usize>(options: &ModelOptions, changes: [Change; FRAMES]) -> [[u64; 2]; FRAMES] {
     let stage = Stage::new();
     let mut renderer = stage.renderer(&Options::default());
     let mesh = shape("cube").expect("built in");
     let model = renderer.add_model(&mesh, options).expect("a model");
-    renderer.set_segments(model, 5).unwrap();
-    let counts = moves.map(|moves| {
-        if moves {
-            renderer.set_positions(model, 0, &mesh.positions_f32()).unwrap();
+    let mut segments = 5;
+    renderer.set_segments(model, segments).unwrap();
+    let counts = changes.map(|change| {
+        match change {
+            Change::None => {}
+            Change::Vertices => renderer.set_positions(model, 0, &mesh.positions_f32()).unwrap(),
+            Change::Segments(other) => {
+                segments = other;
+                renderer.set_segments(model, segments).unwrap();
+            }
         }
         let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
         // SAFETY: outside rendering, then inside; each submission is waited for.
@@ -92,14 +106,14 @@ fn counts(options: &ModelOptions, moves: [bool; 3]) -> [[u64; 2]; 3] {
             renderer.cmd_prepare(cmd, 0)?;
             for _ in 0..3 {
                 stage.target.cmd_begin(cmd, [0.0; 4]);
-                renderer.cmd_draw(cmd, 0, &view, &[DrawItem::new(model, 5.0)])?;
+                renderer.cmd_draw(cmd, 0, &view, &[DrawItem::new(model, segments as f32)])?;
                 stage.target.cmd_end(cmd);
             }
             Ok::<_, Error>(())
         });
         let counted = counted.expect("counts");
         assert_eq!((counted.evaluation_invocations, counted.control_patches), (0, 0));
-        assert_eq!(counted.clipping_invocations, 3 * 6 * 2 * 25);
+        assert_eq!(counted.clipping_invocations, 3 * 6 * 2 * u64::from(segments * segments));
         [counted.compute_invocations, counted.geometry_invocations]
     });
     drop(renderer);
@@ -109,16 +123,44 @@ fn counts(options: &ModelOptions, moves: [bool; 3]) -> [[u64; 2]; 3] {
 
 #[test]
 fn several_passes_evaluate_once() {
-    let moves = [true, false, true];
+    // The first of anything makes all; other segments need other vertices of the same control points.
+    let changes = [Change::None, Change::None, Change::Vertices, Change::Segments(3)];
     // 8 rings in a group of 64, 6 patches in another, and a group of 32 for each patch.
     let points = 64 + 64;
     let vertices = 6 * 32;
     let options = compute(Scheme::Gregory);
-    assert_eq!(counts(&options, moves), [[points + vertices, 0], [0, 0], [points + vertices, 0]]);
+    assert_eq!(counts(&options, changes), [[points + vertices, 0], [0, 0], [points + vertices, 0], [vertices, 0]]);
     let instanced = ModelOptions { evaluation: Evaluation::Instanced, ..options.clone() };
-    assert_eq!(counts(&instanced, moves), [[points, 0], [0, 0], [points, 0]]);
+    assert_eq!(counts(&instanced, changes), [[points, 0], [0, 0], [points, 0], [0, 0]]);
     let two_pass = ModelOptions { evaluation: Evaluation::GeometryTwoPass, ..options };
-    assert_eq!(counts(&two_pass, moves), [[0, 24], [0, 0], [0, 24]]);
+    assert_eq!(counts(&two_pass, changes), [[0, 24], [0, 0], [0, 24], [0, 0]]);
+}
+
+/// Also how finely a patch is cut at most, which the host knows: it is of the frame that was prepared.
+#[test]
+fn factors_of_edges_wait_for_their_frame() {
+    let stage = Stage::new();
+    let mesh = shape("cube").expect("built in");
+    let mut renderer = stage.renderer(&Options { evaluations: vec![Evaluation::Geometry], ..Options::default() });
+    for evaluation in [Evaluation::Tessellation, Evaluation::Geometry] {
+        let options = ModelOptions { edge_factors: true, evaluation, ..compute(Scheme::Gregory) };
+        let model = renderer.add_model(&mesh, &options).expect("a model");
+        let edges = renderer.tables(model).unwrap().edges().expect("edges").vertices.len();
+        let mut draw = |frame, set: Option<(u32, f32)>, prepare: Option<u32>| {
+            if let Some((frame, factor)) = set {
+                renderer.set_edge_factors(model, frame, &vec![factor; edges]).expect("factors");
+            }
+            if let Some(frame) = prepare {
+                stage.prepare(&mut renderer, frame);
+            }
+            stage.draw(&mut renderer, frame, &[DrawItem::new(model, Factor::Edges(1.0))]).expect("a picture")
+        };
+        let fine = draw(0, Some((0, 6.0)), Some(0));
+        assert!(draw(0, Some((1, 1.0)), None) == fine, "{evaluation:?}");
+        assert!(draw(1, None, Some(1)) != fine, "{evaluation:?}");
+    }
+    drop(renderer);
+    stage.finish();
 }
 
 #[test]
@@ -185,7 +227,7 @@ fn wrong_use_is_told() {
     );
     assert_eq!(
         draw_model(&mut renderer, geometry, Factor::Edges(2.0)),
-        Err("model 2: its edges have no factors: call set_edge_factors first".into())
+        Err("model 2: its edges have no factors: set ModelOptions::edge_factors when you add it, or draw with another Factor".into())
     );
     let sized = View::framing(mesh.bounds(), [0.0, 0.0, 1.0], 1.0).sized(8, 8);
     let by_pixels = DrawItem::new(geometry, Factor::Pixels(2.0));
@@ -199,14 +241,14 @@ fn wrong_use_is_told() {
     let told = |factor: &str, n: u32| {
         Err(format!(
             "model 0: {factor}: its edges have {n} segments: call set_segments before cmd_prepare, and draw with that \
-             number as uniform factor"
+             number as uniform factor (with Factor::Edges(1.0) if edges have factors of their own)"
         ))
     };
     assert_eq!(draw(&mut renderer, Factor::Uniform(4.0)), told("Uniform(4.0)", 0));
     renderer.set_segments(model, 4).unwrap();
     assert_eq!(
         draw(&mut renderer, Factor::Uniform(4.0)),
-        Err("model 0: it was not yet prepared: record cmd_prepare after add_model and before cmd_draw".into())
+        Err("model 0: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw".into())
     );
     // Never copied, and gone.
     renderer.set_segments(model, 3).unwrap();

@@ -275,7 +275,7 @@ fn wrong_use_is_told() {
     };
     assert_eq!(
         draw(&mut renderer, 0, item),
-        "model 0: it was not yet prepared: record cmd_prepare after add_model and before cmd_draw"
+        "model 0: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw"
     );
     stage.prepare(&mut renderer, 0);
     assert_eq!(draw(&mut renderer, 2, item), "frame index 2: Options::frames_in_flight is 2, so frames are 0 to 1");
