@@ -8,5 +8,5 @@ layout(location = 0) out vec3 world_position;
 
 void main() {
     world_position = to_world(vertex_position(uint(gl_VertexIndex)));
-    gl_Position = view.view_projection * vec4(world_position, 1.0);
+    gl_Position = to_clip(world_position);
 }

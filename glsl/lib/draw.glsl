@@ -1,5 +1,5 @@
-// What every shader of a draw knows: the view, the draw's own constants, and the control vertices.
-// Rust twins: `View` and `DrawConstants` in src/renderer/gpu_data.rs.
+// What every shader of a draw knows: the view and the draw's own constants.
+// Rust twins: `ViewData` and `DrawConstants` in src/renderer/gpu_data.rs.
 #ifndef DRAW_GLSL
 #define DRAW_GLSL
 

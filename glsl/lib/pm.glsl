@@ -2,8 +2,8 @@
 #ifndef PM_GLSL
 #define PM_GLSL
 
-// 1 - cos(2 pi / CORNERS)
-const float MU = CORNERS == 3 ? 1.5 : CORNERS == 4 ? 1.0 : 0.690983005625;
+#include "pm_mu.glsl"
+
 const float C = 1.0 - MU;
 
 // What a corner owns.

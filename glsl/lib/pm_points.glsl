@@ -3,8 +3,7 @@
 #ifndef PM_POINTS_GLSL
 #define PM_POINTS_GLSL
 
-// 1 - cos(2 pi / CORNERS)
-const float MU = CORNERS == 3u ? 1.5 : CORNERS == 4u ? 1.0 : 0.690983005625;
+#include "pm_mu.glsl"
 
 // b211 at the near end of an edge, or b121 at its far end, seen from there; `across` is f - e.
 vec3 pm_beside(vec3 v, vec3 t0, vec3 t1, vec3 across, float cos_near, float cos_far) {

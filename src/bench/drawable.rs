@@ -36,7 +36,8 @@ impl Setup {
 /// on the chip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Traffic {
-    /// Tables, positions, vertices and indices, each byte read once an instance and pass.
+    /// Tables, positions, control points that are kept, vertices and indices: each byte once an instance and pass that reads
+    /// it, and what is made once a frame as often as making it reads and writes it.
     pub tables: u64,
     /// Control points that go from the control stage to the evaluation stage.
     pub control_points: u64,
@@ -101,6 +102,16 @@ pub(super) trait Drawable {
 
     /// Everything that drawing reads.
     fn bytes(&self) -> Vec<TableBytes>;
+
+    /// How many of them a frame moves before it draws, and how many each instance in each pass reads.
+    fn moved_bytes(&self, _motion: Motion) -> [u64; 2] {
+        [0, self.bytes().iter().map(|(_, bytes)| bytes).sum()]
+    }
+
+    /// Patches of the model, if not those of the subject.
+    fn patches(&self) -> Option<u64> {
+        None
+    }
 
     /// Bytes of the control points of all patches, as the control stage passes them on, if it is used.
     fn control_point_bytes(&self) -> u64;

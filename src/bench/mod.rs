@@ -12,7 +12,7 @@
 //! * **fence**: for each of the two, on the host's clock: recording, submission, and the wait for the fence.
 //! * **construction**: geometry at factor 1 less that of the bilinear floor at factor 1: making the control points, and
 //!   evaluating the corners of a patch rather than passing them on. No device tells the stages of a draw apart more
-//!   closely.
+//!   closely. Not of models that stand [still](Motion).
 //! * **set-up**: tables from the mesh, then buffers and copies to the device; pipelines are not in it, but in:
 //! * **first use**: making the pipelines, and the first frame with them, in which some drivers compile. Drivers keep what
 //!   they compiled on the disk: for a first use in truth, switch that off (Mesa: `MESA_SHADER_CACHE_DISABLE=1`).
@@ -218,6 +218,12 @@ impl Contestant {
             pairs.map(|pair| Self::new(path, Some(pair))).collect()
         };
         paths.iter().flat_map(of_path).collect()
+    }
+
+    /// Whether compute looks for the patches to leave out ([`Renderer::cmd_cull`](crate::Renderer::cmd_cull)); otherwise the
+    /// control shader does.
+    pub(super) fn looks(self) -> bool {
+        self.cull != Cull::NONE && matches!(self.patches, Some((_, Construction::Cached)))
     }
 
     /// The scheme as the program calls it; `none` without patches.

@@ -3,7 +3,7 @@
 use super::drawable::{Drawable, Frame, Lane, Pass, VERTEX_BYTES};
 use super::floors::device_buffer;
 use super::scene::Scene;
-use super::{BenchError, BenchOptions, Contestant, Row, Series, Setup, Subject, Traffic};
+use super::{BenchError, BenchOptions, Contestant, Motion, Row, Series, Setup, Subject, Traffic};
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Statistics};
 use crate::measure::statistics::{Estimate, FEWEST, paired_difference};
 use ash::vk;
@@ -77,7 +77,7 @@ impl<'h> Bench<'h> {
     pub fn frames(&self, contestants: usize) -> u64 {
         let rounds = u64::from(self.options.frames + self.options.warm_up);
         let drawn = self.options.cameras.len() as u64 * 2 * self.options.factors.len() as u64;
-        contestants as u64 * rounds * (1 + drawn)
+        contestants as u64 * rounds * (u64::from(self.options.motion == Motion::Moving) + drawn)
     }
 
     /// Races on one mesh, factor by factor.
@@ -185,6 +185,9 @@ impl<'h> Bench<'h> {
         scenes: &[Scene],
         tell: &mut impl FnMut(Event),
     ) -> Result<(), BenchError> {
+        if self.options.motion == Motion::Still {
+            return Ok(());
+        }
         let mut all: Vec<&mut Runner> = runners.iter_mut().collect();
         let series = self.turns(&mut all, scenes, 1.0, &[Pass::Geometry], tell)?.swap_remove(0);
         let floor = runners.iter().position(|runner| runner.contestant.path == super::Path::Bilinear);
@@ -274,9 +277,9 @@ impl<'h> Bench<'h> {
         let vertices = |s: &Statistics| s.evaluation_invocations.max(s.vertex_invocations).max(s.geometry_primitives);
         let vertices = count(vertices).unwrap_or(0);
         let times = u64::from(self.options.instances) * u64::from(self.options.passes);
-        let bytes = drawable.bytes();
+        let [once, each] = drawable.moved_bytes(self.options.motion);
         let traffic = Traffic {
-            tables: times * bytes.iter().map(|(_, bytes)| bytes).sum::<u64>(),
+            tables: once + times * each,
             control_points: times * drawable.control_point_bytes(),
             vertices: VERTEX_BYTES * vertices,
         };
@@ -285,7 +288,7 @@ impl<'h> Bench<'h> {
             contestant: runner.contestant,
             camera: scene.camera,
             factor,
-            patches: times * subject.patches(),
+            patches: times * drawable.patches().unwrap_or_else(|| subject.patches()),
             evaluations,
             computed: count(|s| s.compute_invocations),
             triangles: count(|s| s.clipping_invocations),
@@ -294,7 +297,7 @@ impl<'h> Bench<'h> {
             geometry,
             construction: runner.construction,
             setup: Setup { first_frame: runner.first_frame, ..drawable.setup() },
-            bytes,
+            bytes: drawable.bytes(),
             traffic,
         })
     }

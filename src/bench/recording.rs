@@ -32,14 +32,14 @@ impl Crowd {
 pub struct Recording {
     /// Of what.
     pub crowd: Crowd,
-    /// [`Renderer::cmd_prepare`].
+    /// [`Renderer::cmd_prepare`], and [`Renderer::cmd_cull`] where compute looks for the patches to leave out.
     pub prepare: Vec<f64>,
-    /// [`Renderer::cmd_draw`].
+    /// [`Renderer::cmd_draw`], or [`Renderer::cmd_draw_visible`] then.
     pub draw: Vec<f64>,
 }
 
 impl Bench<'_> {
-    /// Records frames of `models` models, of which but the first are never run. At factor 1 and without rasterization: how
+    /// Records frames of `models` models. Only the first frame of each crowd is submitted. At factor 1 and without rasterization: how
     /// finely they are drawn makes no difference to the host.
     ///
     /// # Errors
@@ -63,7 +63,15 @@ impl Bench<'_> {
         let target = Target::dynamic(target.color, target.depth, target.samples);
         let styles = vec![Style { rasterizer_discard: true, ..Style::default() }];
         let evaluations = vec![model_options.evaluation];
-        let options = Options { frames_in_flight: 1, views_per_frame: 1, styles, evaluations, ..Options::default() };
+        let visible_lists = contestant.looks();
+        let options = Options {
+            frames_in_flight: 1,
+            views_per_frame: 1,
+            styles,
+            evaluations,
+            visible_lists,
+            ..Options::default()
+        };
         // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
         let mut renderer = unsafe { Renderer::new(lane.headless.context(), &target, &options)? };
         let tables = ModelTables::new(&subject.mesh, &model_options)?;
@@ -78,12 +86,12 @@ impl Bench<'_> {
         let item = |model| DrawItem { cull: contestant.cull, ..DrawItem::new(model, 1.0) };
         let first = add(&mut renderer)?;
         let mut items = vec![item(first); models as usize];
-        let mut recordings = vec![self.record_frames(&mut renderer, subject, &items, Crowd::Instances)?];
+        let mut recordings = vec![self.record_frames(&mut renderer, subject, contestant, &items, Crowd::Instances)?];
         for other in &mut items[1..] {
             *other = item(add(&mut renderer)?);
         }
         for crowd in [Crowd::Models, Crowd::Moving] {
-            recordings.push(self.record_frames(&mut renderer, subject, &items, crowd)?);
+            recordings.push(self.record_frames(&mut renderer, subject, contestant, &items, crowd)?);
         }
         Ok(recordings)
     }
@@ -92,6 +100,7 @@ impl Bench<'_> {
         &self,
         renderer: &mut Renderer,
         subject: &Subject,
+        contestant: Contestant,
         items: &[DrawItem],
         crowd: Crowd,
     ) -> Result<Recording, BenchError> {
@@ -112,9 +121,15 @@ impl Bench<'_> {
             }
             // SAFETY: recorded outside rendering, then inside of rendering that fits.
             self.headless().record(|cmd| unsafe {
-                let ((), prepare) = timed(|| renderer.cmd_prepare(cmd, 0))?;
+                let (visible, prepare) = timed(|| {
+                    renderer.cmd_prepare(cmd, 0)?;
+                    contestant.looks().then(|| renderer.cmd_cull(cmd, 0, frame.view, items)).transpose()
+                })?;
                 target.cmd_begin(cmd, [0.0; 4]);
-                let ((), draw) = timed(|| renderer.cmd_draw(cmd, 0, frame.view, items))?;
+                let ((), draw) = timed(|| match &visible {
+                    Some(visible) => renderer.cmd_draw_visible(cmd, 0, visible),
+                    None => renderer.cmd_draw(cmd, 0, frame.view, items),
+                })?;
                 target.cmd_end(cmd);
                 if round >= before {
                     recording.prepare.push(prepare);

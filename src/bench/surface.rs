@@ -4,8 +4,8 @@ use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
 use super::{BenchError, Contestant, Motion, published};
 use crate::measure::statistics::Summary;
 use crate::renderer::{
-    Construction, Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options,
-    Renderer, Style, TableBytes, Target, VisibleItems, subdivision_level,
+    Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options, Renderer,
+    Style, TableBytes, Target, VisibleItems, subdivision_level,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -20,6 +20,7 @@ pub(super) struct Surface {
     setup: Setup,
     bytes: Vec<TableBytes>,
     control_point_bytes: u64,
+    patches: u64,
     evaluation: Evaluation,
     cull: Cull,
     /// Whether compute looks for what can be seen.
@@ -32,14 +33,13 @@ impl Surface {
     pub(super) fn new(lane: Lane, contestant: Contestant) -> Result<Self, BenchError> {
         let Lane { headless, target, subject, passes, .. } = lane;
         let model_options = contestant.model_options(lane);
-        let ModelOptions { scheme, construction, evaluation, .. } = model_options;
+        let ModelOptions { scheme, evaluation, .. } = model_options;
         let as_published = contestant.path.is_published_acc();
         let (tables, tables_ms) = build_tables(lane, &model_options)?;
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
         let evaluations = vec![evaluation];
-        // Otherwise the control shader does.
-        let looks = contestant.cull != Cull::NONE && construction == Construction::Cached;
+        let looks = contestant.looks();
         let shaders = if as_published { published::shaders() } else { Vec::new() };
         let options = Options {
             frames_in_flight: 1,
@@ -66,6 +66,7 @@ impl Surface {
             PatchKind::IrregularQuad if as_published => published::QUAD_BYTES,
             _ => 12 * scheme.points(kind) as u64,
         };
+        let patches = tables.plan().patches().len() as u64;
         let bytes_of = |kind| u64::from(tables.patch_count(kind)) * patch_bytes(kind);
         let control_point_bytes = match evaluation {
             Evaluation::Tessellation => PatchKind::ALL.map(bytes_of).iter().sum(),
@@ -84,6 +85,7 @@ impl Surface {
             setup,
             bytes,
             control_point_bytes,
+            patches,
             evaluation,
             cull: contestant.cull,
             looks,
@@ -158,6 +160,27 @@ impl Drawable for Surface {
         let MemoryUsage { vertices, lists, .. } = self.renderer.memory_usage();
         let besides = [("vertices", vertices), ("lists", lists)].into_iter().filter(|(_, bytes)| *bytes > 0);
         self.bytes.iter().copied().chain(besides).collect()
+    }
+
+    fn moved_bytes(&self, motion: Motion) -> [u64; 2] {
+        let all = self.bytes();
+        let of = |name| all.iter().find(|(of, _)| *of == name).map_or(0, |(_, bytes)| *bytes);
+        let [points, frames, vertices, lists] = ["control_points", "frames", "vertices", "lists"].map(of);
+        let tables = all.iter().map(|(_, bytes)| bytes).sum::<u64>() - points - frames - vertices - lists;
+        if points == 0 {
+            return [0, tables];
+        }
+        // Frames are written, and read again for the points.
+        let makes_points = tables + 2 * frames + points;
+        let [once, each] = match self.evaluation {
+            Evaluation::Compute => [makes_points + points + vertices, vertices],
+            _ => [makes_points, points + vertices + lists],
+        };
+        [if motion == Motion::Moving { once } else { 0 }, each]
+    }
+
+    fn patches(&self) -> Option<u64> {
+        Some(self.patches)
     }
 
     fn control_point_bytes(&self) -> u64 {

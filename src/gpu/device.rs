@@ -11,6 +11,12 @@ pub const MAX_OFFSET_ALIGNMENT: u64 = 256;
 /// Every Vulkan device can dispatch as many workgroups along an axis.
 pub const MAX_WORKGROUPS: u32 = 65_535;
 
+/// A version of Vulkan as people write it, such as "1.3.230".
+pub fn version_text(version: u32) -> String {
+    let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));
+    format!("{major}.{minor}.{}", vk::api_version_patch(version))
+}
+
 /// What a device is and can do: limits, and the driver bugs to work around, as named properties.
 #[derive(Debug, Clone)]
 #[non_exhaustive]

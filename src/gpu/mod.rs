@@ -23,7 +23,7 @@ mod stages;
 pub use allocator::{Allocation, AllocationRequest, Allocator, AllocatorError, Dedicated, MemoryLocation};
 pub use batch::{Domain, PatchBatch, PatchDraw, Spacing, tessellated_vertices};
 pub use buffer::{Buffer, BufferDesc};
-pub use device::{ContextOptions, DeviceContext, DeviceProperties, MAX_OFFSET_ALIGNMENT, MAX_WORKGROUPS};
+pub use device::{ContextOptions, DeviceContext, DeviceProperties, MAX_OFFSET_ALIGNMENT, MAX_WORKGROUPS, version_text};
 pub use error::{GpuError, VkResultExt};
 pub use features::Features;
 pub use image::{Image, ImageDesc, aspects};

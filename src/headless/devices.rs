@@ -3,8 +3,8 @@
 use ash::vk;
 
 use super::HeadlessError;
-use super::instance::{Instance, version_text};
-use crate::gpu::{DeviceProperties, Features};
+use super::instance::Instance;
+use crate::gpu::{DeviceProperties, Features, version_text};
 
 /// A Vulkan device of this machine.
 #[derive(Debug, Clone)]

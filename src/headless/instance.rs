@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use ash::vk;
 
 use super::HeadlessError;
-use crate::gpu::VkResultExt;
+use crate::gpu::{VkResultExt, version_text};
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
@@ -168,9 +168,4 @@ fn listener(messages: &Arc<Messages>) -> vk::DebugUtilsMessengerCreateInfoEXT<'s
         .message_type(Type::VALIDATION | Type::PERFORMANCE)
         .pfn_user_callback(Some(collect))
         .user_data(Arc::as_ptr(messages).cast_mut().cast())
-}
-
-pub(super) fn version_text(version: u32) -> String {
-    let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));
-    format!("{major}.{minor}.{}", vk::api_version_patch(version))
 }

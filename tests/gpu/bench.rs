@@ -201,6 +201,19 @@ fn cached_control_points_are_made_in_every_frame_in_which_vertices_move() {
     let compute = Contestant { path: Path::Compute, ..cached };
     let rows = race(&headless, still, "creature-mixed", &[cached, compute]);
     assert!(rows.iter().all(|row| row.computed == Some(0) && row.triangles > Some(0)), "{rows:?}");
+    // Nothing is made, and each draw reads what is kept.
+    let bytes = |row: &Row, name: &str| row.bytes.iter().find(|(of, _)| *of == name).map_or(0, |(_, bytes)| *bytes);
+    for row in &rows {
+        let read = if row.contestant == compute { "vertices" } else { "control_points" };
+        assert_eq!(row.traffic.tables, bytes(row, read));
+    }
+    let moving = race(&headless, options(), "creature-mixed", &[cached, compute]);
+    for (row, still) in moving.iter().zip(&rows) {
+        let all: u64 = row.bytes.iter().map(|(_, bytes)| bytes).sum();
+        // The points besides are read to evaluate them.
+        let evaluated = if row.contestant == compute { bytes(row, "control_points") } else { 0 };
+        assert_eq!(row.traffic.tables - still.traffic.tables, all + bytes(row, "frames") + evaluated);
+    }
     headless.finish_silent();
 }
 
@@ -304,6 +317,7 @@ fn recording_is_timed_frame_by_frame() {
         of(Path::Tessellation, Construction::Cached),
         of(Path::Compute, Construction::Cached),
         of(Path::Instanced, Construction::Cached),
+        Contestant { cull: Cull::ALL, ..of(Path::Instanced, Construction::Cached) },
         of(Path::Geometry, Construction::Stencil),
         of(Path::GeometryTwoPass, Construction::Cached),
         Contestant::new(Path::Subdivision, None),

@@ -32,8 +32,8 @@ pub(in super::super) struct BenchArgs {
     /// Where normals come from, with commas: those that patches share cost time. For watertight schemes.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::normals())]
     normals: Vec<Normals>,
-    /// Measure each row of the tessellation stages again with patches left out that are not seen: `back` those that face
-    /// away, `frustum` those out of the picture, `small` those between pixels.
+    /// Measure each row of the tessellation stages and of instances again with patches left out that are not seen: `back` those that
+    /// face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
     cull: Vec<CullArg>,
     /// Tessellation factors, with commas; 4,8,16,32 if not given.
@@ -74,8 +74,8 @@ pub(in super::super) struct BenchArgs {
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(super) warm_up: u32,
     /// Measure instead how long the host takes to record a frame of so many models: of one model drawn so many times, of so
-    /// many models, and of as many whose vertices move.
-    #[arg(long, value_name = "MODELS", conflicts_with_all = ["csv", "preset", "compare", "results"], value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    /// many models, and of as many whose vertices move; with --cull, also where compute looks what is seen.
+    #[arg(long, value_name = "MODELS", conflicts_with_all = ["csv", "preset", "compare", "results", "factors", "spacing", "instances", "passes", "motion", "view"], value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(super) recording: Option<u32>,
     /// Measure what a paper measured, and set its figures beside.
     #[arg(long, value_name = "NAME", value_parser = presets::parser())]

@@ -1,6 +1,8 @@
 //! Results of two days side by side.
 
 use super::super::error::CliError;
+use super::super::output::note;
+use super::facts::DeviceOut;
 use super::results::{GEOMETRY, GPU, Interval, Results, Row, Setting, Who};
 use ash_subdiv::measure::statistics::{CONFIDENCE, change};
 use serde::{Deserialize, Serialize};
@@ -36,7 +38,16 @@ impl Change {
 }
 
 /// The rows that both have.
+///
+/// Results that were measured otherwise are an error; on another device, there is a note.
 pub(super) fn changes(old: &Results, new: &Results) -> Result<Vec<Change>, CliError> {
+    if let Some((old, new)) = old.options.alike().into_iter().zip(new.options.alike()).find(|(old, new)| old != new) {
+        return Err(CliError::Work(format!("the results to compare with are of {old}, these of {new}: measure alike")));
+    }
+    let [before, now] = [&old.device, &new.device].map(DeviceOut::title);
+    if before != now {
+        note(format_args!("the results to compare with are of another device: {before}, not {now}"));
+    }
     let mut changes = Vec::new();
     for row in &new.rows {
         let before = old.rows.iter().find(|before| before.is_beside(row) && before.who == row.who);

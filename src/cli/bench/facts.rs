@@ -2,7 +2,7 @@
 
 use super::results::{Setting, Who};
 use ash_subdiv::bench::{BenchError, BenchOptions, Contestant, Subject, Subset};
-use ash_subdiv::gpu::DeviceProperties;
+use ash_subdiv::gpu::{DeviceProperties, version_text};
 use ash_subdiv::topology::PatchKind;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -61,17 +61,26 @@ impl OptionsOut {
         let &BenchOptions { size, instances, frames, warm_up, .. } = options;
         Self { size, instances, passes: passes.to_vec(), frames, warm_up, patches: patches.name().to_owned() }
     }
+
+    /// What the times of a row depend on besides its setting, as the program's options.
+    pub(super) fn alike(&self) -> [String; 3] {
+        let Self { size: [width, height], instances, patches, .. } = self;
+        [format!("--size {width}x{height}"), format!("--instances {instances}"), format!("--patches {patches}")]
+    }
 }
 
 impl DeviceOut {
+    /// The device and its driver.
+    pub(super) fn title(&self) -> String {
+        format!("{}, {}", self.name, self.driver_info)
+    }
+
     pub(super) fn new(properties: &DeviceProperties) -> Self {
-        let version = properties.api_version;
-        let [major, minor, patch] = [version >> 22 & 0x7f, version >> 12 & 0x3ff, version & 0xfff];
         Self {
             name: properties.name.clone(),
             driver: properties.driver_name.clone(),
             driver_info: properties.driver_info.clone(),
-            vulkan: format!("{major}.{minor}.{patch}"),
+            vulkan: version_text(properties.api_version),
             timestamp_period: properties.timestamp_period,
             processors: std::thread::available_parallelism().map_or(0, usize::from),
         }

@@ -1,6 +1,7 @@
 //! What rows say together: how time grows, from how many passes on compute wins, what a view that clips costs.
 
-use super::results::{GEOMETRY, GPU, Interval, Row, Setting, Who};
+use super::results::{GEOMETRY, GPU, Interval, NONE, Row, Setting, Who};
+use ash_subdiv::Construction;
 use ash_subdiv::bench::Path;
 use ash_subdiv::measure::statistics::{below_zero_from, growth, growth_by_rounds, paired_difference, paired_ratio};
 use serde::{Deserialize, Serialize};
@@ -130,7 +131,13 @@ fn growth_of(rows: &[&Row]) -> Option<Finding> {
 /// `rows` are of one that tessellates in every pass.
 fn break_even(rows: &[&Row], all: &[Row]) -> Option<Finding> {
     let by_compute = |row: &Row| {
-        let computes = |other: &&Row| other.who.path == Path::Compute.name() && other.who.scheme == row.who.scheme;
+        let wanted = Who {
+            construction: Construction::Cached.name().to_owned(),
+            path: Path::Compute.name().to_owned(),
+            cull: NONE.to_owned(),
+            ..row.who.clone()
+        };
+        let computes = |other: &&Row| other.who == wanted;
         all.iter().filter(|other| other.is_beside(row)).find(computes)
     };
     let mut pairs: Vec<_> = rows.iter().filter_map(|&row| Some((row, by_compute(row)?))).collect();

@@ -25,7 +25,7 @@ use super::error::CliError;
 use super::output::{self, Progress, note};
 use super::parse;
 pub(super) use args::BenchArgs;
-use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Event, Path, Subject};
+use ash_subdiv::bench::{Bench, BenchError, BenchOptions, Contestant, Event, Path, Subject};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::measure::{ErrorOptions, surface_errors};
 use ash_subdiv::{Scheme, Spacing};
@@ -133,8 +133,9 @@ impl BenchArgs {
                 races.extend(spacings.iter().map(|&spacing| options_of(motion, passes, spacing)));
             }
         }
-        let frames = Bench::new(headless, options.clone())?.frames(contestants.len());
-        let progress = Progress::bar("drawing", frames * (subjects.len() * races.len()) as u64);
+        let frames = races.iter().map(|options| Ok(Bench::new(headless, options.clone())?.frames(contestants.len())));
+        let frames = frames.sum::<Result<u64, BenchError>>()?;
+        let progress = Progress::bar("drawing", frames * subjects.len() as u64);
         for subject in subjects {
             for options in &races {
                 let mut printed = Ok(());

@@ -31,7 +31,11 @@ pub(super) fn rows(rows: &[Row]) -> Result<(), CliError> {
             table.row([
                 &row.who.scheme,
                 &row.who.construction,
-                &row.who.path_label(),
+                &if row.patches == *patches {
+                    row.who.path_label()
+                } else {
+                    format!("{}, {} patches", row.who.path_label(), row.patches)
+                },
                 &time(row.gpu_ms),
                 &ratio(row.gpu_ratio),
                 &time(row.geometry_ms),

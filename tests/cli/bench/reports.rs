@@ -37,7 +37,7 @@ fn reports_need_nothing_but_themselves() {
     let again = folder.join("again");
     run(&format!("bench --results {} --report {}", folder.join("results.json").display(), again.display()));
     let page_again = fs::read_to_string(again.join("index.html")).unwrap();
-    assert_eq!(page_again.matches("<circle").count(), page.matches("<circle").count());
+    assert_eq!(page_again.matches("<polygon").count(), page.matches("<polygon").count());
 }
 
 fn chromium() -> Option<PathBuf> {
@@ -69,7 +69,7 @@ fn reports_open_in_a_browser() {
     let rows =
         length(&serde_json::from_slice::<Value>(&fs::read(folder.join("results.json")).unwrap()).unwrap()["rows"]);
     // Parsed as pictures within the page, with a point for each row in two plots at least.
-    let svg: usize = dom.split("<figure class=\"plot\">").skip(1).map(|plot| plot.matches("<circle").count()).sum();
+    let svg: usize = dom.split("<figure class=\"plot\">").skip(1).map(|plot| plot.matches("<polygon").count()).sum();
     assert!(svg >= 2 * rows, "{svg} points, {rows} rows");
     assert!(dom.contains("</html>") && dom.matches("<figure class=\"plot\">").count() == 8);
 }

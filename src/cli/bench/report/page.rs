@@ -6,7 +6,7 @@ use super::super::findings::Findings;
 use super::super::recorded::Recorded;
 use super::super::results::{GPU, Interval, NONE, Results, Row, Setting, Times, Who};
 use super::super::unique;
-use super::plots::{COLOURS, FLOOR, Line, LineStyle, MARKS, plot};
+use super::plots::{COLOURS, DASHES, FLOOR, Line, LineStyle, MARKS, plot};
 use ash_subdiv::bench::{Normals, Path};
 use ash_subdiv::measure::statistics::growth;
 use ash_subdiv::{Construction, Scheme};
@@ -98,20 +98,21 @@ fn picture(mesh: &MeshOut) -> Markup {
     }
 }
 
-/// The same for a contestant in all plots: colours tell schemes apart, marks constructions or floors, widths those with
+/// The same for a contestant in all plots: colours tell schemes apart, marks paths, dashes constructions, widths those with
 /// shared normals (wide) and culling (thin).
 fn style(who: &Who) -> LineStyle {
     let scheme = Scheme::ALL.iter().position(|scheme| scheme.name() == who.scheme);
     let colour = scheme.map_or(FLOOR, |index| COLOURS[index % COLOURS.len()]);
     let construction = Construction::ALL.iter().position(|construction| construction.name() == who.construction);
     let path = Path::ALL.iter().position(|path| path.name() == who.path);
+    let dash = construction.and_then(|index| DASHES[index]);
     let width = match (who.normals == Normals::Own.name(), who.cull == NONE) {
         (true, true) => 2,
         (true, false) => 1,
         (false, true) => 4,
         (false, false) => 3,
     };
-    LineStyle { colour, mark: MARKS[construction.or(path).unwrap_or(0) % MARKS.len()], width }
+    LineStyle { colour, dash, mark: MARKS[path.unwrap_or(0)], width }
 }
 
 /// A line for each contestant among these rows.
@@ -198,13 +199,14 @@ fn plots(results: &Results) -> Result<Markup, CliError> {
     })
 }
 
-fn swatch(LineStyle { colour, mark, width }: LineStyle) -> Markup {
+fn swatch(LineStyle { colour, dash, mark, width }: LineStyle) -> Markup {
     let colour = format!("#{:02x}{:02x}{:02x}", colour.0, colour.1, colour.2);
-    let dash = mark.dash.map(|[dash, gap]| format!("{dash} {gap}"));
+    let dash = dash.map(|[dash, gap]| format!("{dash} {gap}"));
+    let corners: Vec<String> = mark.corners.iter().map(|(x, y)| format!("{},{}", 17 + x, 6 + y)).collect();
     html! {
         svg width="34" height="12" aria-hidden="true" {
             line x1="0" y1="6" x2="34" y2="6" stroke=(colour) stroke-width=(width) stroke-dasharray=[dash] {}
-            circle cx="17" cy="6" r=(mark.radius) stroke=(colour) stroke-width="2" fill=(if mark.filled { &colour } else { "none" }) {}
+            polygon points=(corners.join(" ")) stroke=(colour) stroke-width="2" fill=(colour) fill-opacity=(mark.opacity()) {}
         }
     }
 }
@@ -231,7 +233,7 @@ fn rows(results: &Results) -> Markup {
                 thead { tr {
                     @for head in [
                         "", "gpu ms", "× base", "geometry ms", "× base", "fence ms", "construction ms", "tables ms",
-                        "upload ms", "first use ms", "KiB", "traffic KiB", "evaluations", "triangles",
+                        "upload ms", "first use ms", "KiB", "traffic KiB", "patches", "evaluations", "triangles",
                     ] { th scope="col" { (head) } }
                 } }
                 tbody { @for row in group { tr {
@@ -243,6 +245,7 @@ fn rows(results: &Results) -> Markup {
                     (milliseconds(row.tables_ms)) (milliseconds(row.upload_ms)) (milliseconds(row.first_use_ms()))
                     td { (format!("{:.1}", row.total_bytes() as f64 / 1024.0)) }
                     td { (format!("{:.1}", row.traffic_total() as f64 / 1024.0)) }
+                    td { (row.patches) }
                     td { (row.tes_invocations.map_or_else(String::new, |n| n.to_string())) }
                     td { (row.triangles.map_or_else(String::new, |n| n.to_string())) }
                 } } }

@@ -2,6 +2,8 @@
 
 use super::super::super::error::CliError;
 use crate::cli::canvas::{FONT, load_font};
+use ash_subdiv::Construction;
+use ash_subdiv::bench::Path;
 use plotters::coord::ranged1d::DefaultFormatting;
 use plotters::prelude::*;
 use plotters::style::Color;
@@ -18,27 +20,50 @@ pub(super) struct Line {
 #[derive(Clone, Copy)]
 pub(super) struct LineStyle {
     pub colour: RGBColor,
+    /// Pixels of a dash and of the gap after it; none for a whole line.
+    pub dash: Option<[u32; 2]>,
     pub mark: Mark,
     /// Of the line, in pixels.
     pub width: u32,
 }
 
-/// What tells lines of one colour apart.
+/// What stands at the points of a line.
 #[derive(Clone, Copy)]
 pub(super) struct Mark {
-    /// Pixels of a dash and of the gap after it; none for a whole line.
-    pub dash: Option<[u32; 2]>,
-    /// Of the points.
-    pub radius: u32,
+    /// In pixels, from the point.
+    pub corners: &'static [(i32, i32)],
     pub filled: bool,
 }
 
-/// For constructions, in their order; again from the first if there are more.
-pub(super) const MARKS: [Mark; 3] = [
-    Mark { dash: None, radius: 4, filled: true },
-    Mark { dash: Some([6, 4]), radius: 4, filled: false },
-    Mark { dash: Some([2, 4]), radius: 2, filled: true },
+impl Mark {
+    /// Of its inside, from 0 to 1.
+    pub(super) fn opacity(self) -> f64 {
+        if self.filled { 1.0 } else { 0.15 }
+    }
+}
+
+const ROUND: &[(i32, i32)] = &[(-2, -4), (2, -4), (4, -2), (4, 2), (2, 4), (-2, 4), (-4, 2), (-4, -2)];
+const SQUARE: &[(i32, i32)] = &[(-4, -4), (4, -4), (4, 4), (-4, 4)];
+const DIAMOND: &[(i32, i32)] = &[(0, -6), (6, 0), (0, 6), (-6, 0)];
+const UP: &[(i32, i32)] = &[(0, -5), (5, 4), (-5, 4)];
+const DOWN: &[(i32, i32)] = &[(0, 5), (5, -4), (-5, -4)];
+
+/// For paths, in their order.
+pub(super) const MARKS: [Mark; Path::ALL.len()] = [
+    Mark { corners: ROUND, filled: true },
+    Mark { corners: ROUND, filled: false },
+    Mark { corners: SQUARE, filled: false },
+    Mark { corners: DIAMOND, filled: true },
+    Mark { corners: SQUARE, filled: true },
+    Mark { corners: UP, filled: true },
+    Mark { corners: UP, filled: false },
+    Mark { corners: DOWN, filled: true },
+    Mark { corners: DIAMOND, filled: false },
+    Mark { corners: DOWN, filled: false },
 ];
+
+/// For constructions, in their order.
+pub(super) const DASHES: [Option<[u32; 2]>; Construction::ALL.len()] = [None, Some([6, 4]), Some([2, 4])];
 
 /// For schemes, in their order; seen on white and on black alike (Okabe and Ito's, a little darker or lighter).
 pub(super) const COLOURS: [RGBColor; 7] = [
@@ -83,16 +108,22 @@ pub(super) fn plot(x: &str, marks: &[f64], y: &str, lines: &[Line]) -> Result<St
         .y_label_formatter(&|y| number(*y))
         .draw()
         .map_err(|e| failed(&e))?;
-    for Line { style: LineStyle { colour, mark, width }, points } in lines {
+    for Line { style: LineStyle { colour, dash, mark, width }, points } in lines {
         let stroke = colour.stroke_width(*width);
         let points = points.iter().copied();
-        let drawn = match mark.dash {
+        let drawn = match *dash {
             Some([dash, gap]) => chart.draw_series(DashedLineSeries::new(points.clone(), dash, gap, stroke)).map(drop),
             None => chart.draw_series(LineSeries::new(points.clone(), stroke)).map(drop),
         };
         drawn.map_err(|e| failed(&e))?;
-        let fill = if mark.filled { colour.filled() } else { stroke };
-        chart.draw_series(points.map(|at| Circle::new(at, mark.radius, fill))).map_err(|e| failed(&e))?;
+        let fill = colour.mix(mark.opacity()).filled();
+        let outline: Vec<_> = mark.corners.iter().chain(mark.corners.first()).copied().collect();
+        let marks = points.map(|at| {
+            EmptyElement::at(at)
+                + Polygon::new(mark.corners, fill)
+                + PathElement::new(outline.clone(), colour.stroke_width(2))
+        });
+        chart.draw_series(marks).map_err(|e| failed(&e))?;
     }
     area.present().map_err(|e| failed(&e))?;
     drop(chart);
@@ -145,12 +176,12 @@ mod tests {
     #[test]
     fn every_point_is_in_the_plot() {
         let line = |mark, points: &[(f64, f64)]| Line {
-            style: LineStyle { colour: COLOURS[0], mark: MARKS[mark], width: 2 },
+            style: LineStyle { colour: COLOURS[0], dash: None, mark: MARKS[mark], width: 2 },
             points: points.to_vec(),
         };
         let svg =
             plot("factor", &[4.0, 8.0], "ms", &[line(0, &[(4.0, 1.0), (8.0, 3.0)]), line(1, &[(4.0, 2.0)])]).unwrap();
-        assert_eq!(svg.matches("<circle").count(), 3);
+        assert_eq!(svg.matches("<polygon").count(), 3);
         assert!(svg.starts_with("<svg") && svg.contains("factor") && svg.trim_end().ends_with("</svg>"));
         assert!(plot("factor", &[], "ms", &[]).is_ok());
     }
