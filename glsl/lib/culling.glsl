@@ -20,6 +20,8 @@
 
 #include "factors.glsl"
 
+const uint COUNTER_CLOCKWISE_FLAG = 2u;  // in draw.flags
+
 // What a corner's control points say of the patch.
 struct Examined {
     uint outside;    // a bit for each plane that all of them are beyond
@@ -128,7 +130,8 @@ bool below_zero(mat3x4 q) {
     return max(ends, max(beside, middle)) < 0.0;
 }
 
-// Whether all triangles of the patch face away from the eye, whose legs are at most `step` long in u and v.
+// Whether all triangles of the patch face away from the eye, whose legs are at most `step` long in u and v: are seen clockwise, or
+// counter-clockwise if those are to be left out.
 //
 // The normal of a bicubic patch is a Bezier patch of degree (5, 5); its coefficients are sums of cross products of the
 // differences of control points along u and along v, and if all of them face away, so does the patch. (The convex hull of
@@ -153,8 +156,10 @@ bool faces_away(float step) {
     float away = length(to_eye);
     vec3 z = to_eye / away;
     vec3 x = unit(abs(z.x) < 0.6 ? vec3(0.0, z.z, -z.y) : vec3(-z.z, 0.0, z.x));
+    // Where it is the others that are left out, cross products are seen in a mirror.
+    vec3 y = (draw.flags & COUNTER_CLOCKWISE_FLAG) != 0u ? cross(x, z) : cross(z, x);
     // Columns are what the axes are in object space; the rows of the transform are its matrix transposed.
-    mat3 axes = mat3(draw.transform[0].xyz, draw.transform[1].xyz, draw.transform[2].xyz) * mat3(x, cross(z, x), z);
+    mat3 axes = mat3(draw.transform[0].xyz, draw.transform[1].xyz, draw.transform[2].xyz) * mat3(x, y, z);
 
     // Rows of control points, as seen from the centre.
 #define AT(k, i) (CONTROL_POINT(k, i) - centre) * axes

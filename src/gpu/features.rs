@@ -37,10 +37,9 @@ features! {
     dynamic_rendering = "dynamicRendering",
     /// `vkCmdPipelineBarrier2` and its like.
     synchronization2 = "synchronization2",
-    /// Workgroup sizes as specialization constants, in SPIR-V 1.6.
+    /// Keeps validation layers from warning of outputs that the next stage does not read, such as what invocations of a control
+    /// shader tell each other; every device with Vulkan 1.3 has it.
     maintenance4 = "maintenance4",
-    /// `discard` in fragment shaders, in SPIR-V 1.6.
-    terminate_invocation = "shaderTerminateInvocation",
     /// Wireframe pictures.
     fill_mode_non_solid = "fillModeNonSolid",
     /// Lines of more than one pixel.
@@ -68,7 +67,6 @@ impl Features {
         dynamic_rendering: false,
         synchronization2: false,
         maintenance4: false,
-        terminate_invocation: false,
         fill_mode_non_solid: false,
         wide_lines: false,
         vertex_stores: false,
@@ -104,7 +102,6 @@ impl Features {
             dynamic_rendering: v13.dynamic_rendering == vk::TRUE,
             synchronization2: v13.synchronization2 == vk::TRUE,
             maintenance4: v13.maintenance4 == vk::TRUE,
-            terminate_invocation: v13.shader_terminate_invocation == vk::TRUE,
             fill_mode_non_solid: core.fill_mode_non_solid == vk::TRUE,
             wide_lines: core.wide_lines == vk::TRUE,
             vertex_stores: core.vertex_pipeline_stores_and_atomics == vk::TRUE,
@@ -146,8 +143,7 @@ impl Features {
         let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
             .dynamic_rendering(self.dynamic_rendering)
             .synchronization2(self.synchronization2)
-            .maintenance4(self.maintenance4)
-            .shader_terminate_invocation(self.terminate_invocation);
+            .maintenance4(self.maintenance4);
         let mut feedback = vk::PhysicalDeviceTransformFeedbackFeaturesEXT::default().transform_feedback(true);
         let mut all = vk::PhysicalDeviceFeatures2::default().features(core).push_next(&mut v13);
         if self.transform_feedback {

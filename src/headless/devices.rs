@@ -53,7 +53,6 @@ pub(super) const BASE: Features = Features {
     dynamic_rendering: true,
     synchronization2: true,
     maintenance4: true,
-    terminate_invocation: true,
     ..Features::NONE
 };
 

@@ -2,7 +2,7 @@
 
 use super::evaluated::Drawn;
 use super::factor::{Cull, Cut, Factor};
-use super::gpu_data::DrawConstants;
+use super::gpu_data::{COUNTER_CLOCKWISE_FLAG, DrawConstants};
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::stages::PatchStages;
@@ -48,13 +48,14 @@ impl DrawItem {
     }
 
     /// What the shaders know of it, for all patches; `most` is the largest factor of an edge.
-    pub(super) fn constants(&self, model: &Model, most: f32) -> DrawConstants {
+    pub(super) fn constants(&self, model: &Model, style: &Style, most: f32) -> DrawConstants {
         let [scale, bias] = self.displacement;
         let value = match self.factor {
             Factor::Uniform(factor) => factor.min(most),
             factor => factor.value(),
         };
-        let flags = model.displacement_flags(self.displacement);
+        let back = if style.leaves_out_counter_clockwise(&self.transform) { COUNTER_CLOCKWISE_FLAG } else { 0 };
+        let flags = model.displacement_flags(self.displacement) | back;
         DrawConstants { flags, ..DrawConstants::new(&self.transform, [value, scale, bias]) }
     }
 
@@ -175,7 +176,7 @@ impl Renderer {
         let style = self.style(item)?;
         let (model, most) = self.check_item(view, item)?;
         let device = self.context.device();
-        let mut constants = item.constants(model, most);
+        let mut constants = item.constants(model, style, most);
         let lists = lists.filter(|lists| !lists.is_empty());
         let cull = if lists.is_some() { Cull::NONE } else { item.cull };
         let cut = Cut::new(item.factor, cull);

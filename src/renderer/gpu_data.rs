@@ -33,8 +33,10 @@ pub(crate) struct DrawConstants {
     pub flags: u32,
 }
 
-/// Bits of [`DrawConstants::flags`]. GLSL twins: `glsl/lib/displace.glsl` and `reach` in `glsl/lib/culling.glsl`.
+/// Bits of [`DrawConstants::flags`]. GLSL twins: `glsl/lib/displace.glsl`, `glsl/lib/culling.glsl`.
 pub(super) const VECTOR_FLAG: u32 = 1;
+/// What is seen counter-clockwise faces away.
+pub(super) const COUNTER_CLOCKWISE_FLAG: u32 = 2;
 /// How far displacement reaches, as a half-precision number.
 pub(super) const REACH_SHIFT: u32 = 16;
 

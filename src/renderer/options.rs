@@ -6,6 +6,7 @@ use super::visible::LIST_FEATURES;
 use super::{Error, Evaluation};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, shaders};
 use ash::vk;
+use glam::Mat4;
 
 /// What the renderer draws into.
 #[derive(Debug, Clone, PartialEq)]
@@ -150,6 +151,16 @@ impl Default for Style {
 }
 
 impl Style {
+    /// Whether it leaves out what is seen counter-clockwise of a surface with this transform, else what is seen clockwise. If it
+    /// leaves out neither: the inside.
+    pub(super) fn leaves_out_counter_clockwise(&self, transform: &[[f32; 4]; 4]) -> bool {
+        match self.cull {
+            vk::CullModeFlags::BACK => self.front_face == vk::FrontFace::CLOCKWISE,
+            vk::CullModeFlags::FRONT => self.front_face == vk::FrontFace::COUNTER_CLOCKWISE,
+            _ => Mat4::from_cols_array_2d(transform).determinant() < 0.0,
+        }
+    }
+
     /// Lines of the tessellated triangles, to be drawn over a surface.
     pub fn wireframe() -> Self {
         Self {

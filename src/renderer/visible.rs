@@ -40,7 +40,8 @@ struct VisibleItem {
 }
 
 impl VisibleItems {
-    /// The same, all in another of [`Options::styles`](super::Options::styles): such as for depth alone.
+    /// The same, all in another of [`Options::styles`](super::Options::styles): such as for depth alone. With [`Cull::back`] in
+    /// one that leaves out the same faces.
     pub fn in_style(&self, style: usize) -> Self {
         let mut other = self.clone();
         other.items.iter_mut().for_each(|visible| visible.item.style = style);
@@ -255,7 +256,7 @@ impl Renderer {
         };
         for VisibleItem { item, lists, .. } in &visible.items {
             let (model, most) = self.check_item(&visible.view, item)?;
-            let of_draw = item.constants(model, most);
+            let of_draw = item.constants(model, self.style(item)?, most);
             for list in lists {
                 let group = &model.tables.plan().groups()[list.group];
                 let of_list = list.constants(&of_draw, group);

@@ -3,6 +3,7 @@
 
 use crate::common;
 use crate::common::edges::edge_points;
+use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors, CapturedVertex, Which};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, ModelTables};
@@ -120,6 +121,10 @@ fn edges_have_one_factor() {
     headless.finish_silent();
 }
 
+fn back_style() -> Style {
+    Style { cull: vk::CullModeFlags::BACK, ..Style::default() }
+}
+
 /// How many pixels change in each view when patches are left out of a model with this transform.
 fn missed(
     headless: &Headless,
@@ -127,11 +132,11 @@ fn missed(
     views: &[View],
     cull: Cull,
     transform: Mat4,
+    style: Style,
     displaced: Option<&Texture>,
 ) -> Vec<usize> {
     let desc = OffscreenDesc::new(SIDE, SIDE);
     let target = Offscreen::new(headless, &desc).expect("a target");
-    let style = Style { cull: ash::vk::CullModeFlags::BACK, ..Style::default() };
     let options = Options { styles: vec![style], ..Options::default() };
     let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
     // SAFETY: the texture outlives the renderer, and every submission is waited for.
@@ -165,7 +170,7 @@ fn what_is_left_out_is_not_missed() {
         let mesh = shape(name).expect("built in");
         let views = [view(&mesh, [-0.6, 0.5, 1.0]), view(&mesh, [0.2, -1.0, 0.1]), close_view(&mesh)];
         for displaced in [None, Some(&texture)] {
-            let missed = missed(&headless, &mesh, &views, Cull::ALL, Mat4::IDENTITY, displaced);
+            let missed = missed(&headless, &mesh, &views, Cull::ALL, Mat4::IDENTITY, back_style(), displaced);
             assert_eq!(missed, [0; 3], "{name} displaced {}", displaced.is_some());
         }
         let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
@@ -206,8 +211,14 @@ fn what_faces_away_is_left_out() {
     for (name, least) in [("creature", 0.25), ("creature-mixed", 0.1), ("torus", 0.25), ("cube", 0.0)] {
         let mesh = shape(name).expect("built in");
         let views: Vec<View> = around(12).map(|towards| view(&mesh, towards)).collect();
-        for transform in [Mat4::IDENTITY, turned] {
-            assert_eq!(missed(&headless, &mesh, &views, back, transform, None), [0; 12], "{name}, {transform}");
+        // What a style leaves out, in a mirror, too; and what is hidden, if it leaves out nothing.
+        let (clockwise, both) = (vk::FrontFace::CLOCKWISE, Style::default());
+        let front = Style { cull: vk::CullModeFlags::FRONT, ..both.clone() };
+        for style in [back_style(), Style { front_face: clockwise, ..back_style() }, front, both] {
+            for transform in [Mat4::IDENTITY, turned] {
+                let missed = missed(&headless, &mesh, &views[..4], back, transform, style.clone(), None);
+                assert_eq!(missed, [0; 4], "{name}, {transform}, {style:?}");
+            }
         }
         let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
         let vertices = captured.vertices(6.0).expect("a capture");
