@@ -237,6 +237,10 @@ impl ControlMesh {
 }
 
 /// Everything that can be checked without neighbours. Gives the face offsets.
+/// The most vertices, and face corners, of a mesh: ring tables have up to three entries a face corner, counted in u32, where the
+/// top bit of an index is a flag.
+pub(crate) const MAX_CORNERS: usize = 1 << 30;
+
 fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     let count = data.positions.len();
     if count == 0 {
@@ -245,8 +249,7 @@ fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     if data.face_sizes.is_empty() {
         return Err(MeshError::Empty { what: "faces" });
     }
-    // Ring tables have up to three entries a face corner, counted in u32; the top bit of an index is a flag there.
-    let max = 1 << 30;
+    let max = MAX_CORNERS;
     for (what, count) in [("vertices", count), ("face corners", data.face_vertices.len())] {
         if count > max {
             return Err(MeshError::TooLarge { what, count, max });

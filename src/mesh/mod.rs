@@ -9,6 +9,7 @@ mod obj;
 mod read;
 mod shapes;
 
+pub(crate) use control_mesh::MAX_CORNERS;
 pub use control_mesh::{
     BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,
     SHARPNESS_INFINITE, TriangleRule,

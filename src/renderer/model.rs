@@ -184,7 +184,7 @@ impl Model {
                 stride,
                 attributes,
             };
-            PatchStages { attributes: stages.fit_attributes(context.properties()), ..stages }
+            PatchStages { attributes: pipelines.has_attributes(stages), ..stages }
         };
         Ok(Self {
             id,

@@ -59,6 +59,11 @@ pub(super) enum GeometryKey {
 pub(super) struct ShaderCode(HashMap<String, Vec<u32>>);
 
 impl ShaderCode {
+    /// Whether it is the caller's own.
+    fn is_own(&self, name: &str) -> bool {
+        self.0.contains_key(name)
+    }
+
     /// A shader by its name: the caller's own, or ours.
     pub(super) fn find(&self, name: &str) -> Result<&[u32], GpuError> {
         self.0.get(name).map_or_else(|| shaders::named(name), |code| Ok(code))
@@ -135,6 +140,14 @@ impl Pipelines {
             lists,
             made: HashMap::new(),
         })
+    }
+
+    /// Whether instances have their control points as vertex attributes: where they fit, unless the caller has a shader of its own
+    /// for texels only.
+    pub(super) fn has_attributes(&self, stages: PatchStages) -> bool {
+        let name = |attributes| PatchStages { attributes, ..stages }.evaluation(self.capture, self.texcoords);
+        let [texels, attributes] = [false, true].map(|attributes| self.shaders.is_own(&name(attributes)));
+        stages.fit_attributes(self.context.properties()) && (attributes || !texels)
     }
 
     pub(super) fn styles(&self) -> &[Style] {

@@ -2,7 +2,7 @@
 //! for, or where the caller asks for it.
 
 use crate::limit::{Stencils, refine};
-use crate::mesh::{ControlMesh, MeshError, SHARPNESS_INFINITE};
+use crate::mesh::{ControlMesh, MAX_CORNERS, MeshError, SHARPNESS_INFINITE};
 use crate::patch::{Fallback, Scheme};
 use crate::table::{Patch, PatchPlan, TableError};
 use crate::topology::{PatchKind, SHARP_FROM, Topology};
@@ -210,6 +210,11 @@ fn refine_faces(
             prepared.refined_faces = Some(notice(1 + misfits.count(), first));
         }
         needed = levels.max(1);
+    }
+    // Before anything is allocated. Each step makes a quad of every corner.
+    let corners = 4usize.saturating_pow(needed).saturating_mul(mesh.corner_count());
+    if corners > MAX_CORNERS {
+        return Err(MeshError::TooLarge { what: "face corners when refined", count: corners, max: MAX_CORNERS });
     }
     for _ in 0..needed {
         let topology = Topology::new(&prepared.mesh);

@@ -246,6 +246,16 @@ fn refinement_keeps_limit_points_and_normals() {
     assert!(compared > 10_000, "{compared}");
 }
 
+/// Before memory is taken for it.
+#[test]
+fn refinement_beyond_what_can_be_addressed_is_refused() {
+    let mesh = shape("creature").unwrap();
+    for refine in [10, 40, u32::MAX] {
+        let error = CpuSurface::new(&mesh, Scheme::Gregory, refine).map(drop).unwrap_err();
+        assert!(error.to_string().ends_with("at most 1073741824 can be addressed"), "{error}");
+    }
+}
+
 #[test]
 fn polygons_are_refined_once_and_know_where_they_come_from() {
     let mesh = shape("polygons").unwrap();

@@ -136,6 +136,36 @@ fn several_passes_evaluate_once() {
     assert_eq!(counts(&two_pass, changes), [[0, 24], [0, 0], [0, 24], [0, 0]]);
 }
 
+/// lavapipe counts the primitives of a geometry shader that emits none by what the last one left behind.
+#[test]
+fn two_passes_can_be_counted_after_other_geometry_shaders() {
+    let stage = Stage::new();
+    let evaluations = vec![Evaluation::Geometry, Evaluation::GeometryTwoPass];
+    let mut renderer = stage.renderer(&Options { evaluations: evaluations.clone(), ..Options::default() });
+    let mesh = shape("cube").expect("built in");
+    let near = View::perspective([0.0, 0.0, 2.0], [0.0; 3], [0.0, 1.0, 0.0], 0.3, 1.0, [0.1, 9.0]);
+    for evaluation in evaluations {
+        let model =
+            renderer.add_model(&mesh, &ModelOptions { evaluation, ..compute(Scheme::Gregory) }).expect("a model");
+        if evaluation.needs_segments() {
+            renderer.set_segments(model, 2).unwrap();
+        }
+        let item = DrawItem::new(model, 2.0);
+        // SAFETY: outside rendering, then inside; the submission is waited for.
+        let counted = stage.headless.counted(|cmd| unsafe {
+            renderer.cmd_prepare(cmd, 0)?;
+            stage.target.cmd_begin(cmd, [0.0; 4]);
+            renderer.cmd_draw(cmd, 0, &near, &[item])?;
+            stage.target.cmd_end(cmd);
+            Ok::<_, Error>(())
+        });
+        assert_eq!(counted.expect("counts").clipping_invocations, 6 * 2 * 4, "{evaluation:?}");
+        renderer.remove_model(model).unwrap();
+    }
+    drop(renderer);
+    stage.finish();
+}
+
 /// Also how finely a patch is cut at most, which the host knows: it is of the frame that was prepared.
 #[test]
 fn factors_of_edges_wait_for_their_frame() {

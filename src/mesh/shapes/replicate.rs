@@ -1,4 +1,4 @@
-use crate::mesh::{ControlMesh, FaceVarying, MeshData, MeshError};
+use crate::mesh::{ControlMesh, FaceVarying, MAX_CORNERS, MeshData, MeshError};
 use glam::DVec3;
 
 /// Repeats a mesh on a lattice, with its tags and attributes, centred where the mesh is.
@@ -13,7 +13,7 @@ use glam::DVec3;
 pub fn replicate(mesh: &ControlMesh, copies: [u32; 3], spacing: f64) -> Result<ControlMesh, MeshError> {
     let data = mesh.data();
     let count = copies.iter().fold(1usize, |product, &n| product.saturating_mul(n as usize));
-    let max = (u32::MAX >> 1) as usize;
+    let max = MAX_CORNERS;
     // Before anything is allocated: `copies` may come from a command line.
     let corners = count.saturating_mul(mesh.corner_count());
     if corners > max {
