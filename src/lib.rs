@@ -26,10 +26,10 @@
 //!
 //! | floor | module | holds | knows nothing of |
 //! |---|---|---|---|
+//! | 9 | `bench` (features `measure` and `headless`) | how long each way to draw takes | files, printing |
+//! | 8 | `measure` (feature `measure`) | how far schemes, and triangles on the screen, are from the limit surface; whether patches meet; statistics | files, printing |
 //! | 7 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
-//! | 7 | `bench` (features `measure` and `headless`) | how long each way to draw takes | files, printing |
 //! | 6 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
-//! | 5 | `measure` (feature `measure`) | how far schemes are from the limit surface, statistics | files, printing |
 //! | 5 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
 //! | 4 | [`table`] | what the GPU reads | Vulkan |
 //! | 4 | [`limit`] | Catmull-Clark refinement and its limit surface | patch schemes |
