@@ -91,7 +91,7 @@ impl Model {
             (_, false) => &[],
             (Some(texcoords), true) => texcoords,
             (None, true) => {
-                zeros = vec![[0.0; 2]; tables.plan.patches().iter().map(|patch| patch.kind.corners()).sum()];
+                zeros = vec![[0.0; 2]; tables.plan.corner_count()];
                 &zeros
             }
         };

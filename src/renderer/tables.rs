@@ -215,8 +215,8 @@ impl ModelTables {
 
     /// Bytes of what the cached construction keeps of corners, and of frames.
     pub(super) fn kept_bytes(&self) -> [u64; 2] {
-        let corners: usize = self.plan.patches().iter().map(|patch| patch.kind.corners()).sum();
-        [TEXEL_BYTES * u64::from(self.kept_texels()) * corners as u64, FRAME_BYTES * u64::from(self.kept_frames())]
+        let corners = self.plan.corner_count() as u64;
+        [TEXEL_BYTES * u64::from(self.kept_texels()) * corners, FRAME_BYTES * u64::from(self.kept_frames())]
     }
 
     /// How many patches of a kind there are.

@@ -111,6 +111,11 @@ impl PatchPlan {
         &self.groups
     }
 
+    /// How many corners all patches have together.
+    pub fn corner_count(&self) -> usize {
+        self.groups.last().map_or(0, |group| group.first_corner + group.patches.len() * group.kind.corners())
+    }
+
     /// How many patches of a kind there are.
     pub fn count(&self, kind: PatchKind) -> u32 {
         self.range(kind).len() as u32
