@@ -185,7 +185,7 @@ fn changes(results: &Results) -> Markup {
         div.wide { table {
             thead { tr { @for head in ["", "factor", "", "old ms", "new ms", "new / old", "sure", ""] { th scope="col" { (head) } } } }
             tbody { @for c in changes { tr class=(c.verdict().replace(' ', "-")) {
-                th scope="row" { (c.setting.mesh) ": " (c.who.label()) }
+                th scope="row" { (c.setting.mesh) ", " (c.setting.title()) ": " (c.who.label()) }
                 td { (c.factor) } td { (c.what) }
                 td { (format!("{:.2}", c.old_ms)) } td { (format!("{:.2}", c.new_ms)) }
                 (ratio(Some(c.ratio)))
