@@ -52,12 +52,15 @@ impl Surface {
         };
         let render_target = Target::dynamic(target.color, target.depth, target.samples);
         let positions = subject.mesh.positions_f32();
+        let prepare = |renderer: &mut Renderer| {
+            // SAFETY: the command buffer is being recorded, outside rendering.
+            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })
+        };
         let add = |renderer: &mut Renderer| {
             let tables = tables.clone();
             timed(|| {
                 let model = renderer.add_tables(tables, &positions, &model_options)?;
-                // SAFETY: the command buffer is being recorded, outside rendering.
-                headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+                prepare(renderer)?;
                 Ok::<_, Error>(model)
             })
         };
@@ -70,7 +73,10 @@ impl Surface {
         // Others of the kind, now that the pipelines are there.
         let ((), upload) = median_of(|| {
             let (other, time) = add(&mut renderer)?;
-            Ok::<_, Error>((renderer.remove_model(other)?, time))
+            renderer.remove_model(other)?;
+            // Its memory is freed here, and not in what is timed next.
+            prepare(&mut renderer)?;
+            Ok::<_, Error>(((), time))
         })?;
         let bytes = tables.bytes();
         let patch_bytes = |kind| match kind {

@@ -116,7 +116,8 @@ construction: control points alone: factor 1 less the bilinear floor at factor 1
 set-up:       tables and upload, without pipelines; the median of several.
 sure:         of --compare: that the frames of both runs differ, whatever made them. It does not know that machines drift
               between runs; floors, which no change here makes faster or slower, tell by how much: `faster` and `slower`
-              are rows whose interval is wholly outside of what the intervals of all floors reach. Measure them along.
+              are rows whose interval is wholly outside of what the intervals of all floors reach. Measure them along,
+              at several factors: few floors reach less far than the machine may drift.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
 `compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one lattice for all patches, an
 instance for each, which the vertex shader evaluates; in `geometry` the geometry shader evaluates, in `geometry-two-pass` it
@@ -132,13 +133,14 @@ Of several views, the time of a triangle that clipping leaves is set beside that
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
 
 JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
-instances, passes[], frames, warm_up, patches, refine}, meshes[{name, of, copies, vertices, faces, patches{kind}}], left_out[{setting, who,
-factor, why}], rows[{setting, who, factor, patches, tes_invocations, compute_invocations, triangles, visible_triangles, gpu_ms{median, min, max,
-mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low, high}, geometry_ratio{..}, construction_ms{..},
-tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name}, fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[],
-geometry[]}}], growth[{setting, who, factor, geometry{value, low, high}, gpu{..}, bytes}], break_even[{..}], views[{..}],
-preset{name, title, note}, published[], changes[{setting, who, factor, what, old_ms, new_ms, ratio{value, low, high},
-confidence, machine{low, high}}], recording[{mesh, who, crowd, models, prepare_ms{median, min, max, mad}, draw_ms{..}, frame_ms{..}}];
+instances, passes[], frames, warm_up, patches, refine}, meshes[{name, of, copies, vertices, faces, patches{kind}}],
+left_out[{setting, who, factor, why}], rows[{setting, who, factor, patches, tes_invocations, compute_invocations, triangles,
+visible_triangles, gpu_ms{median, min, max, mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low, high},
+geometry_ratio{..}, construction_ms{..}, tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name},
+fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[], geometry[]}}], growth[{setting, who, factor, geometry{value, low, high},
+gpu{..}, bytes}], break_even[{..}], views[{..}], preset{name, title, note}, published[], changes[{setting, who, factor,
+what, old_ms, new_ms, ratio{value, low, high}, confidence, machine{low, high}}], recording[{mesh, who, crowd, models,
+prepare_ms{median, min, max, mad}, draw_ms{..}, frame_ms{..}}];
 setting: mesh, spacing, motion, view, passes; who: scheme, construction, path, normals, cull.
 
 Examples:

@@ -1,7 +1,7 @@
 //! Results of two days side by side.
 //!
 //! The frames of a run tell how sure a difference between two runs is, not what made it: between them, a machine drifts by
-//! more than within each. The floors, of which nothing here is under test, tell how far it did.
+//! more than within each. The floors, which no change of the crate makes faster or slower, tell how far it did.
 
 use super::super::error::CliError;
 use super::super::output::note;

@@ -82,7 +82,7 @@ pub(super) fn recording(recording: &[Recorded]) -> Result<(), CliError> {
         let Who { scheme, construction, .. } = who;
         let [prepare, draw, frame] = [prepare_ms, draw_ms, frame_ms].map(|&Times { median, mad, .. }| {
             let [median, mad] = [median, mad].map(|ms| 1e3 * ms);
-            format!("{median:.1} ±{mad:.1}")
+            format!("{median:.2} ±{mad:.2}")
         });
         table.row([mesh, scheme, construction, &who.path_label(), crowd, models, &prepare, &draw, &frame]);
     }

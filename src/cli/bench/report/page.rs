@@ -100,7 +100,7 @@ fn time(Times { median, min, max, .. }: Times) -> Markup {
 }
 
 fn microseconds(Times { median, min, max, .. }: Times) -> Markup {
-    let [median, min, max] = [median, min, max].map(|ms| format!("{:.1}", 1e3 * ms));
+    let [median, min, max] = [median, min, max].map(|ms| format!("{:.2}", 1e3 * ms));
     html! { td title=(format!("{min} to {max}")) { (median) } }
 }
 
@@ -234,7 +234,8 @@ use</b>: pipelines, and the first frame with them; drivers may find them compile
 <b>evaluations</b>, <b>compute</b>: invocations of evaluation and compute shaders in a frame.</li>
 <li><b>sure</b>: that the frames of both runs differ, whatever made them. It holds the noise within each run, not the drift
 of the machine between them; the floors, which no change of the program makes faster or slower, tell of that: <b>faster</b>
-and <b>slower</b> are rows whose interval is wholly outside of what the intervals of all floors reach.</li>
+and <b>slower</b> are rows whose interval is wholly outside of what the intervals of all floors reach. Few floors
+reach less far than a machine may drift: the more factors, the surer.</li>
 <li><b>views</b>: of each, the time of a triangle that clipping leaves, over that in the first. <b>passes</b>: where the
 times of evaluating once by compute and of tessellating in every pass cross. <b>growth</b>: the power of patches, over copies of a
 mesh. Each with
