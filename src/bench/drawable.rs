@@ -7,14 +7,16 @@ use crate::renderer::{ModelOptions, TableBytes, View};
 use ash::vk;
 use std::time::Instant;
 
-/// What there is to do before the first frame, in milliseconds.
+/// What there is to do before the first frame, in milliseconds; of tables and upload of the renderer's own paths the median
+/// of several times.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Setup {
     /// Everything that the GPU reads, out of the mesh: topology, plan and tables; for a vertex buffer its vertices.
     pub tables: f64,
-    /// Buffers and copies to the device.
+    /// Buffers, copies to the device, and control points that are kept, with pipelines that are there and have been used.
     pub upload: f64,
-    /// Pipelines, once for all models.
+    /// Pipelines, once for all models, and a first model with its copies and control points: some drivers compile compute
+    /// shaders when they are used.
     pub pipelines: f64,
     /// The first frame with new pipelines, at factor 1, once with pixels and once without.
     pub first_frame: f64,

@@ -12,8 +12,10 @@
 //! * **fence**: for each of the two, on the host's clock: recording, submission, and the wait for the fence.
 //! * **construction**: geometry at factor 1 less that of the bilinear floor at factor 1: making the control points, and
 //!   evaluating the corners of a patch rather than passing them on. No device tells the stages of a draw apart more
-//!   closely. Not of models that stand [still](Motion).
-//! * **set-up**: tables from the mesh, then buffers and copies to the device; pipelines are not in it, but in:
+//!   closely. Of paths through the tessellation stages, which are the floor's, and not of models that stand
+//!   [still](Motion).
+//! * **set-up**: tables from the mesh, then buffers, copies to the device and control points that are kept, each the median
+//!   of several; pipelines are not in it, but in:
 //! * **first use**: making the pipelines, and the first frame with them, in which some drivers compile. Drivers keep what
 //!   they compiled on the disk: for a first use in truth, switch that off (Mesa: `MESA_SHADER_CACHE_DISABLE=1`).
 //! * **recording** ([`Bench::recording`]): what the host takes to record a frame of many models.
@@ -134,6 +136,11 @@ impl Path {
     /// Whether it is there to compare with only: ACC as published.
     pub(super) fn is_published_acc(self) -> bool {
         matches!(self, Self::AccPublished | Self::AccPublishedInstanced)
+    }
+
+    /// Whether it draws through the tessellation stages.
+    pub(super) fn tessellates(self) -> bool {
+        self == Self::Bilinear || self.evaluation() == Some(Evaluation::Tessellation)
     }
 
     /// Whether it does less than draw the surface from control vertices that move: what the others cannot get below.

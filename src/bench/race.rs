@@ -3,7 +3,7 @@
 use super::drawable::{Drawable, Frame, Lane, Pass, VERTEX_BYTES};
 use super::floors::device_buffer;
 use super::scene::Scene;
-use super::{BenchError, BenchOptions, Contestant, Motion, Row, Series, Setup, Subject, Traffic};
+use super::{BenchError, BenchOptions, Contestant, Motion, Path, Row, Series, Setup, Subject, Traffic};
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Statistics};
 use crate::measure::statistics::{Estimate, FEWEST, paired_difference};
 use ash::vk;
@@ -75,9 +75,13 @@ impl<'h> Bench<'h> {
 
     /// How many frames a race of so many contestants draws.
     pub fn frames(&self, contestants: usize) -> u64 {
-        let rounds = u64::from(self.options.frames + self.options.warm_up);
         let drawn = self.options.cameras.len() as u64 * 2 * self.options.factors.len() as u64;
-        contestants as u64 * rounds * (u64::from(self.options.motion == Motion::Moving) + drawn)
+        contestants as u64 * self.rounds() * (u64::from(self.options.motion == Motion::Moving) + drawn)
+    }
+
+    /// Frames that each contestant draws of a kind, with those that do not count.
+    fn rounds(&self) -> u64 {
+        u64::from(self.options.frames + self.options.warm_up)
     }
 
     /// Races on one mesh, factor by factor.
@@ -91,7 +95,6 @@ impl<'h> Bench<'h> {
         contestants: &[Contestant],
         mut tell: impl FnMut(Event),
     ) -> Result<(), BenchError> {
-        let rounds = u64::from(self.options.frames + self.options.warm_up);
         let lane = self.lane(subject);
         let scenes = self.scenes(subject);
         let mut runners = Vec::new();
@@ -111,7 +114,7 @@ impl<'h> Bench<'h> {
                 match runner.drawable.set_factor(factor) {
                     Err(error) if error.leaves_out() => {
                         tell(Event::LeftOut(runner.contestant, Some(factor), error));
-                        tell(Event::Frames(scenes.len() as u64 * 2 * rounds));
+                        tell(Event::Frames(scenes.len() as u64 * 2 * self.rounds()));
                     }
                     Ok(()) => racing.push(runner),
                     Err(error) => return Err(error),
@@ -178,7 +181,7 @@ impl<'h> Bench<'h> {
         Ok(Runner { contestant, drawable, first_frame, construction: None })
     }
 
-    /// What making the control points takes: factor 1, less the same of the bilinear floor.
+    /// What making the control points takes: factor 1, less the same of the bilinear floor, which goes through the same stages.
     fn construction(
         &self,
         runners: &mut [Runner],
@@ -188,13 +191,17 @@ impl<'h> Bench<'h> {
         if self.options.motion == Motion::Still {
             return Ok(());
         }
-        let mut all: Vec<&mut Runner> = runners.iter_mut().collect();
-        let series = self.turns(&mut all, scenes, 1.0, &[Pass::Geometry], tell)?.swap_remove(0);
-        let floor = runners.iter().position(|runner| runner.contestant.path == super::Path::Bilinear);
-        let Some(floor) = floor.map(|index| series[index][0].device.clone()) else { return Ok(()) };
-        for (runner, series) in runners.iter_mut().zip(series).filter(|(runner, _)| !runner.contestant.path.is_floor())
-        {
-            runner.construction = paired_difference(&series[0].device, &floor);
+        let is_floor = |runner: &Runner| runner.contestant.path == Path::Bilinear;
+        let has_floor = runners.iter().any(is_floor);
+        let all = runners.len();
+        let drawn = |runner: &&mut Runner| has_floor && runner.contestant.path.tessellates();
+        let mut drawn: Vec<&mut Runner> = runners.iter_mut().filter(drawn).collect();
+        tell(Event::Frames(self.rounds() * (all - drawn.len()) as u64));
+        let series = self.turns(&mut drawn, scenes, 1.0, &[Pass::Geometry], tell)?.swap_remove(0);
+        let Some(floor) = drawn.iter().position(|runner| is_floor(runner)) else { return Ok(()) };
+        let floor = &series[floor][0].device;
+        for (runner, series) in drawn.iter_mut().zip(&series).filter(|(runner, _)| !is_floor(runner)) {
+            runner.construction = paired_difference(&series[0].device, floor);
         }
         Ok(())
     }

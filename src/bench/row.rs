@@ -36,8 +36,8 @@ pub struct Row {
     pub gpu: Series,
     /// Frames without rasterization.
     pub geometry: Series,
-    /// What making the control points takes, in milliseconds (see the module); `None` without the bilinear floor, for floors,
-    /// and if the vertices do not move.
+    /// What making the control points takes, in milliseconds (see the module); `None` without the bilinear floor, for floors
+    /// and paths without the tessellation stages, and if the vertices do not move.
     pub construction: Option<Estimate>,
     /// What went before the first frame.
     pub setup: Setup,

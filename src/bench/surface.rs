@@ -10,9 +10,9 @@ use crate::renderer::{
 use crate::topology::PatchKind;
 use ash::vk;
 
-/// Tables are built as often as fits into this many milliseconds, and at least once; the median counts.
-const TABLES_MS: f64 = 300.0;
-const TABLES_TIMES: usize = 7;
+/// Tables are built and uploaded as often as fits into this many milliseconds each, and at least once; the median counts.
+const SETUP_MS: f64 = 300.0;
+const SETUP_TIMES: usize = 7;
 
 pub(super) struct Surface {
     renderer: Renderer,
@@ -35,7 +35,7 @@ impl Surface {
         let model_options = contestant.model_options(lane);
         let ModelOptions { scheme, evaluation, .. } = model_options;
         let as_published = contestant.path.is_published_acc();
-        let (tables, tables_ms) = build_tables(lane, &model_options)?;
+        let (tables, tables_ms) = median_of(|| timed(|| ModelTables::new(&subject.mesh, &model_options)))?;
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
         let evaluations = vec![evaluation];
@@ -52,15 +52,32 @@ impl Surface {
         };
         let render_target = Target::dynamic(target.color, target.depth, target.samples);
         let positions = subject.mesh.positions_f32();
-        let spare = tables.clone();
-        let ((mut renderer, first), pipelines) = timed(|| {
+        let prepare = |renderer: &mut Renderer| {
+            // SAFETY: the command buffer is being recorded, outside rendering.
+            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })
+        };
+        let add = |renderer: &mut Renderer| {
+            let tables = tables.clone();
+            timed(|| {
+                let model = renderer.add_tables(tables, &positions, &model_options)?;
+                prepare(renderer)?;
+                Ok::<_, Error>(model)
+            })
+        };
+        let ((mut renderer, model), pipelines) = timed(|| {
             // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
             let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options)? };
-            let model = renderer.add_tables(spare, &positions, &model_options)?;
+            let (model, _) = add(&mut renderer)?;
             Ok::<_, Error>((renderer, model))
         })?;
-        // Once more, now that the pipelines are there.
-        renderer.remove_model(first)?;
+        // Others of the kind, now that the pipelines are there.
+        let ((), upload) = median_of(|| {
+            let (other, time) = add(&mut renderer)?;
+            renderer.remove_model(other)?;
+            // Its memory is freed here, and not in what is timed next.
+            prepare(&mut renderer)?;
+            Ok::<_, Error>(((), time))
+        })?;
         let bytes = tables.bytes();
         let patch_bytes = |kind| match kind {
             PatchKind::IrregularQuad if as_published => published::QUAD_BYTES,
@@ -72,12 +89,6 @@ impl Surface {
             Evaluation::Tessellation => PatchKind::ALL.map(bytes_of).iter().sum(),
             _ => 0,
         };
-        let (model, upload) = timed(|| {
-            let model = renderer.add_tables(tables, &positions, &model_options)?;
-            // SAFETY: the command buffer is being recorded, outside rendering.
-            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
-            Ok::<_, Error>(model)
-        })?;
         let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
         Ok(Self {
             renderer,
@@ -100,13 +111,14 @@ impl Surface {
     }
 }
 
-fn build_tables(lane: Lane, options: &ModelOptions) -> Result<(ModelTables, f64), BenchError> {
+/// The last of what some work gives, with the median of the times that it tells.
+fn median_of<R, E>(mut work: impl FnMut() -> Result<(R, f64), E>) -> Result<(R, f64), E> {
     let mut times = Vec::new();
     loop {
-        let (tables, time) = timed(|| ModelTables::new(&lane.subject.mesh, options))?;
+        let (done, time) = work()?;
         times.push(time);
-        if times.len() == TABLES_TIMES || times.iter().sum::<f64>() + time > TABLES_MS {
-            return Ok((tables, Summary::of(&times).map_or(0.0, |summary| summary.median)));
+        if times.len() == SETUP_TIMES || times.iter().sum::<f64>() + time > SETUP_MS {
+            return Ok((done, Summary::of(&times).map_or(0.0, |summary| summary.median)));
         }
     }
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Writes a small value to standard output, readable.
@@ -128,25 +128,49 @@ impl Drop for Progress {
     }
 }
 
-/// Writes a file beside `path` and then puts it in its place, so that nobody finds half of it. Makes missing folders.
-/// `write` says what went wrong without naming the file.
+/// A file that was written beside its place, so that nobody finds half of it there. Taken away again if it is dropped.
+pub(super) struct Part<'a> {
+    path: &'a Path,
+    part: PathBuf,
+}
+
+impl<'a> Part<'a> {
+    /// Makes missing folders. `write` says what went wrong without naming the file.
+    pub(super) fn write(path: &'a Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Result<Self, CliError> {
+        let Some(name) = path.file_name().filter(|_| !path.is_dir()) else {
+            return Err(about(path, "this is a folder: name a file"));
+        };
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|e| about(path, format!("its folder can't be made: {e}")))?;
+        }
+        let mut hidden = OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{}.part", std::process::id()));
+        let part = Self { path, part: path.with_file_name(hidden) };
+        write(&part.part).map_err(|message| about(path, message))?;
+        Ok(part)
+    }
+
+    /// Puts it in its place.
+    pub(super) fn keep(self) -> Result<(), CliError> {
+        std::fs::rename(&self.part, self.path).map_err(|e| about(self.path, e))
+    }
+}
+
+impl Drop for Part<'_> {
+    fn drop(&mut self) {
+        // After it was kept there is nothing to take away.
+        let _ = std::fs::remove_file(&self.part);
+    }
+}
+
+fn about(path: &Path, message: impl Display) -> CliError {
+    CliError::Work(format!("{}: {message}", path.display()))
+}
+
+/// Writes a file, whole or not at all: see [`Part`].
 pub(super) fn write_file(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Result<(), CliError> {
-    let error = |message: String| CliError::Work(format!("{}: {message}", path.display()));
-    let Some(name) = path.file_name().filter(|_| !path.is_dir()) else {
-        return Err(error("this is a folder: name a file".into()));
-    };
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|e| error(format!("its folder can't be made: {e}")))?;
-    }
-    let mut hidden = OsString::from(".");
-    hidden.push(name);
-    hidden.push(format!(".{}.part", std::process::id()));
-    let part = path.with_file_name(hidden);
-    let written = write(&part).and_then(|()| std::fs::rename(&part, path).map_err(|e| e.to_string()));
-    if written.is_err() {
-        let _ = std::fs::remove_file(&part);
-    }
-    written.map_err(error)
+    Part::write(path, write)?.keep()
 }
 
 /// A number for people, of at most four digits.

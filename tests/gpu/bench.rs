@@ -137,7 +137,7 @@ fn a_race_counts_what_was_drawn() {
         // Six vectors of each corner, and its cosine.
         let bytes = if contestant.path == Path::AccPublished { 6 * 12 + 4 } else { 12 * points };
         assert_eq!(row.traffic.control_points, 4 * bytes * 36);
-        assert_eq!(row.construction.is_some(), !contestant.path.is_floor());
+        assert_eq!(row.construction.is_some(), tessellated && !contestant.path.is_floor());
         for series in [&row.gpu, &row.geometry] {
             assert!(series.device.len() == 6 && series.device.iter().all(|&ms| ms > 0.0));
             assert!(series.host.iter().zip(&series.device).all(|(host, device)| host >= device));
@@ -173,7 +173,7 @@ fn contestants_that_cannot_are_left_out() {
         }
     };
     bench.race(&subject("cube"), &subdivision, tell).unwrap();
-    let why = "model 1: Uniform(3.0): subdivision has uniform factors of 1, 2, 4 and 8, for levels 0 to 3";
+    let why = "model 0: Uniform(3.0): subdivision has uniform factors of 1, 2, 4 and 8, for levels 0 to 3";
     assert_eq!(left, [(Some(3.0), why.to_owned())]);
     let few = Bench::new(&headless, BenchOptions { frames: 5, ..options() }).map(drop).unwrap_err();
     assert_eq!(few.to_string(), "BenchOptions::frames is 5: it must be at least 6");

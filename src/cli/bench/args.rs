@@ -4,7 +4,9 @@ use super::super::cull::{CullArg, cull};
 use super::super::error::CliError;
 use super::super::parse;
 use super::super::source::DeviceArgs;
+use super::facts::MeshOut;
 use super::presets::{self, Preset};
+use super::unique;
 use ash_subdiv::bench::{Camera, Contestant, Motion, Normals, Path, Subject, Subset};
 use ash_subdiv::mesh::{ReadOptions, read, replicate, shape};
 use ash_subdiv::renderer::Cull;
@@ -20,6 +22,9 @@ pub(in super::super) struct BenchArgs {
     /// A built-in shape, see `subdiv shapes`; several with commas. The creature if no mesh is given.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     shape: Vec<String>,
+    /// Take out vertices that belong to no face, instead of refusing the file (OBJ).
+    #[arg(long)]
+    drop_isolated: bool,
     /// Schemes, with commas; all if not given.
     #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::scheme())]
     schemes: Vec<Scheme>,
@@ -63,7 +68,7 @@ pub(in super::super) struct BenchArgs {
     replicate: Vec<u32>,
     /// Steps of Catmull-Clark refinement before patches are made.
     #[arg(long, value_name = "STEPS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
-    refine: u32,
+    pub(super) refine: u32,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = parse::size)]
     pub(super) size: [u32; 2],
@@ -75,7 +80,7 @@ pub(in super::super) struct BenchArgs {
     pub(super) warm_up: u32,
     /// Measure instead how long the host takes to record a frame of so many models: of one model drawn so many times, of so
     /// many models, and of as many whose vertices move; with --cull, also where compute looks what is seen.
-    #[arg(long, value_name = "MODELS", conflicts_with_all = ["csv", "preset", "compare", "results", "factors", "spacing", "instances", "passes", "motion", "view"], value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "MODELS", conflicts_with_all = ["preset", "compare", "results", "factors", "spacing", "instances", "passes", "motion", "view"], value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(super) recording: Option<u32>,
     /// Measure what a paper measured, and set its figures beside.
     #[arg(long, value_name = "NAME", value_parser = presets::parser())]
@@ -86,25 +91,33 @@ pub(in super::super) struct BenchArgs {
     /// Also write index.html, results.json and results.csv to this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) report: Option<PathBuf>,
-    /// Tell what became faster or slower since; what --json wrote.
+    /// Tell what became faster or slower since, by more than the floors did; what --json wrote.
     #[arg(long, value_name = "OLD.json")]
     pub(super) compare: Option<PathBuf>,
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "schemes", "constructions", "paths", "normals", "cull", "factors", "patches", "instances", "passes", "motion", "view", "replicate", "spacing"]
+        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "cull", "factors", "patches", "instances", "passes", "motion", "view", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]
     pub(super) device: DeviceArgs,
 }
 
+/// What shared normals go with.
+pub(super) const SHARED_NORMALS: &str = "shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass";
+
 const NOTES: &str = "\
 gpu:          milliseconds of a frame on the device, with pixels: median, and median distance from it.
 geometry:     the same without rasterization.
 x base:       the median of ratios to the first row, frame by frame, with the interval that holds it at 95 %.
-construction: control points alone: factor 1 less the bilinear floor at factor 1, without rasterization.
-set-up:       tables and upload, without pipelines.
+construction: control points alone: factor 1 less the bilinear floor at factor 1, without rasterization; of paths with the
+              tessellation stages, as the floor.
+set-up:       tables and upload, without pipelines; the median of several.
+sure:         of --compare: that the frames of both runs differ, whatever made them. It does not know that machines drift
+              between runs; floors, which no change here makes faster or slower, tell by how much: `faster` and `slower`
+              are rows whose interval is wholly outside of what the intervals of all floors reach. Measure them along,
+              at several factors: few floors reach less far than the machine may drift.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
 `compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one lattice for all patches, an
 instance for each, which the vertex shader evaluates; in `geometry` the geometry shader evaluates, in `geometry-two-pass` it
@@ -114,18 +127,20 @@ once a patch. The same surface, with the scheme acc and the construction two-sta
 `cached`, to be compared with `instanced`. --cull is for `tessellation` and `instanced`: with `cached`, compute shaders leave
 patches out before they are drawn, else the control shader does.
 Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of several counts of passes,
-`compute wins from` says where its time and that of tessellating in every pass cross. Of meshes of several sizes, `grows`
-says by which power of patches. `more` is more than what was measured can tell.
+`compute wins from` says where its time and that of tessellating in every pass cross. Of copies of a mesh (--replicate),
+`grows` says by which power of patches. `more` is more than what was measured can tell.
 `subdivision` refines faces in a geometry shader, at factors 1, 2, 4 and 8: levels 0 to 3.
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
 
 JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
-instances, passes[], frames, warm_up, patches}, meshes[{name, vertices, faces, patches{kind}}], left_out[{setting, who,
-factor, why}], rows[{setting, who, factor, patches, tes_invocations, triangles, visible_triangles, gpu_ms{median, min, max,
-mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low, high}, geometry_ratio{..}, construction_ms{..},
-tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name}, fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[],
-geometry[]}}], growth[{setting, who, factor, geometry{value, low, high}, gpu{..}, bytes}], break_even[{..}], views[{..}],
-published[], changes[], recording[{mesh, who, crowd, models, prepare_ms{median, min, max, mad}, draw_ms{..}, frame_ms{..}}];
+instances, passes[], frames, warm_up, patches, refine}, meshes[{name, of, copies, vertices, faces, patches{kind}}],
+left_out[{setting, who, factor, why}], rows[{setting, who, factor, patches, tes_invocations, compute_invocations, triangles,
+visible_triangles, gpu_ms{median, min, max, mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low, high},
+geometry_ratio{..}, construction_ms{..}, tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name},
+fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[], geometry[]}}], growth[{setting, who, factor, geometry{value, low, high},
+gpu{..}, bytes}], break_even[{..}], views[{..}], preset{name, title, note}, published[], changes[{setting, who, factor,
+what, old_ms, new_ms, ratio{value, low, high}, confidence, machine{low, high}}], recording[{mesh, who, crowd, models,
+prepare_ms{median, min, max, mad}, draw_ms{..}, frame_ms{..}}];
 setting: mesh, spacing, motion, view, passes; who: scheme, construction, path, normals, cull.
 
 Examples:
@@ -136,7 +151,8 @@ Examples:
   subdiv bench --paths tessellation,bilinear --normals own,shared --cull frustum --view fit,clipped
   subdiv bench --recording 1000
   subdiv bench --preset loop2009-table1
-  subdiv bench model.obj --json > today.json; subdiv bench model.obj --compare today.json";
+  subdiv bench model.obj --paths tessellation,bilinear,vertex-buffer --json > today.json
+  subdiv bench model.obj --paths tessellation,bilinear,vertex-buffer --compare today.json";
 
 fn frames(text: &str) -> Result<u32, String> {
     let fits = |n: &u32| (6..=100_000).contains(n);
@@ -164,6 +180,19 @@ impl BenchArgs {
         all.into_iter().flat_map(|contestant| contestant.variants(&normals, &culls)).collect()
     }
 
+    /// Notes on what is asked for and none of the contestants has.
+    pub(super) fn in_vain(&self, contestants: &[Contestant]) -> Vec<String> {
+        let mut notes = Vec::new();
+        if !self.cull.is_empty() && contestants.iter().all(|contestant| contestant.cull == Cull::NONE) {
+            notes.push("--cull changes nothing here: it is for the paths tessellation and instanced".into());
+        }
+        let shared = &Normals::Shared;
+        if self.normals.contains(shared) && contestants.iter().all(|contestant| contestant.normals != *shared) {
+            notes.push(format!("--normals shared changes nothing here: {SHARED_NORMALS}"));
+        }
+        notes
+    }
+
     pub(super) fn factors(&self) -> Vec<f32> {
         let given = if self.factors.is_empty() {
             self.preset.map_or(&[4.0, 8.0, 16.0, 32.0][..], |p| p.factors)
@@ -176,30 +205,34 @@ impl BenchArgs {
         factors
     }
 
-    pub(super) fn subjects(&self, patches: Subset) -> Result<Vec<Subject>, CliError> {
+    /// What is drawn, and what is told of it.
+    pub(super) fn subjects(&self, patches: Subset) -> Result<(Vec<Subject>, Vec<MeshOut>), CliError> {
+        let options = ReadOptions { drop_isolated: self.drop_isolated, ..ReadOptions::default() };
         let mut meshes: Vec<(String, ControlMesh)> = Vec::new();
         for path in &self.mesh {
             // Without its folder, where that is enough.
             let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
             let alone = self.mesh.iter().filter(|other| name(other) == name(path)).count() == 1;
             let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
-            meshes.push((name, read(path, &ReadOptions::default())?));
+            meshes.push((name, read(path, &options)?));
         }
         let creature = ["creature".to_owned()];
         for name in if self.mesh.is_empty() && self.shape.is_empty() { &creature } else { &self.shape[..] } {
             meshes.push((name.clone(), shape(name)?));
         }
-        let mut subjects = Vec::new();
-        for (name, mesh) in meshes {
-            for &copies in &self.replicate {
+        let (mut subjects, mut told) = (Vec::new(), Vec::new());
+        for (of, mesh) in meshes {
+            for copies in unique(&self.replicate, |&copies| copies) {
                 let (name, mesh) = match copies {
-                    1 => (name.clone(), mesh.clone()),
-                    _ => (format!("{name} x{copies}"), replicate(&mesh, lattice(copies), 1.25)?),
+                    1 => (of.clone(), mesh.clone()),
+                    _ => (format!("{of} x{copies}"), replicate(&mesh, lattice(copies), 1.25)?),
                 };
-                subjects.push(Subject::new(&name, mesh, self.refine, patches)?);
+                let subject = Subject::new(&name, mesh, self.refine, patches)?;
+                told.push(MeshOut::new(&subject, &of, copies));
+                subjects.push(subject);
             }
         }
-        Ok(subjects)
+        Ok((subjects, told))
     }
 }
 

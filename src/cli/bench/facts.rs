@@ -1,12 +1,12 @@
 //! What goes with the rows: the device, the options, the meshes, who did not run, and the command.
 
 use super::results::{Setting, Who};
+use super::unique;
 use ash_subdiv::bench::{BenchError, BenchOptions, Contestant, Subject, Subset};
 use ash_subdiv::gpu::{DeviceProperties, version_text};
 use ash_subdiv::topology::PatchKind;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fmt;
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct DeviceOut {
@@ -28,11 +28,18 @@ pub(super) struct OptionsOut {
     pub frames: u32,
     pub warm_up: u32,
     pub patches: String,
+    #[serde(default)]
+    pub refine: u32,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct MeshOut {
     pub name: String,
+    /// The mesh that this is so many copies of: by its own name, if one.
+    #[serde(default)]
+    pub of: String,
+    #[serde(default)]
+    pub copies: u32,
     pub vertices: usize,
     pub faces: usize,
     /// Those that are drawn, by kind.
@@ -57,15 +64,20 @@ pub(super) struct LeftOut {
 }
 
 impl OptionsOut {
-    pub(super) fn new(options: &BenchOptions, passes: &[u32], patches: Subset) -> Self {
+    pub(super) fn new(options: &BenchOptions, passes: Vec<u32>, patches: Subset, refine: u32) -> Self {
         let &BenchOptions { size, instances, frames, warm_up, .. } = options;
-        Self { size, instances, passes: passes.to_vec(), frames, warm_up, patches: patches.name().to_owned() }
+        Self { size, instances, passes, frames, warm_up, patches: patches.name().to_owned(), refine }
     }
 
     /// What the times of a row depend on besides its setting, as the program's options.
-    pub(super) fn alike(&self) -> [String; 3] {
-        let Self { size: [width, height], instances, patches, .. } = self;
-        [format!("--size {width}x{height}"), format!("--instances {instances}"), format!("--patches {patches}")]
+    pub(super) fn alike(&self) -> [String; 4] {
+        let Self { size: [width, height], instances, patches, refine, .. } = self;
+        [
+            format!("--size {width}x{height}"),
+            format!("--instances {instances}"),
+            format!("--patches {patches}"),
+            format!("--refine {refine}"),
+        ]
     }
 }
 
@@ -88,10 +100,13 @@ impl DeviceOut {
 }
 
 impl MeshOut {
-    pub(super) fn new(subject: &Subject) -> Self {
+    /// `of` by name, and how many times.
+    pub(super) fn new(subject: &Subject, of: &str, copies: u32) -> Self {
         let patches = PatchKind::ALL.map(|kind| (kind.name().to_owned(), subject.patch_count(kind)));
         Self {
             name: subject.name.clone(),
+            of: of.to_owned(),
+            copies,
             vertices: subject.mesh.vertex_count(),
             faces: subject.mesh.face_count(),
             patches: patches.into(),
@@ -99,6 +114,12 @@ impl MeshOut {
             thumbnail: None,
         }
     }
+}
+
+/// The mesh of which this one is copies; itself, if nothing is known of it.
+pub(super) fn original<'m>(meshes: &'m [MeshOut], name: &'m str) -> &'m str {
+    let of = meshes.iter().find(|mesh| mesh.name == name).map(|mesh| mesh.of.as_str());
+    of.filter(|of| !of.is_empty()).unwrap_or(name)
 }
 
 impl LeftOut {
@@ -119,15 +140,24 @@ impl LeftOut {
     }
 }
 
-impl fmt::Display for LeftOut {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { setting, who, factor, why } = self;
-        write!(f, "{}: {}", setting.mesh, who.label())?;
-        if let Some(factor) = factor {
-            write!(f, " at factor {factor}")?;
-        }
-        write!(f, " is left out: {why}")
+/// Those from `first` on by their reasons, without reasons that those before had: each as a sentence that names `most` of them.
+pub(super) fn left_out_by_reason(all: &[LeftOut], first: usize, most: usize) -> Vec<String> {
+    fn reason(left: &LeftOut) -> (&str, Option<f32>, &str) {
+        (&left.setting.mesh, left.factor, &left.why)
     }
+    let (before, new) = all.split_at(first);
+    let sentence = |(mesh, factor, why)| {
+        let alike: Vec<_> = new.iter().filter(|left| reason(left) == (mesh, factor, why)).collect();
+        let who = unique(&alike, |left| left.who.label());
+        let mut names = who[..who.len().min(most)].join(", ");
+        if who.len() > most {
+            names += &format!(" and {} more", who.len() - most);
+        }
+        let factor = factor.map_or_else(String::new, |factor| format!(" at factor {factor}"));
+        format!("{mesh}: {names} {} left out{factor}: {why}", if who.len() == 1 { "is" } else { "are" })
+    };
+    let is_new = |new: &(&str, Option<f32>, &str)| before.iter().all(|left| reason(left) != *new);
+    unique(new, reason).into_iter().filter(is_new).map(sentence).collect()
 }
 
 /// The arguments as a shell would take them.

@@ -1,5 +1,6 @@
 //! What rows say together: how time grows, from how many passes on compute wins, what a view that clips costs.
 
+use super::facts::{MeshOut, original};
 use super::results::{GEOMETRY, GPU, Interval, NONE, Row, Setting, Who};
 use ash_subdiv::Construction;
 use ash_subdiv::bench::Path;
@@ -10,7 +11,7 @@ use std::fmt;
 /// Lists are empty where the rows do not say anything of it.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct Findings {
-    /// The powers of patches by which time and bytes grow, over meshes of several sizes.
+    /// The powers of patches by which time and bytes grow, over copies of one mesh.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<Finding>,
     /// The passes from which on evaluation by compute is faster than this contestant, on straight lines between the
@@ -24,7 +25,7 @@ pub(super) struct Findings {
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Finding {
-    /// Of the last row that it is drawn from.
+    /// Of growth with the mesh that the others are copies of; of the counts of passes together with none.
     #[serde(flatten)]
     pub setting: Setting,
     #[serde(flatten)]
@@ -59,23 +60,19 @@ impl From<Interval> for Bounds {
 }
 
 impl Findings {
-    pub(super) fn of(rows: &[Row]) -> Self {
+    pub(super) fn of(rows: &[Row], meshes: &[MeshOut]) -> Self {
         let mut findings = Self::default();
-        // Each of those that differ in nothing but the mesh, the passes or the view is looked at once, with the first.
-        let first = |row: &Row, same: fn(&Setting) -> Setting| {
-            let alike = |other: &&Row| is_same(row, other, same);
-            rows.iter().find(alike).is_some_and(|first| std::ptr::eq(first, row))
-        };
-        for row in rows {
-            let alike = |same: fn(&Setting) -> Setting| rows.iter().filter(move |other| is_same(row, other, same));
-            if first(row, any_mesh) {
-                findings.growth.extend(growth_of(&alike(any_mesh).collect::<Vec<_>>()));
+        for (setting, alike) in groups(rows, |setting| any_size(setting, meshes)) {
+            findings.growth.extend(growth_of(&setting, &alike));
+        }
+        for (setting, alike) in groups(rows, any_passes) {
+            if alike[0].who.path == Path::Tessellation.name() {
+                findings.break_even.extend(break_even(&setting, &alike, rows));
             }
-            if first(row, any_passes) && row.who.path == Path::Tessellation.name() {
-                findings.break_even.extend(break_even(&alike(any_passes).collect::<Vec<_>>(), rows));
-            }
-            let base = alike(any_view).find(|other| other.setting.view == rows[0].setting.view);
-            findings.views.extend(base.and_then(|base| of_view(row, base)));
+        }
+        for (_, alike) in groups(rows, any_view) {
+            let base = alike.iter().find(|other| other.setting.view == rows[0].setting.view);
+            findings.views.extend(alike.iter().filter_map(|row| of_view(row, base?)));
         }
         findings
     }
@@ -90,11 +87,12 @@ impl Findings {
     }
 }
 
-fn any_mesh(setting: &Setting) -> Setting {
-    Setting { mesh: String::new(), ..setting.clone() }
+/// The same for all copies of a mesh.
+pub(super) fn any_size(setting: &Setting, meshes: &[MeshOut]) -> Setting {
+    Setting { mesh: original(meshes, &setting.mesh).to_owned(), ..setting.clone() }
 }
 
-fn any_passes(setting: &Setting) -> Setting {
+pub(super) fn any_passes(setting: &Setting) -> Setting {
     Setting { passes: 0, ..setting.clone() }
 }
 
@@ -102,34 +100,45 @@ fn any_view(setting: &Setting) -> Setting {
     Setting { view: String::new(), ..setting.clone() }
 }
 
-/// Whether two rows are of one contestant, and of one setting but for what `same` takes out.
-fn is_same(a: &Row, b: &Row, same: fn(&Setting) -> Setting) -> bool {
-    (&a.who, a.factor, same(&a.setting)) == (&b.who, b.factor, same(&b.setting))
+/// Rows of one contestant and factor, together where `same` makes their settings the same: with that setting.
+fn groups(rows: &[Row], same: impl Fn(&Setting) -> Setting) -> Vec<(Setting, Vec<&Row>)> {
+    let mut groups: Vec<(Setting, Vec<&Row>)> = Vec::new();
+    for row in rows {
+        let setting = same(&row.setting);
+        let is_same = |(of, alike): &&mut (Setting, Vec<&Row>)| {
+            *of == setting && (&alike[0].who, alike[0].factor) == (&row.who, row.factor)
+        };
+        match groups.iter_mut().find(is_same) {
+            Some((_, alike)) => alike.push(row),
+            None => groups.push((setting, vec![row])),
+        }
+    }
+    groups
 }
 
 /// Of both kinds of time.
-fn finding(last: &Row, of: impl Fn(&str) -> Option<Bounds>) -> Option<Finding> {
+fn finding(setting: &Setting, row: &Row, of: impl Fn(&str) -> Option<Bounds>) -> Option<Finding> {
     Some(Finding {
-        setting: last.setting.clone(),
-        who: last.who.clone(),
-        factor: last.factor,
+        setting: setting.clone(),
+        who: row.who.clone(),
+        factor: row.factor,
         geometry: of(GEOMETRY)?,
         gpu: of(GPU)?,
         bytes: None,
     })
 }
 
-fn growth_of(rows: &[&Row]) -> Option<Finding> {
+fn growth_of(setting: &Setting, rows: &[&Row]) -> Option<Finding> {
     let of = |what: &str| {
         let points: Vec<_> = rows.iter().map(|row| (row.patches as f64, row.frames(what))).collect();
         growth_by_rounds(&points).map(|power| Interval::from(power).into())
     };
     let bytes: Vec<_> = rows.iter().map(|row| (row.patches as f64, row.total_bytes() as f64)).collect();
-    Some(Finding { bytes: growth(&bytes), ..finding(rows.last()?, of)? })
+    Some(Finding { bytes: growth(&bytes), ..finding(setting, rows[0], of)? })
 }
 
 /// `rows` are of one that tessellates in every pass.
-fn break_even(rows: &[&Row], all: &[Row]) -> Option<Finding> {
+fn break_even(setting: &Setting, rows: &[&Row], all: &[Row]) -> Option<Finding> {
     let by_compute = |row: &Row| {
         let wanted = Who {
             construction: Construction::Cached.name().to_owned(),
@@ -151,8 +160,8 @@ fn break_even(rows: &[&Row], all: &[Row]) -> Option<Finding> {
         Some(Bounds { value, low, high })
     };
     // One count says nothing of others.
-    let (last, _) = pairs.get(1..)?.last()?;
-    finding(last, of)
+    pairs.get(1)?;
+    finding(setting, rows[0], of)
 }
 
 /// A row of another view than the first, `base`.
@@ -163,5 +172,5 @@ fn of_view(row: &Row, base: &Row) -> Option<Finding> {
         let ratio = paired_ratio(row.frames(what), base.frames(what))?;
         Some(Interval { value: ratio.value * fewer, low: ratio.low * fewer, high: ratio.high * fewer }.into())
     };
-    if row.setting.view == base.setting.view { None } else { finding(row, of) }
+    if row.setting.view == base.setting.view { None } else { finding(&row.setting, row, of) }
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `args` | what is asked for |
 //! | `results`, `facts` | what was measured, and on what, as it is written and read |
+//! | `columns` | the same as comma-separated values |
 //! | `findings` | what rows say together |
 //! | `text` | all of it as tables |
 //! | `recorded` | what the host takes to record a frame |
@@ -12,6 +13,7 @@
 //! | `report` | the same as one page, with plots |
 
 mod args;
+mod columns;
 mod compare;
 mod facts;
 mod findings;
@@ -25,25 +27,28 @@ use super::error::CliError;
 use super::output::{self, Progress, note};
 use super::parse;
 pub(super) use args::BenchArgs;
+use args::SHARED_NORMALS;
 use ash_subdiv::bench::{Bench, BenchError, BenchOptions, Contestant, Event, Path, Subject};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::measure::{ErrorOptions, surface_errors};
 use ash_subdiv::{Scheme, Spacing};
-use facts::{DeviceOut, LeftOut, MeshOut, OptionsOut};
+use facts::{DeviceOut, LeftOut, OptionsOut};
 use findings::Findings;
 use results::{Results, Row};
 use std::collections::BTreeMap;
 
 pub(super) fn run(args: &BenchArgs, json: bool) -> Result<(), CliError> {
     let old = args.compare.as_deref().map(Results::read).transpose()?;
+    args.report.as_deref().map_or(Ok(()), report::prepare)?;
     let mut results = match &args.results {
         Some(path) => Results::read(path)?,
-        None => args.measure(!json && !args.csv)?,
+        None => args.measure(old.as_ref(), !json && !args.csv)?,
     };
     if let Some(preset) = args.preset {
         results.published = preset.beside(&results.rows);
+        results.preset = Some(preset.about(&results.published));
     }
-    results.findings = Findings::of(&results.rows);
+    results.findings = Findings::of(&results.rows, &results.meshes);
     results.changes = old.map(|old| compare::changes(&old, &results)).transpose()?;
     if let Some(folder) = &args.report {
         report::write(folder, &results)?;
@@ -52,37 +57,29 @@ pub(super) fn run(args: &BenchArgs, json: bool) -> Result<(), CliError> {
         return output::json_pretty(&results);
     }
     if args.csv {
-        return output::with_stdout(|out| results.write_csv(out));
+        return output::with_stdout(|out| columns::write_csv(&results, out));
     }
     if args.results.is_some() {
         text::rows(&results.rows)?;
     }
     text::recording(&results.recording)?;
     text::findings(&results.findings)?;
-    text::published(args.preset, &results.published)?;
+    text::published(results.preset.as_ref(), &results.published)?;
     results.changes.as_deref().map_or(Ok(()), text::changes)
 }
 
 impl BenchArgs {
-    /// Measures; prints tables as they come if `show`.
-    fn measure(&self, show: bool) -> Result<Results, CliError> {
+    /// Measures what can be set beside `old`; prints tables as they come if `show`.
+    fn measure(&self, old: Option<&Results>, show: bool) -> Result<Results, CliError> {
         let progress = Progress::new("reading meshes");
         let patches = self.patches.or(self.preset.map(|p| p.patches)).unwrap_or_default();
-        let subjects = self.subjects(patches)?;
+        let (subjects, meshes) = self.subjects(patches)?;
         drop(progress);
         let contestants = self.contestants();
         if contestants.is_empty() {
-            let rule = |path: &Path| {
-                let schemes = Some(path.schemes()).filter(|&schemes| schemes != Scheme::ALL).unwrap_or_default();
-                let constructions = path.constructions().iter().map(|construction| construction.name());
-                let names: Vec<_> = schemes.iter().map(|scheme| scheme.name()).chain(constructions).collect();
-                (!names.is_empty()).then(|| format!("{} goes with {}", path.name(), names.join(" and ")))
-            };
-            let mut rules: Vec<String> = self.paths.iter().filter_map(rule).collect();
-            rules.push("shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass".into());
-            let message = "none of --paths, --constructions, --schemes and --normals go together";
-            return Err(CliError::Usage(format!("{message}: {}", rules.join("; "))));
+            return Err(self.no_contestants());
         }
+        self.in_vain(&contestants).iter().for_each(note);
         let options = BenchOptions {
             factors: self.factors(),
             size: self.size,
@@ -92,16 +89,15 @@ impl BenchArgs {
             warm_up: self.warm_up,
             ..BenchOptions::default()
         };
+        let about = OptionsOut::new(&options, unique(&self.passes, |&passes| passes), patches, self.refine);
+        old.map_or(Ok(()), |old| compare::check(old, &about, &meshes))?;
         let mut results = self.device.run(|headless| {
-            let about = OptionsOut::new(&options, &unique(&self.passes, |&passes| passes), patches);
-            let mut results = Results::new(DeviceOut::new(headless.properties()), about);
-            for subject in &subjects {
-                let mut mesh = MeshOut::new(subject);
-                if self.report.is_some() {
+            let mut results = Results::new(DeviceOut::new(headless.properties()), about, meshes);
+            if self.report.is_some() {
+                for (subject, mesh) in subjects.iter().zip(&mut results.meshes) {
                     mesh.thumbnail = Some(report::thumbnail(headless, subject)?);
                     mesh.normal_error = normal_errors(subject)?;
                 }
-                results.meshes.push(mesh);
             }
             match self.recording {
                 Some(models) => recorded::record(headless, &subjects, &contestants, &options, models, &mut results)?,
@@ -114,6 +110,20 @@ impl BenchArgs {
             return Err(CliError::Work(format!("nothing could be measured{why}")));
         }
         Ok(results)
+    }
+
+    /// That what is asked for does not go together, and what does.
+    fn no_contestants(&self) -> CliError {
+        let rule = |path: &Path| {
+            let schemes = Some(path.schemes()).filter(|&schemes| schemes != Scheme::ALL).unwrap_or_default();
+            let constructions = path.constructions().iter().map(|construction| construction.name());
+            let names: Vec<_> = schemes.iter().map(|scheme| scheme.name()).chain(constructions).collect();
+            (!names.is_empty()).then(|| format!("{} goes with {}", path.name(), names.join(" and ")))
+        };
+        let mut rules: Vec<String> = self.paths.iter().filter_map(rule).collect();
+        rules.push(SHARED_NORMALS.into());
+        let message = "none of --paths, --constructions, --schemes and --normals go together";
+        CliError::Usage(format!("{message}: {}", rules.join("; ")))
     }
 
     fn race(
@@ -138,15 +148,15 @@ impl BenchArgs {
         let progress = Progress::bar("drawing", frames * subjects.len() as u64);
         for subject in subjects {
             for options in &races {
-                let mut printed = Ok(());
+                let (mut printed, mut told) = (Ok(()), results.left_out.len());
                 Bench::new(headless, options.clone())?.race(subject, contestants, |event| match event {
                     Event::Frames(frames) => progress.advance(frames),
                     Event::LeftOut(contestant, factor, error) => {
-                        let left = LeftOut::new(subject, options, contestant, factor, &error);
-                        progress.suspend(|| note(&left));
-                        results.left_out.push(left);
+                        results.left_out.push(LeftOut::new(subject, options, contestant, factor, &error));
                     }
                     Event::Rows(rows) => {
+                        results.left_out_notes(told).iter().for_each(|left| progress.note(left));
+                        told = results.left_out.len();
                         let rows = Row::all(subject, options, &rows);
                         if show && printed.is_ok() {
                             printed = progress.suspend(|| text::rows(&rows));

@@ -1,6 +1,7 @@
 //! What papers measured: the same measurement, and their figures.
 
 use super::results::{Row, Who};
+use super::unique;
 use ash_subdiv::bench::{Contestant, Path, Subset};
 use ash_subdiv::{Construction, Scheme};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -182,6 +183,15 @@ pub(super) fn parser() -> impl TypedValueParser<Value = &'static Preset> {
     })
 }
 
+/// What is told of a preset.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct PresetOut {
+    pub name: String,
+    pub title: String,
+    /// What the figures are, and why there are none.
+    pub note: String,
+}
+
 /// A published figure and what was measured in its place.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Beside {
@@ -191,7 +201,7 @@ pub(super) struct Beside {
     pub factor: f32,
     pub figure: f64,
     pub unit: String,
-    /// Of times, to the first figure of the mesh.
+    /// Of times, to the first figure of the mesh that something stands beside.
     pub published_ratio: f64,
     pub mesh: String,
     pub ms: f64,
@@ -200,6 +210,17 @@ pub(super) struct Beside {
 }
 
 impl Preset {
+    /// What is told of it where these figures are set beside.
+    pub(super) fn about(&self, beside: &[Beside]) -> PresetOut {
+        let mut note = self.note.to_owned();
+        if beside.is_empty() && !self.published.is_empty() {
+            let factors = unique(self.published, |published| published.3.to_string()).join(", ");
+            let path = self.paths[0].name();
+            note += &format!(" None of the figures is of what was measured: they are of factors {factors}, {path}.");
+        }
+        PresetOut { name: self.name.to_owned(), title: self.title.to_owned(), note }
+    }
+
     /// Each figure with each mesh measured; with the mesh of its name alone, where there is one.
     pub(super) fn beside(&self, rows: &[Row]) -> Vec<Beside> {
         let mut lines = Vec::new();
@@ -225,23 +246,21 @@ impl Preset {
             let row = rows.iter().find(wanted)?;
             Some((row, if self.geometry { row.geometry_ms.median } else { row.gpu_ms.median }))
         };
-        let Some((_, base)) = figures.first().and_then(row) else { return Vec::new() };
-        let published_base = self.unit.milliseconds(figures[0].4);
-        let line = |published: &Published| {
-            let (row, ms) = row(published)?;
-            Some(Beside {
-                published_mesh: published.0.to_owned(),
-                scheme: row.who.scheme.clone(),
-                construction: row.who.construction.clone(),
-                factor: row.factor,
-                figure: published.4,
-                unit: self.unit.name().to_owned(),
-                published_ratio: self.unit.milliseconds(published.4) / published_base,
-                mesh: row.setting.mesh.clone(),
-                ms,
-                ratio: ms / base,
-            })
+        let found: Vec<_> = figures.iter().filter_map(|published| Some((published, row(published)?))).collect();
+        let Some(&(first, (_, base))) = found.first() else { return Vec::new() };
+        let published_base = self.unit.milliseconds(first.4);
+        let line = |(published, (row, ms)): (&Published, (&Row, f64))| Beside {
+            published_mesh: published.0.to_owned(),
+            scheme: row.who.scheme.clone(),
+            construction: row.who.construction.clone(),
+            factor: row.factor,
+            figure: published.4,
+            unit: self.unit.name().to_owned(),
+            published_ratio: self.unit.milliseconds(published.4) / published_base,
+            mesh: row.setting.mesh.clone(),
+            ms,
+            ratio: ms / base,
         };
-        figures.iter().filter_map(line).collect()
+        found.into_iter().map(line).collect()
     }
 }

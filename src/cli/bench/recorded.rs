@@ -53,12 +53,11 @@ pub(super) fn record(
     let progress = Progress::bar("recording", (subjects.len() * contestants.len()) as u64);
     let bench = Bench::new(headless, options.clone())?;
     for subject in subjects {
+        let told = results.left_out.len();
         for &contestant in &contestants {
             match bench.recording(subject, contestant, models) {
                 Err(error) if error.leaves_out() => {
-                    let left = LeftOut::new(subject, options, contestant, None, &error);
-                    progress.note(&left);
-                    results.left_out.push(left);
+                    results.left_out.push(LeftOut::new(subject, options, contestant, None, &error));
                 }
                 recordings => {
                     let of = |recording: &Recording| Recorded::new(subject, contestant, models, recording);
@@ -67,6 +66,7 @@ pub(super) fn record(
             }
             progress.advance(1);
         }
+        results.left_out_notes(told).iter().for_each(|left| progress.note(left));
     }
     Ok(())
 }

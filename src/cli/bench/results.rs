@@ -1,18 +1,17 @@
-//! What was measured, as it is written to JSON and CSV and read again.
+//! What was measured, as it is written to JSON and read again.
 
 use super::super::cull;
 use super::super::error::CliError;
 use super::super::parse;
 use super::compare::Change;
-use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line};
+use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line, left_out_by_reason};
 use super::findings::Findings;
-use super::presets::Beside;
+use super::presets::{Beside, PresetOut};
 use super::recorded::Recorded;
 use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::Path;
 use std::time::SystemTime;
 
@@ -33,9 +32,12 @@ pub(super) struct Results {
     pub findings: Findings,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recording: Vec<Recorded>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preset: Option<PresetOut>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Beside>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Of these to others: not read again.
+    #[serde(default, skip_deserializing, skip_serializing_if = "Option::is_none")]
     pub changes: Option<Vec<Change>>,
 }
 
@@ -62,6 +64,7 @@ pub(super) struct Setting {
     pub spacing: String,
     pub motion: String,
     pub view: String,
+    /// Nought in what several counts say together.
     pub passes: u32,
 }
 
@@ -84,6 +87,7 @@ pub(super) struct Row {
     pub factor: f32,
     pub patches: u64,
     pub tes_invocations: Option<u64>,
+    pub compute_invocations: Option<u64>,
     pub triangles: Option<u64>,
     /// What clipping left of them.
     pub visible_triangles: Option<u64>,
@@ -110,21 +114,27 @@ pub(super) const GPU: &str = "gpu";
 pub(super) const GEOMETRY: &str = "geometry";
 
 impl Results {
-    pub(super) fn new(device: DeviceOut, options: OptionsOut) -> Self {
+    pub(super) fn new(device: DeviceOut, options: OptionsOut, meshes: Vec<MeshOut>) -> Self {
         Self {
             program: format!("subdiv {}", env!("CARGO_PKG_VERSION")),
             command: command_line(std::env::args()),
             measured: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
             device,
             options,
-            meshes: Vec::new(),
+            meshes,
             rows: Vec::new(),
             left_out: Vec::new(),
             findings: Findings::default(),
             recording: Vec::new(),
+            preset: None,
             published: Vec::new(),
             changes: None,
         }
+    }
+
+    /// What a user is told of those that are left out, from the `told`th on.
+    pub(super) fn left_out_notes(&self, told: usize) -> Vec<String> {
+        left_out_by_reason(&self.left_out, told, 3)
     }
 
     /// Reads what was written as JSON.
@@ -132,66 +142,6 @@ impl Results {
         let named = |message: String| CliError::Work(format!("{}: {message}", path.display()));
         let text = std::fs::read_to_string(path).map_err(|e| named(e.to_string()))?;
         serde_json::from_str(&text).map_err(|e| named(format!("not what `subdiv bench --json` writes: {e}")))
-    }
-
-    pub(super) fn write_csv(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let mut csv = csv::Writer::from_writer(out);
-        csv.write_record([
-            "mesh",
-            "scheme",
-            "construction",
-            "path",
-            "normals",
-            "cull",
-            "spacing",
-            "motion",
-            "view",
-            "passes",
-            "factor",
-            "patches",
-            "tes_invocations",
-            "triangles",
-            "visible_triangles",
-            "gpu_ms_median",
-            "gpu_ms_min",
-            "gpu_ms_max",
-            "geometry_ms_median",
-            "geometry_ms_min",
-            "geometry_ms_max",
-            "setup_ms",
-            "bytes",
-            "gpu_ratio",
-            "geometry_ratio",
-            "construction_ms",
-            "first_use_ms",
-            "traffic_bytes",
-        ])?;
-        for row in &self.rows {
-            let count = |count: Option<u64>| count.map(|n| n.to_string()).unwrap_or_default();
-            let value = |interval: Option<Interval>| interval.map(|i| i.value.to_string()).unwrap_or_default();
-            let (Setting { mesh, spacing, motion, view, passes }, who) = (&row.setting, &row.who);
-            let Who { scheme, construction, path, normals, cull } = who;
-            let names = [mesh, scheme, construction, path, normals, cull, spacing, motion, view].map(Clone::clone);
-            let numbers = [
-                passes.to_string(),
-                row.factor.to_string(),
-                row.patches.to_string(),
-                count(row.tes_invocations),
-                count(row.triangles),
-                count(row.visible_triangles),
-            ];
-            let times = [row.gpu_ms, row.geometry_ms].map(|t| [t.median, t.min, t.max].map(|t| t.to_string()));
-            csv.write_record(names.into_iter().chain(numbers).chain(times.into_iter().flatten()).chain([
-                row.setup_ms.to_string(),
-                row.total_bytes().to_string(),
-                value(row.gpu_ratio),
-                value(row.geometry_ratio),
-                value(row.construction_ms),
-                row.first_use_ms().to_string(),
-                row.traffic_total().to_string(),
-            ]))?;
-        }
-        Ok(csv.flush()?)
     }
 }
 
@@ -211,19 +161,31 @@ impl Setting {
         }
     }
 
-    /// What is not as always, after the spacing.
+    /// The spacing, and what is not as always.
     pub(super) fn title(&self) -> String {
-        let mut title = format!("{} spacing", self.spacing);
-        if self.motion != Motion::Moving.name() {
-            title += &format!(", {} vertices", self.motion);
-        }
-        if self.view != Camera::Fit.name() {
-            title += &format!(", {} view", self.view);
-        }
-        if self.passes > 1 {
-            title += &format!(", {} passes", self.passes);
-        }
-        title
+        self.title_among(&[])
+    }
+
+    /// Likewise, and that in which some of these rows differ.
+    pub(super) fn title_among(&self, rows: &[Row]) -> String {
+        let parts: [fn(&Self) -> Option<String>; 3] = [
+            |setting| Some(format!("{} vertices", setting.motion)),
+            |setting| Some(format!("{} view", setting.view)),
+            |setting| match setting.passes {
+                0 => None,
+                1 => Some("1 pass".into()),
+                passes => Some(format!("{passes} passes")),
+            },
+        ];
+        let (motion, view) = (Motion::Moving.name().to_owned(), Camera::Fit.name().to_owned());
+        let usual = Self { motion, view, passes: 1, ..self.clone() };
+        let told = |of: &fn(&Self) -> Option<String>| {
+            let own = of(self);
+            let is_told = own != of(&usual) || rows.iter().any(|row| of(&row.setting) != own);
+            own.filter(|_| is_told)
+        };
+        let told = parts.iter().filter_map(told);
+        [format!("{} spacing", self.spacing)].into_iter().chain(told).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -243,6 +205,11 @@ impl Who {
         let Self { scheme, construction, path, .. } = self;
         let named = [scheme, construction, path].into_iter().filter(|s| *s != NONE).map(String::as_str);
         named.chain(self.drawn()).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Whether it is one of what no change of this program makes faster or slower.
+    pub(super) fn is_floor(&self) -> bool {
+        bench::Path::ALL.iter().any(|path| path.is_floor() && path.name() == self.path)
     }
 
     /// The path, and what is not as always with it.
@@ -283,6 +250,7 @@ impl Row {
             factor: row.factor,
             patches: row.patches,
             tes_invocations: row.evaluations,
+            compute_invocations: row.computed,
             triangles: row.triangles,
             visible_triangles: row.visible,
             gpu_ms: Times::of(&row.gpu.device)?,

@@ -2,9 +2,9 @@
 
 use super::super::error::CliError;
 use super::super::output::{Table, with_stdout};
-use super::compare::Change;
+use super::compare::{Change, machine};
 use super::findings::{Finding, Findings};
-use super::presets::{Beside, Preset};
+use super::presets::{Beside, PresetOut};
 use super::recorded::Recorded;
 use super::results::{Interval, Row, Times, Who};
 
@@ -14,11 +14,12 @@ pub(super) fn rows(rows: &[Row]) -> Result<(), CliError> {
         let Row { setting, factor, patches, .. } = &group[0];
         let (mesh, title) = (&setting.mesh, setting.title());
         with_stdout(|out| Ok(writeln!(out, "{mesh}: {patches} patches, factor {factor}, {title}")?))?;
-        let mut table = Table::new(&[3, 4, 5, 6, 7, 8, 9]);
+        let mut table = Table::new(&[3, 4, 5, 6, 7, 8, 9, 10]);
         table.row([
             &"scheme",
             &"construction",
             &"path",
+            &"triangles",
             &"gpu ms",
             &"x base",
             &"geometry ms",
@@ -36,6 +37,7 @@ pub(super) fn rows(rows: &[Row]) -> Result<(), CliError> {
                 } else {
                     format!("{}, {} patches", row.who.path_label(), row.patches)
                 },
+                &row.triangles.map_or("-".into(), |n| n.to_string()),
                 &time(row.gpu_ms),
                 &ratio(row.gpu_ratio),
                 &time(row.geometry_ms),
@@ -72,13 +74,16 @@ pub(super) fn recording(recording: &[Recorded]) -> Result<(), CliError> {
         &"path",
         &"crowd",
         &"models",
-        &"prepare ms",
-        &"draw ms",
-        &"frame ms",
+        &"prepare µs",
+        &"draw µs",
+        &"frame µs",
     ]);
     for Recorded { mesh, who, crowd, models, prepare_ms, draw_ms, frame_ms } in recording {
         let Who { scheme, construction, .. } = who;
-        let [prepare, draw, frame] = [prepare_ms, draw_ms, frame_ms].map(|&times| time(times));
+        let [prepare, draw, frame] = [prepare_ms, draw_ms, frame_ms].map(|&Times { median, mad, .. }| {
+            let [median, mad] = [median, mad].map(|ms| 1e3 * ms);
+            format!("{median:.2} ±{mad:.2}")
+        });
         table.row([mesh, scheme, construction, &who.path_label(), crowd, models, &prepare, &draw, &frame]);
     }
     table.print()
@@ -109,9 +114,9 @@ pub(super) fn findings(findings: &Findings) -> Result<(), CliError> {
 }
 
 /// What a paper published beside what was measured.
-pub(super) fn published(preset: Option<&Preset>, beside: &[Beside]) -> Result<(), CliError> {
-    let Some(preset) = preset else { return Ok(()) };
-    with_stdout(|out| Ok(writeln!(out, "{}\n{}", preset.title, preset.note)?))?;
+pub(super) fn published(preset: Option<&PresetOut>, beside: &[Beside]) -> Result<(), CliError> {
+    let Some(PresetOut { title, note, .. }) = preset else { return Ok(()) };
+    with_stdout(|out| Ok(writeln!(out, "{title}\n{note}")?))?;
     if beside.is_empty() {
         return Ok(());
     }
@@ -135,6 +140,9 @@ pub(super) fn published(preset: Option<&Preset>, beside: &[Beside]) -> Result<()
 
 /// What became faster or slower.
 pub(super) fn changes(changes: &[Change]) -> Result<(), CliError> {
+    if let Some(machine) = machine(changes) {
+        with_stdout(|out| Ok(writeln!(out, "{machine}")?))?;
+    }
     let mut table = Table::new(&[4, 6, 7, 8, 9]);
     table.row([
         &"mesh",

@@ -50,6 +50,8 @@ fn bench_finds_from_how_many_passes_on_compute_wins() {
         assert_eq!(*never, json!({ "value": null, "low": null, "high": null }));
         assert_eq!(*always, json!({ "value": 1.0, "low": 1.0, "high": 1.0 }));
     }
+    // They are of all counts of passes together.
+    assert!(found.iter().all(|f| f["passes"] == 0) && text.contains("\ncube, equal spacing  "), "{text}");
     assert!(text.contains("\ncompute wins from so many passes on ") && text.contains("more (more to more)"), "{text}");
     assert_eq!(results["options"]["passes"], json!([1, 2, 4]));
     // One count says nothing of others.
@@ -61,46 +63,99 @@ fn bench_finds_from_how_many_passes_on_compute_wins() {
 fn bench_finds_how_time_and_bytes_grow() {
     let few =
         "--shape cube --factors 1 --schemes gregory --constructions two-stage --paths tessellation --replicate 1,2,4";
-    let (results, text) = found("bench-growth", few, |row| row["patches"].as_f64().unwrap().powf(1.25));
+    let (results, text) = self::found("bench-growth", few, |row| row["patches"].as_f64().unwrap().powf(1.25));
     let found = results["growth"].as_array().unwrap();
-    assert_eq!((found.len(), &found[0]["mesh"]), (1, &json!("cube x4")));
+    assert_eq!((found.len(), &found[0]["mesh"]), (1, &json!("cube")));
     assert!((found[0]["gpu"]["value"].as_f64().unwrap() - 1.25).abs() < 1e-9, "{}", found[0]);
     let bytes = found[0]["bytes"].as_f64().unwrap();
     assert!(bytes > 0.5 && bytes < 1.05, "{bytes}");
     assert!(text.contains("  1.25 (1.25 to 1.25)  "), "{text}");
+    let meshes = |key: &str| results["meshes"].as_array().unwrap().iter().map(|m| m[key].clone()).collect::<Vec<_>>();
+    assert_eq!((meshes("of"), meshes("copies")), (vec![json!("cube"); 3], vec![json!(1), json!(2), json!(4)]));
+    // Of meshes that have nothing to do with each other, it says nothing.
+    let others = few.replace("--shape cube", "--shape cube,torus").replace("1,2,4", "1");
+    let (results, _) = self::found("bench-no-growth", &others, |row| row["patches"].as_f64().unwrap());
+    assert_eq!(results.get("growth"), None);
 }
 
 #[test]
-fn bench_tells_what_changed() {
+fn bench_tells_what_changed_by_more_than_the_machine_did() {
     let folder = folder("bench-compare");
-    let few = "--shape cube --factors 2 --paths tessellation,bilinear --schemes gregory --constructions stencil";
-    let (old, results) = measured(&folder, few);
-    let of = |results: &Value, name: &str, scale: f64| {
+    let few = "--shape cube --factors 2 --schemes gregory --constructions stencil --paths tessellation";
+    let (_, results) = measured(&folder, &format!("{few},bilinear,vertex-buffer"));
+    // Every frame its own, so that ranks are clear; and each as many times as long as a path is slower.
+    let of = |name: &str, slower: [(&str, f64); 3]| {
         let mut results = results.clone();
-        for row in results["rows"].as_array_mut().unwrap() {
-            // Every frame its own, so that ranks are clear.
-            let frames: Vec<f64> = (0..15).map(|i| scale * (1.0 + f64::from(i) / 50.0)).collect();
+        let rows = results["rows"].as_array_mut().unwrap();
+        rows.retain(|row| slower.iter().any(|(path, _)| row["path"] == *path));
+        for row in rows {
+            let scale = slower.iter().find(|(path, _)| row["path"] == *path).unwrap().1;
+            let frames: Vec<f64> = (0..15).map(|i| scale * (1.0 + f64::from(i) / 5000.0)).collect();
             row["frames_ms"] = json!({ "gpu": frames, "geometry": frames.iter().rev().collect::<Vec<_>>() });
         }
         let path = folder.join(name);
         fs::write(&path, results.to_string()).unwrap();
         path
     };
-    let [one, same, slow] =
-        [("one", 1.0), ("same", 1.001), ("slow", 1.5)].map(|(name, scale)| of(&results, name, scale));
-    let verdicts = |new: &Path, old: &Path| {
-        let text = run(&format!("bench --results {} --compare {}", new.display(), old.display()));
-        let text = String::from_utf8(text.stdout).unwrap();
-        ["faster", "slower", "the same"].map(|verdict| text.matches(&format!(" %  {verdict}\n")).count())
+    let all = |tessellation, bilinear, vertex_buffer| {
+        [("tessellation", tessellation), ("bilinear", bilinear), ("vertex-buffer", vertex_buffer)]
     };
-    assert_eq!(verdicts(&slow, &one), [0, 4, 0]);
-    assert_eq!(verdicts(&one, &slow), [4, 0, 0]);
-    assert_eq!(verdicts(&same, &one), [0, 0, 4]);
-    let changes = json(&format!("bench --results {} --compare {}", slow.display(), one.display()))["changes"].clone();
-    assert!((changes[0]["ratio"]["value"].as_f64().unwrap() - 1.5).abs() < 0.1, "{changes}");
-    assert!(changes[0]["confidence"].as_f64().unwrap() > 0.99);
+    let one = of("one", all(1.0, 1.0, 1.0));
+    // Of tessellation, bilinear and vertex-buffer, each with pixels and without; and what is told.
+    let compared = |new: &Path, old: &Path| {
+        let output = run(&format!("bench --results {} --compare {}", new.display(), old.display()));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let lines = text.lines().filter(|line| line.contains(" %  "));
+        let verdicts: Vec<_> = lines.map(|line| line.rsplit("  ").next().unwrap().to_owned()).collect();
+        (verdicts.join(", "), String::from_utf8(output.stderr).unwrap(), text)
+    };
+    let verdict = |slower| {
+        let (verdicts, told, text) = compared(&of("new", slower), &one);
+        assert!(
+            told.is_empty() && text.contains("\nthe machine itself, by its floors, new / old: gpu "),
+            "{told}{text}"
+        );
+        verdicts
+    };
+    let twice = |verdicts: [&str; 3]| verdicts.map(|verdict| format!("{verdict}, {verdict}")).join(", ");
+    // The machine became slower, and so is all; but only what is above or below all floors has changed.
+    assert_eq!(verdict(all(1.5, 1.6, 1.4)), twice(["the same", "slower", "slower"]));
+    assert_eq!(verdict(all(1.5, 1.3, 1.2)), twice(["slower"; 3]));
+    assert_eq!(verdict(all(0.8, 0.7, 1.3)), twice(["the same", "faster", "slower"]));
+    assert_eq!(verdict(all(0.5, 0.7, 1.3)), twice(["faster", "faster", "slower"]));
+    // One is always among what the machine may have done.
+    assert_eq!(verdict(all(1.02, 1.1, 1.1)), twice(["the same", "slower", "slower"]));
+    assert_eq!(verdict(all(0.9, 1.1, 1.1)), twice(["faster", "slower", "slower"]));
+    assert_eq!(verdict(all(1.0, 1.0, 1.0)), twice(["the same"; 3]));
 
-    let (other, _) = measured(&crate::folder("bench-other"), "--shape torus --factors 2 --paths bilinear");
+    let new = of("new", all(1.5, 1.3, 1.2));
+    let changes = json(&format!("bench --results {} --compare {}", new.display(), one.display()))["changes"].clone();
+    assert!((changes[0]["ratio"]["value"].as_f64().unwrap() - 1.5).abs() < 0.01, "{changes}");
+    assert!(changes[0]["confidence"].as_f64().unwrap() > 0.99);
+    assert!(
+        changes[0]["machine"]["low"] == 1.0 && (changes[0]["machine"]["high"].as_f64().unwrap() - 1.3).abs() < 0.01
+    );
+    assert_eq!(changes[2]["machine"], json!({ "low": 1.0, "high": 1.0 }));
+
+    // Without floors in both, a user is told that there is nothing to hold it against.
+    let (verdicts, told, _) = compared(&of("alone", [("tessellation", 1.5); 3]), &one);
+    assert_eq!(verdicts, "slower, slower");
+    assert!(told.starts_with("note: no floor is in both results, so a machine that became slower"), "{told}");
+}
+
+#[test]
+fn bench_compares_what_can_be_compared_and_says_so_before_it_measures() {
+    let few = "--factors 2 --paths bilinear";
+    let (old, _) = measured(&folder("bench-other"), &format!("--shape torus {few}"));
+    let compare = |arguments: &str, message: &str| {
+        fails(&format!("bench {SMALL} {arguments} {few} --compare {}", old.display()), 1, message);
+    };
+    let cannot = "the results to compare with are of";
+    compare("--shape cube,strip", &format!("{cannot} torus, these of cube, strip: measure the same meshes"));
+    let alike = |old, new| format!("{cannot} {old}, these of {new}: measure alike");
+    compare("--shape torus --refine 1", &alike("--refine 0", "--refine 1"));
+    compare("--shape torus --instances 2", &alike("--instances 1", "--instances 2"));
+    let (other, _) = measured(&folder("bench-factors"), "--shape torus --factors 3 --paths bilinear");
     fails(
         &format!("bench --results {} --compare {}", other.display(), old.display()),
         1,
@@ -136,4 +191,18 @@ fn presets_set_published_figures_beside() {
     assert_eq!(lines[0]["ms"], converted["rows"][0]["gpu_ms"]["median"]);
     let none = json(&format!("bench {SMALL} --shape cube --preset ni2008-table5 --factors 1 --paths tessellation"));
     assert_eq!((&none["options"]["instances"], none.get("published")), (&json!(9), None));
+
+    // Ratios are to the first figure that there is a row for; without any, a user is told.
+    let few = format!("bench {SMALL} --shape cube --preset loop2009-table1 --paths tessellation");
+    let at_six = json(&format!("{few} --factors 6"));
+    let factors: Vec<_> = at_six["published"].as_array().unwrap().iter().map(|line| &line["factor"]).collect();
+    assert_eq!((factors, &at_six["published"][0]["published_ratio"]), (vec![&json!(6.0); 2], &json!(1.0)));
+    let report = folder("bench-preset");
+    let text = run(&format!("{few} --factors 2 --report {}", report.display()));
+    let text = String::from_utf8(text.stdout).unwrap();
+    let page = fs::read_to_string(report.join("index.html")).unwrap();
+    let told = "Measured: geometry alone. None of the figures is of what was measured: they are of factors 10, 6, tessellation.";
+    for written in [text, page] {
+        assert!(written.contains("Loop, Schaefer, Ni, Castaño 2009, table 1") && written.contains(told), "{written}");
+    }
 }

@@ -22,10 +22,7 @@ fn measured(folder: &Path, arguments: &str) -> (PathBuf, Value) {
 fn bench_measures_every_path_on_every_kind_of_patch() {
     let results =
         json(&format!("bench {SMALL} --shape torus,tetrahedron --factors 3,1 --spacing odd,even --validation"));
-    assert_eq!(
-        keys(&results),
-        ["command", "device", "growth", "left_out", "measured", "meshes", "options", "program", "rows"]
-    );
+    assert_eq!(keys(&results), ["command", "device", "left_out", "measured", "meshes", "options", "program", "rows"]);
     assert!(results["command"].as_str().unwrap().starts_with("subdiv bench --size 32x32"), "{results}");
     assert_eq!(results["options"]["frames"], 6);
     // A torus in 5 schemes and 3 constructions and in ACC as published, a tetrahedron in 3 schemes; each in 2 floors, 2 spacings
@@ -41,6 +38,7 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
             keys(row),
             [
                 "bytes",
+                "compute_invocations",
                 "construction",
                 "construction_ms",
                 "cull",
@@ -79,6 +77,10 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
         assert!(row["bytes"]["total"].as_u64().unwrap() > 0 && row["triangles"].as_u64().unwrap() > 0);
         assert_eq!(length(&row["frames_ms"]["gpu"]), 6);
     }
+    // Less than a floor with the tessellation stages says nothing of paths without.
+    let tessellated = ["tessellation", "acc-published"].map(|path| json!(path));
+    assert!(rows.iter().all(|row| row["construction_ms"].is_null() != tessellated.contains(&row["path"])));
+    assert!(rows.iter().all(|row| (row["path"] == "compute") <= (row["compute_invocations"].as_u64() > Some(0))));
     // The first row of each group is what the others are compared with.
     assert_eq!(rows[0]["gpu_ratio"], json!({ "value": 1.0, "low": 1.0, "high": 1.0 }));
     assert_eq!((&rows[0]["factor"], &rows[0]["spacing"]), (&json!(1.0), &json!("odd")));
@@ -91,6 +93,7 @@ fn bench_writes_tables_and_csv() {
     let output = run(&format!("bench {SMALL} {few}"));
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.starts_with("cube: 6 patches, factor 2, equal spacing\nscheme "), "{text}");
+    assert!(text.lines().nth(2).unwrap().contains(" tessellation          48  "), "{text}");
     assert!(
         text.contains("\ngregory  two-stage ") && text.contains("\nnone     none          vertex-buffer"),
         "{text}"
@@ -179,8 +182,10 @@ fn bench_records_crowds() {
     assert!(text.starts_with("recorded ") && text.lines().count() == 7, "{text}");
     let page = fs::read_to_string(report.join("index.html")).unwrap();
     assert!(page.contains("What the host takes to record a frame"));
+    assert!(!page.contains("Plots") && !page.contains("<h2>Rows"));
+    let csv = fs::read_to_string(report.join("results.csv")).unwrap();
+    assert!(csv.starts_with("mesh,scheme,construction,path,normals,cull,crowd,models,") && csv.lines().count() == 7);
     fails("bench --recording 0", 2, "invalid value '0' for '--recording <MODELS>': 0 is not in 1..=100000");
-    fails("bench --recording 1 --csv", 2, "the argument '--recording <MODELS>' cannot be used with '--csv'");
 }
 
 #[test]
@@ -196,7 +201,40 @@ fn bench_draws_subsets_and_files() {
     let text = String::from_utf8(output.stdout).unwrap();
     // Commas in names are quoted.
     assert!(text.lines().nth(1).unwrap().starts_with("\"a cube, of mine.obj\",acc,stencil"), "{text}");
+    let alone = folder("bench-isolated").join("alone.obj");
+    fs::write(&alone, fs::read_to_string(&cube).unwrap() + "v 9 9 9\n").unwrap();
+    let few = format!("bench {SMALL} --factors 1 --paths bilinear {}", alone.display());
+    assert!(String::from_utf8_lossy(&run(&few).stderr).contains("vertex 8 belongs to no face"));
+    assert!(run(&format!("{few} --drop-isolated")).status.success());
     fails("bench --shape torus --patches irregular", 1, "torus: it has no irregular patches: choose others");
+}
+
+#[test]
+fn bench_says_what_is_left_out_once() {
+    let told = |arguments: &str| {
+        let output = run(&format!("bench {SMALL} --factors 1,2 {arguments}"));
+        assert!(output.status.success(), "{arguments}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let why = "face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as fallback";
+    let few = "--shape tetrahedron --schemes gregory,acc --constructions stencil,cached --paths";
+    assert_eq!(
+        told(&format!("{few} tessellation --spacing equal,odd")),
+        format!("note: tetrahedron: acc stencil tessellation, acc cached tessellation are left out: {why}\n")
+    );
+    assert_eq!(
+        told(&format!("{few} tessellation,instanced,compute --passes 1,2")),
+        format!(
+            "note: tetrahedron: acc stencil tessellation, acc cached tessellation, acc cached compute and 1 more are left out: {why}\n"
+        )
+    );
+    // What is asked for in vain.
+    assert_eq!(
+        told("--shape cube --paths bilinear --cull back"),
+        "note: --cull changes nothing here: it is for the paths tessellation and instanced\n"
+    );
+    let shared = told("--shape cube --paths tessellation --schemes pm --normals own,shared");
+    assert!(shared.starts_with("note: --normals shared changes nothing here: shared normals go with"), "{shared}");
 }
 
 #[test]

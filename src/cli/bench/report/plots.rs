@@ -2,6 +2,7 @@
 
 use super::super::super::error::CliError;
 use crate::cli::canvas::{FONT, load_font};
+use crate::cli::output::short;
 use ash_subdiv::Construction;
 use ash_subdiv::bench::Path;
 use plotters::coord::ranged1d::DefaultFormatting;
@@ -81,54 +82,73 @@ pub(super) const FLOOR: RGBColor = RGBColor(0x88, 0x88, 0x88);
 const SIZE: (u32, u32) = (560, 380);
 
 /// A plot with both axes logarithmic.
-///
-/// Marks along x are at `marks`, or at round numbers if there are none.
-pub(super) fn plot(x: &str, marks: &[f64], y: &str, lines: &[Line]) -> Result<String, CliError> {
-    let failed = |e: &dyn std::fmt::Display| CliError::Work(format!("the plot of {y} can't be drawn: {e}"));
-    load_font();
-    let mut svg = String::new();
-    let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-    let of = |axis: fn(&(f64, f64)) -> f64| range(lines.iter().flat_map(|line| &line.points).map(axis));
-    let mut chart = ChartBuilder::on(&area)
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(56)
-        .build_cartesian_2d(axis(of(|p| p.0), marks), axis(of(|p| p.1), &[]))
-        .map_err(|e| failed(&e))?;
-    let font = (FONT, 13).into_font();
-    chart
-        .configure_mesh()
-        .x_desc(x)
-        .y_desc(y)
-        .label_style(font.clone())
-        .axis_desc_style(font)
-        .bold_line_style(BLACK.mix(0.18))
-        .light_line_style(TRANSPARENT)
-        .x_label_formatter(&|x| number(*x))
-        .y_label_formatter(&|y| number(*y))
-        .draw()
-        .map_err(|e| failed(&e))?;
-    for Line { style: LineStyle { colour, dash, mark, width }, points } in lines {
-        let stroke = colour.stroke_width(*width);
-        let points = points.iter().copied();
-        let drawn = match *dash {
-            Some([dash, gap]) => chart.draw_series(DashedLineSeries::new(points.clone(), dash, gap, stroke)).map(drop),
-            None => chart.draw_series(LineSeries::new(points.clone(), stroke)).map(drop),
-        };
-        drawn.map_err(|e| failed(&e))?;
-        let fill = colour.mix(mark.opacity()).filled();
-        let outline: Vec<_> = mark.corners.iter().chain(mark.corners.first()).copied().collect();
-        let marks = points.map(|at| {
-            EmptyElement::at(at)
-                + Polygon::new(mark.corners, fill)
-                + PathElement::new(outline.clone(), colour.stroke_width(2))
-        });
-        chart.draw_series(marks).map_err(|e| failed(&e))?;
+pub(super) struct Plot<'a> {
+    /// What the axis along is of, as [`Plot::y`] the one upwards.
+    pub x: &'a str,
+    /// Marks along x; at round numbers if there are none.
+    pub marks: &'a [f64],
+    pub y: &'a str,
+    pub lines: &'a [Line],
+    /// Whether the points that no other beats in both are joined.
+    pub front: bool,
+}
+
+impl Plot<'_> {
+    pub(super) fn svg(&self) -> Result<String, CliError> {
+        let &Self { x, marks, y, lines, front: has_front } = self;
+        let failed = |e: &dyn std::fmt::Display| CliError::Work(format!("the plot of {y} can't be drawn: {e}"));
+        load_font();
+        let mut svg = String::new();
+        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let of = |axis: fn(&(f64, f64)) -> f64| range(lines.iter().flat_map(|line| &line.points).map(axis));
+        let (range_x, range_y) = (of(|p| p.0), of(|p| p.1));
+        let mut chart = ChartBuilder::on(&area)
+            .margin(12)
+            .x_label_area_size(40)
+            .y_label_area_size(56)
+            .build_cartesian_2d(axis(range_x.clone(), marks), axis(range_y.clone(), &[]))
+            .map_err(|e| failed(&e))?;
+        let font = (FONT, 13).into_font();
+        chart
+            .configure_mesh()
+            .x_desc(x)
+            .y_desc(y)
+            .label_style(font.clone())
+            .axis_desc_style(font)
+            .bold_line_style(BLACK.mix(0.18))
+            .light_line_style(TRANSPARENT)
+            .x_label_formatter(&|x| short(*x))
+            .y_label_formatter(&|y| short(*y))
+            .draw()
+            .map_err(|e| failed(&e))?;
+        if has_front {
+            let front = front(lines, &range_x, &range_y);
+            chart.draw_series(LineSeries::new(front, BLACK.stroke_width(1))).map_err(|e| failed(&e))?;
+        }
+        for Line { style: LineStyle { colour, dash, mark, width }, points } in lines {
+            let stroke = colour.stroke_width(*width);
+            let points = points.iter().copied();
+            let drawn = match *dash {
+                Some([dash, gap]) => {
+                    chart.draw_series(DashedLineSeries::new(points.clone(), dash, gap, stroke)).map(drop)
+                }
+                None => chart.draw_series(LineSeries::new(points.clone(), stroke)).map(drop),
+            };
+            drawn.map_err(|e| failed(&e))?;
+            let fill = colour.mix(mark.opacity()).filled();
+            let outline: Vec<_> = mark.corners.iter().chain(mark.corners.first()).copied().collect();
+            let marks = points.map(|at| {
+                EmptyElement::at(at)
+                    + Polygon::new(mark.corners, fill)
+                    + PathElement::new(outline.clone(), colour.stroke_width(2))
+            });
+            chart.draw_series(marks).map_err(|e| failed(&e))?;
+        }
+        area.present().map_err(|e| failed(&e))?;
+        drop(chart);
+        drop(area);
+        Ok(svg)
     }
-    area.present().map_err(|e| failed(&e))?;
-    drop(chart);
-    drop(area);
-    Ok(svg)
 }
 
 /// From a little below to a little above all values.
@@ -156,39 +176,52 @@ fn axis(range: Range<f64>, given: &[f64]) -> impl Ranged<ValueType = f64, Format
     range.log_scale().with_key_points(enough)
 }
 
-/// Two digits that count at least, without zeros that say nothing.
-fn number(x: f64) -> String {
-    let decimals = (1.0 - x.log10().floor()).clamp(0.0, 9.0) as usize;
-    let text = format!("{x:.decimals$}");
-    if x >= 1e5 {
-        format!("{x:.0e}")
-    } else if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+/// The front of what is worth choosing: through the points that no other is better than in both, from the upper edge of the
+/// range of `y` down to the first, and from the last to the right edge of the range of `x`.
+fn front(lines: &[Line], x: &Range<f64>, y: &Range<f64>) -> Vec<(f64, f64)> {
+    let mut points: Vec<(f64, f64)> = lines.iter().flat_map(|line| &line.points).copied().collect();
+    points.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut least = f64::INFINITY;
+    points.retain(|&(_, y)| {
+        let is_better = y < least;
+        least = least.min(y);
+        is_better
+    });
+    let (Some(&first), Some(&last)) = (points.first(), points.last()) else { return points };
+    [(first.0, y.end)].into_iter().chain(points).chain([(x.end, last.1)]).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn every_point_is_in_the_plot() {
-        let line = |mark, points: &[(f64, f64)]| Line {
-            style: LineStyle { colour: COLOURS[0], dash: None, mark: MARKS[mark], width: 2 },
-            points: points.to_vec(),
-        };
-        let svg =
-            plot("factor", &[4.0, 8.0], "ms", &[line(0, &[(4.0, 1.0), (8.0, 3.0)]), line(1, &[(4.0, 2.0)])]).unwrap();
-        assert_eq!(svg.matches("<polygon").count(), 3);
-        assert!(svg.starts_with("<svg") && svg.contains("factor") && svg.trim_end().ends_with("</svg>"));
-        assert!(plot("factor", &[], "ms", &[]).is_ok());
+    fn line(mark: usize, points: &[(f64, f64)]) -> Line {
+        let style = LineStyle { colour: COLOURS[0], dash: None, mark: MARKS[mark], width: 2 };
+        Line { style, points: points.to_vec() }
     }
 
     #[test]
-    fn numbers_are_short() {
-        let numbers = [0.0025, 0.05, 0.12, 1.0, 2.5, 10.0, 12.4, 1000.0, 1e6].map(number);
-        assert_eq!(numbers, ["0.0025", "0.05", "0.12", "1", "2.5", "10", "12", "1000", "1e6"]);
+    fn every_point_is_in_the_plot() {
+        let lines = [line(0, &[(4.0, 1.0), (8.0, 3.0)]), line(1, &[(4.0, 2.0)])];
+        let of = |lines, front| Plot { x: "factor", marks: &[4.0, 8.0], y: "ms", lines, front }.svg().unwrap();
+        let svg = of(&lines, false);
+        assert_eq!(svg.matches("<polygon").count(), 3);
+        assert!(svg.starts_with("<svg") && svg.contains("factor") && svg.trim_end().ends_with("</svg>"));
+        assert_eq!(of(&lines, true).matches("#000000").count(), svg.matches("#000000").count() + 1);
+        of(&[], true);
+    }
+
+    #[test]
+    fn fronts_join_what_none_beats() {
+        let points = [(4.0, 1.0), (1.0, 9.0), (1.5, 9.0), (2.0, 4.0), (3.0, 5.0), (5.0, 0.5), (1.0, 10.0)];
+        let front = front(&[line(0, &points)], &(0.5..8.0), &(0.1..20.0));
+        assert_eq!(front, [(1.0, 20.0), (1.0, 9.0), (2.0, 4.0), (4.0, 1.0), (5.0, 0.5), (8.0, 0.5)]);
+    }
+
+    #[test]
+    fn small_numbers_are_not_nought() {
+        let small = [line(0, &[(4.0, 2e-12), (8.0, 9e-11)])];
+        let svg = Plot { x: "factor", marks: &[4.0, 8.0], y: "rad", lines: &small, front: false }.svg().unwrap();
+        assert!(svg.contains("\n1e-11\n") && !svg.contains("\n0\n"), "{svg}");
     }
 }
