@@ -17,7 +17,7 @@ pub enum RenderTarget<'a> {
 }
 
 impl RenderTarget<'_> {
-    fn color_attachments(&self) -> usize {
+    pub(crate) fn color_attachments(&self) -> usize {
         match self {
             Self::Dynamic { color, .. } => color.len(),
             Self::RenderPass { color_attachments, .. } => *color_attachments as usize,

@@ -80,8 +80,8 @@ impl Renderer {
     /// [`Options::views_per_frame`](super::Options::views_per_frame). Items before the wrong one are recorded.
     ///
     /// # Safety
-    /// `cmd` is being recorded, inside rendering that fits [`Target`](super::Target), after [`Renderer::cmd_prepare`] of the same
-    /// frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`](super::Options::set_layouts).
+    /// `cmd` is being recorded, inside rendering that fits the [`Target`](super::Target) of the items' styles, after
+    /// [`Renderer::cmd_prepare`] of the same frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`](super::Options::set_layouts).
     pub unsafe fn cmd_draw(
         &mut self,
         cmd: vk::CommandBuffer,

@@ -11,6 +11,10 @@
 //!    irregular quads and triangles. As often as there are views. Or, to draw only what can be seen of models whose control points
 //!    are cached, [`Renderer::cmd_cull`] outside rendering and [`Renderer::cmd_draw_visible`] inside.
 //!
+//! Passes into other attachments, such as shadows, are draws in styles with a target of their own ([`Style::target`]), of the
+//! same models: what compute made of them is there for all. [`View::measured_from`] has a shadow be of the triangles that the eye
+//! sees, [`VisibleItems::in_style`] draws what one search found in several passes that show its view.
+//!
 //! | pass | reads | writes |
 //! |---|---|---|
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
@@ -30,7 +34,7 @@
 //! | TCS, cached | what VS has | control points, factors |
 //! | GS of models that are [`Evaluation::Subdivision`] | fans and their weights, positions | position, normal, texture coordinate; no TCS and TES |
 //! | TES | control points, the view | position, normal, texture coordinate |
-//! | FS | those, the view | the caller's attachments |
+//! | FS | those, the view | the caller's attachments; none of ours where there are none |
 //!
 //! Positions, rings, their weights and what is kept of them are texel buffers where the device has large ones, else storage buffers
 //! ([`DeviceProperties::reads_texels`](crate::gpu::DeviceProperties::reads_texels)).
@@ -58,6 +62,7 @@ mod stages;
 mod streamed;
 mod subdivision;
 mod tables;
+mod target;
 mod vertex_input;
 mod view;
 mod visible;
@@ -68,8 +73,9 @@ pub use error::Error;
 pub use evaluated::EvaluatedVertices;
 pub use factor::{Cull, Factor};
 pub use model_options::{Construction, Evaluation, ModelOptions};
-pub use options::{ColorEncoding, Fragment, Geometry, Options, Pass, Requirements, Style, Target, check, requirements};
+pub use options::{Fragment, Geometry, Options, Requirements, Style, check, requirements};
 pub use tables::{Edges, ModelTables, TableBytes};
+pub use target::{ColorEncoding, Pass, Target};
 pub use view::{MeasuredFrom, View};
 pub use visible::VisibleItems;
 
@@ -173,14 +179,14 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer for targets like `target`.
+    /// A renderer for targets like `target`, but for styles with one of their own ([`Style::target`]).
     ///
     /// # Errors
     /// [`Error::Unsupported`] if `context` was not made with what [`requirements`] asks for; failed Vulkan calls.
     ///
     /// # Safety
     /// * The handles in `target` and `options` are of the context's device and live as long as the renderer, and the
-    ///   caller's fragment shaders match the stage interface ([`Fragment`]) and `target`.
+    ///   caller's fragment shaders match the stage interface ([`Fragment`]) and the targets of their styles.
     /// * The renderer is dropped only when the device is done with all command buffers recorded with it.
     pub unsafe fn new(context: &Arc<DeviceContext>, target: &Target, options: &Options) -> Result<Self, Error> {
         // SAFETY: as the caller promises.

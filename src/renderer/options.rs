@@ -3,72 +3,9 @@
 use super::bindings::MODEL_BUFFERS;
 use super::pipelines::CONTROL_COMPONENTS;
 use super::visible::LIST_FEATURES;
-use super::{Error, Evaluation};
+use super::{Error, Evaluation, Pass, Target};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, shaders};
 use ash::vk;
-
-/// What the renderer draws into.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Target {
-    /// The rendering that is open when draws are recorded.
-    pub pass: Pass,
-    /// Samples a pixel.
-    pub samples: vk::SampleCountFlags,
-    /// What the values in the colour attachment mean.
-    pub encoding: ColorEncoding,
-    /// Whether there is a depth attachment; without one nothing is hidden by what lies in front.
-    pub depth: bool,
-}
-
-/// What the values that our fragment shaders write mean. Your own shaders write what they like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum ColorEncoding {
-    /// Linear light: for sRGB formats, which encode by themselves, and for high dynamic range.
-    #[default]
-    Linear,
-    /// sRGB, encoded by the shader: for formats such as `R8G8B8A8_UNORM` that are shown as sRGB. Blending is then not
-    /// linear.
-    Srgb,
-}
-
-/// The rendering that [`Renderer::cmd_draw`](super::Renderer::cmd_draw) is recorded in.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Pass {
-    /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
-    Dynamic {
-        /// Of each colour attachment. Fragments are written to the first.
-        color: Vec<vk::Format>,
-        /// Of the depth attachment.
-        depth: vk::Format,
-        /// Of the stencil attachment. The crate does not test or write stencils.
-        stencil: vk::Format,
-        /// As in `VkRenderingInfo`: 0 without multiview.
-        view_mask: u32,
-    },
-    /// A subpass that has this many colour attachments. The render pass must live as long as the renderer.
-    RenderPass {
-        /// The render pass, or one compatible with it.
-        render_pass: vk::RenderPass,
-        /// Its subpass that is drawn in.
-        subpass: u32,
-        /// How many colour attachments the subpass has.
-        color_attachments: u32,
-    },
-}
-
-impl Target {
-    /// Dynamic rendering into one colour attachment and one for depth.
-    pub fn dynamic(color: vk::Format, depth: vk::Format, samples: vk::SampleCountFlags) -> Self {
-        let pass = Pass::Dynamic { color: vec![color], depth, stencil: vk::Format::UNDEFINED, view_mask: 0 };
-        Self { pass, samples, encoding: ColorEncoding::Linear, depth: depth != vk::Format::UNDEFINED }
-    }
-
-    /// A subpass with one colour attachment and one for depth.
-    pub fn render_pass(render_pass: vk::RenderPass, subpass: u32, samples: vk::SampleCountFlags) -> Self {
-        let pass = Pass::RenderPass { render_pass, subpass, color_attachments: 1 };
-        Self { pass, samples, encoding: ColorEncoding::Linear, depth: true }
-    }
-}
 
 /// What of a model a [`Style`] draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -108,8 +45,11 @@ pub enum Fragment {
 pub struct Style {
     /// What of the model is drawn.
     pub geometry: Geometry,
-    /// How it is shaded.
+    /// How it is shaded. Where there are no colour attachments, shaders of the crate are left out; yours may discard.
     pub fragment: Fragment,
+    /// What is drawn into, if it is not what [`Renderer::new`](super::Renderer::new) was told: other passes over the same models,
+    /// such as shadows ([`Target::depth_only`]). Draws of the style are then recorded inside a rendering that fits this.
+    pub target: Option<Target>,
     /// Draw triangles as lines ([`Features::fill_mode_non_solid`]).
     pub wireframe: bool,
     /// The faces that are left out.
@@ -137,6 +77,7 @@ impl Default for Style {
         Self {
             geometry: Geometry::Surface,
             fragment: Fragment::Lit,
+            target: None,
             wireframe: false,
             cull: vk::CullModeFlags::NONE,
             front_face: vk::FrontFace::COUNTER_CLOCKWISE,
@@ -164,6 +105,11 @@ impl Style {
     /// The edges of the control mesh, over everything.
     pub fn cage() -> Self {
         Self { geometry: Geometry::ControlEdges, fragment: Fragment::Flat, depth: None, ..Self::default() }
+    }
+
+    /// What it draws into, by a renderer for `target`.
+    pub(super) fn target_or<'t>(&'t self, target: &'t Target) -> &'t Target {
+        self.target.as_ref().unwrap_or(target)
     }
 }
 
@@ -230,11 +176,16 @@ impl Requirements {
     }
 }
 
+/// The renderer's, and those that styles have of their own.
+fn targets<'t>(target: &'t Target, options: &'t Options) -> impl Iterator<Item = &'t Target> {
+    std::iter::once(target).chain(options.styles.iter().filter_map(|style| style.target.as_ref()))
+}
+
 /// What a device must be made with; ask before creating it.
 pub fn requirements(target: &Target, options: &Options) -> Requirements {
     let features = Features {
         tessellation: true,
-        dynamic_rendering: matches!(target.pass, Pass::Dynamic { .. }),
+        dynamic_rendering: targets(target, options).any(|t| matches!(t.pass, Pass::Dynamic { .. })),
         fill_mode_non_solid: options.styles.iter().any(|s| s.wireframe),
         wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
         ..if options.visible_lists { LIST_FEATURES } else { Features::NONE }
@@ -277,9 +228,14 @@ pub(super) fn check_properties(
         let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));
         missing.push(format!("Vulkan 1.3 (it has {major}.{minor})"));
     }
-    if !properties.sample_counts.contains(target.samples) {
-        let counts: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
-        missing.push(format!("{} samples a pixel (it has {})", target.samples.as_raw(), counts.join(", ")));
+    let mut counts: Vec<u32> = targets(target, options).map(|target| target.samples.as_raw()).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    for count in
+        counts.into_iter().filter(|&count| !properties.sample_counts.contains(vk::SampleCountFlags::from_raw(count)))
+    {
+        let has: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
+        missing.push(format!("{count} samples a pixel (it has {})", has.join(", ")));
     }
     for (what, least, has) in [
         // A list of patches besides; evaluation by compute has its vertices, too.

@@ -13,6 +13,7 @@ mod goldens;
 mod headless;
 mod lattices;
 mod module;
+mod passes;
 mod screen;
 mod seams;
 mod subdivision;
