@@ -53,6 +53,8 @@ features! {
     geometry = "geometryShader",
     /// Indirect draws that start at any instance: patches that compute shaders left out.
     indirect_first_instance = "drawIndirectFirstInstance",
+    /// Colour attachments that differ in how they are written: shaders of ours that write to the first only.
+    independent_blend = "independentBlend",
     /// `double` in shaders.
     float64 = "shaderFloat64",
     /// Anisotropic texture filtering.
@@ -75,6 +77,7 @@ impl Features {
         statistics: false,
         geometry: false,
         indirect_first_instance: false,
+        independent_blend: false,
         float64: false,
         anisotropy: false,
         transform_feedback: false,
@@ -111,6 +114,7 @@ impl Features {
             statistics: core.pipeline_statistics_query == vk::TRUE,
             geometry: core.geometry_shader == vk::TRUE,
             indirect_first_instance: core.draw_indirect_first_instance == vk::TRUE,
+            independent_blend: core.independent_blend == vk::TRUE,
             float64: core.shader_float64 == vk::TRUE,
             anisotropy: core.sampler_anisotropy == vk::TRUE,
             transform_feedback: feedback.transform_feedback == vk::TRUE,
@@ -141,6 +145,7 @@ impl Features {
             .pipeline_statistics_query(self.statistics)
             .geometry_shader(self.geometry)
             .draw_indirect_first_instance(self.indirect_first_instance)
+            .independent_blend(self.independent_blend)
             .shader_float64(self.float64)
             .sampler_anisotropy(self.anisotropy);
         let mut v13 = vk::PhysicalDeviceVulkan13Features::default()

@@ -111,6 +111,11 @@ impl Style {
     pub(super) fn target_or<'t>(&'t self, target: &'t Target) -> &'t Target {
         self.target.as_ref().unwrap_or(target)
     }
+
+    /// Whether there are colour attachments that its fragment shader, one of ours, knows nothing of.
+    pub(super) fn writes_first_only(&self, target: &Target) -> bool {
+        !matches!(self.fragment, Fragment::Spirv(_)) && target.render_target().color_attachments() > 1
+    }
 }
 
 /// What the renderer is to be able to do.
@@ -188,6 +193,7 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
         dynamic_rendering: targets(target, options).any(|t| matches!(t.pass, Pass::Dynamic { .. })),
         fill_mode_non_solid: options.styles.iter().any(|s| s.wireframe),
         wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
+        independent_blend: options.styles.iter().any(|s| s.writes_first_only(s.target_or(target))),
         ..if options.visible_lists { LIST_FEATURES } else { Features::NONE }
     };
     let features = options.evaluations.iter().fold(features, |all, evaluation| all.union(evaluation.features()));

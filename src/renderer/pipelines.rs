@@ -316,6 +316,7 @@ impl Pipelines {
             depth: if target.depth { style.depth } else { None },
             depth_bias: style.depth_bias,
             blend: style.blend,
+            first_color_only: style.writes_first_only(target),
             samples: target.samples,
             rasterizer_discard: style.rasterizer_discard,
             cache: self.cache,

@@ -27,19 +27,22 @@ pub enum ColorEncoding {
     Srgb,
 }
 
-/// The rendering that [`Renderer::cmd_draw`](super::Renderer::cmd_draw) is recorded in.
+/// The rendering that [`Renderer::cmd_draw`](super::Renderer::cmd_draw) is recorded in: without multiview, as the shaders know one
+/// view. Draw several, each into its own layer.
+///
+/// Of several colour attachments the crate's own fragment shaders write to the first, and the others stay as they are
+/// ([`Features::independent_blend`](crate::gpu::Features::independent_blend)); yours ([`Fragment::Spirv`](super::Fragment::Spirv))
+/// write to all.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pass {
     /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
     Dynamic {
-        /// Of each colour attachment. Fragments are written to the first.
+        /// Of each colour attachment.
         color: Vec<vk::Format>,
         /// Of the depth attachment.
         depth: vk::Format,
         /// Of the stencil attachment. The crate does not test or write stencils.
         stencil: vk::Format,
-        /// As in `VkRenderingInfo`: 0 without multiview.
-        view_mask: u32,
     },
     /// A subpass that has this many colour attachments. The render pass must live as long as the renderer.
     RenderPass {
@@ -55,13 +58,13 @@ pub enum Pass {
 impl Target {
     /// Dynamic rendering into one colour attachment and one for depth.
     pub fn dynamic(color: vk::Format, depth: vk::Format, samples: vk::SampleCountFlags) -> Self {
-        let pass = Pass::Dynamic { color: vec![color], depth, stencil: vk::Format::UNDEFINED, view_mask: 0 };
+        let pass = Pass::Dynamic { color: vec![color], depth, stencil: vk::Format::UNDEFINED };
         Self { pass, samples, encoding: ColorEncoding::Linear, depth: depth != vk::Format::UNDEFINED }
     }
 
     /// Dynamic rendering into an attachment for depth alone, such as of shadows.
     pub fn depth_only(depth: vk::Format, samples: vk::SampleCountFlags) -> Self {
-        let pass = Pass::Dynamic { color: Vec::new(), depth, stencil: vk::Format::UNDEFINED, view_mask: 0 };
+        let pass = Pass::Dynamic { color: Vec::new(), depth, stencil: vk::Format::UNDEFINED };
         Self { pass, samples, encoding: ColorEncoding::Linear, depth: true }
     }
 
@@ -74,8 +77,8 @@ impl Target {
     /// What pipelines are made for.
     pub(super) fn render_target(&self) -> RenderTarget<'_> {
         match &self.pass {
-            Pass::Dynamic { color, depth, stencil, view_mask } => {
-                RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: *view_mask }
+            Pass::Dynamic { color, depth, stencil } => {
+                RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: 0 }
             }
             &Pass::RenderPass { render_pass, subpass, color_attachments } => {
                 RenderTarget::RenderPass { render_pass, subpass, color_attachments }

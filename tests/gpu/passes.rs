@@ -111,6 +111,34 @@ fn a_callers_shader_cuts_holes_into_depth() {
     headless.finish_silent();
 }
 
+/// What nothing is written to stays.
+#[test]
+fn attachments_that_our_shaders_do_not_know_stay() {
+    let headless = common::headless();
+    let mesh = shape("creature").expect("built in");
+    let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
+    for dynamic in [true, false] {
+        let pass = PassTarget::with(&headless, EXTENT, 2, dynamic);
+        let two = Style { fragment: Fragment::Spirv(shaders::TWO_OUTPUTS_FRAG.to_vec()), ..Style::default() };
+        let options = Options { styles: vec![Style::default(), two], ..Options::default() };
+        assert!(requirements(&pass.target(), &options).features.independent_blend);
+        let mut renderer = renderer(&headless, &pass, &[], options);
+        let model = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
+        prepare(&headless, &mut renderer);
+        let mut drawn = |style| draw(&pass, &mut renderer, &view, &[DrawItem { style, ..DrawItem::new(model, 2.0) }]).0;
+        let of = |picture: &[u8], color: [u8; 4]| picture.chunks(4).filter(|pixel| *pixel == color).count();
+        let pixels = (EXTENT.width * EXTENT.height) as usize;
+        let ours = drawn(0);
+        let black = of(&ours[0], [0, 0, 0, 255]);
+        assert!(black > 0 && black < pixels);
+        assert_eq!(of(&ours[1], [0, 255, 0, 255]), pixels, "dynamic: {dynamic}");
+        let theirs = drawn(1);
+        assert_eq!(of(&theirs[0], [255, 0, 0, 255]), pixels - black);
+        assert_eq!(of(&theirs[1], [0, 0, 255, 255]), pixels - black);
+    }
+    headless.finish_silent();
+}
+
 #[test]
 fn every_target_is_checked() {
     let stage = Stage::new();
