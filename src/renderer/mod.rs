@@ -102,10 +102,17 @@ use model::{Model, Surroundings};
 use pipelines::Pipelines;
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Names a model of a [`Renderer`]. Never used again after the model is removed.
+/// Names a model of one [`Renderer`]; others do not know it. Never used again after the model is removed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ModelId(u64);
+pub struct ModelId {
+    renderer: u64,
+    number: u64,
+}
+
+/// How many renderers there were so far: each has a number of its own.
+static RENDERERS: AtomicU64 = AtomicU64::new(0);
 
 /// Bytes by what they are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -166,7 +173,7 @@ pub struct Renderer {
     pipelines: Pipelines,
     displacements: Displacements,
     models: HashMap<ModelId, Model>,
-    next_id: u64,
+    next_id: ModelId,
     retired: Vec<Retired>,
     views: Buffer,
     view_stride: u64,
@@ -222,7 +229,7 @@ impl Renderer {
             pipelines,
             displacements: Displacements::new(context)?,
             models: HashMap::new(),
-            next_id: 0,
+            next_id: ModelId { renderer: RENDERERS.fetch_add(1, Ordering::Relaxed), number: 0 },
             retired: Vec::new(),
             views,
             view_stride,
@@ -254,7 +261,7 @@ impl Renderer {
         positions: &[[f32; 3]],
         options: &ModelOptions,
     ) -> Result<ModelId, Error> {
-        let id = ModelId(self.next_id);
+        let id = self.next_id;
         if positions.len() != tables.control_vertices {
             return Err(Error::PositionCount { id, given: positions.len(), needed: tables.control_vertices });
         }
@@ -262,7 +269,7 @@ impl Renderer {
         let map = self.displacements.get(options.displacement)?;
         let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
         let model = Model::new(from, id, &options, tables, positions, map)?;
-        self.next_id += 1;
+        self.next_id.number += 1;
         self.models.insert(id, model);
         let made = self.make_pipelines(id, Factor::Uniform(1.0), Cull::NONE);
         made.inspect_err(|_| drop(self.models.remove(&id)))?;
