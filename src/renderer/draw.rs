@@ -6,6 +6,7 @@ use super::gpu_data::DrawConstants;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::stages::PatchStages;
+use super::view::is_size;
 use super::visible::ItemLists;
 use super::{Error, Evaluation, Geometry, ModelId, Renderer, Style, View, subdivision};
 use crate::gpu::{Domain, tessellated_vertices};
@@ -310,7 +311,7 @@ impl Renderer {
         if !factor.is_valid() {
             return Err(Error::BadFactor { id, factor });
         }
-        if view.measured().viewport.contains(&0.0) && (factor.needs_viewport() || item.cull.small) {
+        if !is_size(view.measured().viewport) && (factor.needs_viewport() || item.cull.small) {
             return Err(Error::NoViewport { id });
         }
         let [scale, bias] = item.displacement;

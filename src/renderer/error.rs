@@ -1,7 +1,9 @@
+use super::options::STYLE_SHADERS;
 use super::{Construction, DisplacementId, Evaluation, Factor, ModelId};
 use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 use crate::table::TableError;
+use ash::vk;
 
 /// What can go wrong in the renderer.
 #[allow(missing_docs, reason = "the messages say it")]
@@ -62,8 +64,8 @@ pub enum Error {
     NotConstructedBy { id: ModelId, evaluation: Evaluation, construction: Construction },
     #[error("model {}: its tables were built for Evaluation::{built:?}, not for {evaluation:?}: build them with the same options", id.number)]
     OtherTables { id: ModelId, built: Evaluation, evaluation: Evaluation },
-    #[error("model {}: its tables were built {} ModelOptions::displacement, unlike its options: build them with the same options", id.number, if *displaced { "with" } else { "without" })]
-    OtherDisplacement { id: ModelId, displaced: bool },
+    #[error("model {}: its tables were built {} ModelOptions::{option}, unlike its options: build them with the same options", id.number, if *built { "with" } else { "without" })]
+    OtherOption { id: ModelId, option: &'static str, built: bool },
     #[error("model {}: Evaluation::{evaluation:?} needs {}: name it in Options::evaluations and make the device with what requirements lists then, or choose another evaluation", id.number, missing.join(" and "))]
     EvaluationNeeds { id: ModelId, evaluation: Evaluation, missing: Vec<&'static str> },
     #[error("model {}: {factor:?}: Evaluation::{evaluation:?} has one factor for all edges: draw with a uniform one", id.number)]
@@ -82,12 +84,24 @@ pub enum Error {
     OtherSegments { id: ModelId, factor: Factor, segments: u32 },
     #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
     BadGrid { given: u32, max: u32 },
-    #[error(
-        "Options::shaders: {name}: there is no such shader to replace: gpu::shaders::ALL names those that there are"
-    )]
+    #[error("Options::shaders: {name}: there is no such shader to replace: {}", instead(name))]
     NoSuchShader { name: String },
+    #[error(
+        "{what} is no SPIR-V: give whole modules, as words in this machine's order of bytes (the first is 0x07230203)"
+    )]
+    NotSpirv { what: String },
+    #[error("Target::samples is {}: give one number of samples, such as TYPE_1", if given.is_empty() { "empty".into() } else { format!("{given:?}") })]
+    BadSamples { given: vk::SampleCountFlags },
     #[error("{what} of Options is {given}: it must be at least 1")]
     BadOption { what: &'static str, given: u32 },
+}
+
+fn instead(shader: &str) -> &'static str {
+    if shader.starts_with(STYLE_SHADERS) {
+        "fragment shaders are those of styles: set Style::fragment to Fragment::Spirv"
+    } else {
+        "gpu::shaders::ALL names those that there are"
+    }
 }
 
 fn constructions(evaluation: Evaluation) -> String {

@@ -87,6 +87,7 @@ pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
     stages::{reads_texels, spaced},
     subdivision::level as subdivision_level,
+    view::is_size,
 };
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, MAX_OFFSET_ALIGNMENT, MemoryLocation};
@@ -251,10 +252,10 @@ impl Renderer {
     }
 
     /// As [`Renderer::add_model`], with tables that were built elsewhere, such as on another thread, with the same
-    /// options.
+    /// options. Scheme, fallback, construction and refinement are those of the tables.
     ///
     /// # Errors
-    /// As [`Renderer::add_model`]; [`Error::PositionCount`]; [`Error::OtherTables`], [`Error::OtherDisplacement`].
+    /// As [`Renderer::add_model`]; [`Error::PositionCount`]; [`Error::OtherTables`], [`Error::OtherOption`].
     pub fn add_tables(
         &mut self,
         tables: ModelTables,

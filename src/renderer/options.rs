@@ -2,10 +2,14 @@
 
 use super::bindings::MODEL_BUFFERS;
 use super::pipelines::CONTROL_COMPONENTS;
+use super::stages::is_spirv;
 use super::visible::LIST_FEATURES;
 use super::{Error, Evaluation, Pass, Target};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, shaders};
 use ash::vk;
+
+/// How the names of shaders start that [`Style::fragment`] chooses from.
+pub(super) const STYLE_SHADERS: &str = "SHADE_";
 
 /// What of a model a [`Style`] draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -203,7 +207,8 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
 /// Tells whether a physical device can do what `options` ask.
 ///
 /// # Errors
-/// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::NoSuchShader`].
+/// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::BadSamples`],
+/// [`Error::NoSuchShader`], [`Error::NotSpirv`].
 ///
 /// # Safety
 /// `physical_device` comes from `instance`, whose version is at least 1.1.
@@ -218,12 +223,41 @@ pub unsafe fn check(
     check_properties(&properties, properties.features, target, options)
 }
 
+/// What no device could do.
+fn check_options(target: &Target, options: &Options) -> Result<(), Error> {
+    for (what, given) in [("frames_in_flight", options.frames_in_flight), ("views_per_frame", options.views_per_frame)]
+    {
+        if given == 0 {
+            return Err(Error::BadOption { what, given });
+        }
+    }
+    let mut samples = targets(target, options).map(|target| target.samples);
+    if let Some(given) = samples.find(|samples| samples.as_raw().count_ones() != 1) {
+        return Err(Error::BadSamples { given });
+    }
+    for (name, code) in &options.shaders {
+        if shaders::find(name).is_none() || name.starts_with(STYLE_SHADERS) {
+            return Err(Error::NoSuchShader { name: name.clone() });
+        }
+        if !is_spirv(code) {
+            return Err(Error::NotSpirv { what: format!("Options::shaders: {name}") });
+        }
+    }
+    for (number, style) in options.styles.iter().enumerate() {
+        if matches!(&style.fragment, Fragment::Spirv(code) if !is_spirv(code)) {
+            return Err(Error::NotSpirv { what: format!("Options::styles: Fragment::Spirv of style {number}") });
+        }
+    }
+    Ok(())
+}
+
 pub(super) fn check_properties(
     properties: &DeviceProperties,
     features: Features,
     target: &Target,
     options: &Options,
 ) -> Result<(), Error> {
+    check_options(target, options)?;
     let needed = requirements(target, options);
     let off = "(the device has it: enable it, and name it in ContextOptions::features)";
     let lacking = properties.features.missing(needed.features);
@@ -255,15 +289,6 @@ pub(super) fn check_properties(
     let width = options.styles.iter().map(|s| s.line_width).fold(0.0, f32::max);
     if width > 1.0 && width > properties.max_line_width {
         missing.push(format!("lines {width} pixels wide (it has {})", properties.max_line_width));
-    }
-    for (what, given) in [("frames_in_flight", options.frames_in_flight), ("views_per_frame", options.views_per_frame)]
-    {
-        if given == 0 {
-            return Err(Error::BadOption { what, given });
-        }
-    }
-    if let Some((name, _)) = options.shaders.iter().find(|(name, _)| shaders::find(name).is_none()) {
-        return Err(Error::NoSuchShader { name: name.clone() });
     }
     if missing.is_empty() { Ok(()) } else { Err(Error::Unsupported { device: properties.name.clone(), missing }) }
 }

@@ -14,11 +14,16 @@ pub struct View {
     /// Towards the light, in world space; any length but zero.
     pub light: [f32; 3],
     /// Width and height of the viewport in pixels, for factors in pixels ([`Factor`](super::Factor)) and for leaving out
-    /// small patches; zero if it is not known.
+    /// small patches; zeros if it is not known. What is not a finite number above 0 counts as not known.
     pub viewport: [f32; 2],
     /// What factors and culling go by, if not by this view itself: such as the main view for its shadows, so that both are of
     /// the same triangles (and then without culling), or a view that another one is to look at.
     pub measured_from: Option<MeasuredFrom>,
+}
+
+/// Whether the size of a viewport is known.
+pub(crate) fn is_size(viewport: [f32; 2]) -> bool {
+    viewport.iter().all(|&side| side > 0.0 && side.is_finite())
 }
 
 /// A view by which factors and culling go.

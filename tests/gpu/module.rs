@@ -294,6 +294,13 @@ fn wrong_use_is_told() {
         draw(&mut renderer, 0, item),
         "2 views were already drawn or culled in frame 0: raise Options::views_per_frame"
     );
+    // Another renderer's first model is not this one's.
+    let mut other = stage.renderer(&Options::default());
+    let error = other.set_positions(model, 0, &[[0.0; 3]; 8]).unwrap_err().to_string();
+    assert_eq!(error, "model 0: there is no such model: it was removed, or is another renderer's");
+    let first = other.add_model(&mesh, &ModelOptions::default()).unwrap();
+    assert!(first != model && other.set_positions(model, 0, &[[0.0; 3]; 8]).is_err());
+    drop(other);
     let error = renderer.set_positions(model, 0, &[[0.0; 3]; 7]).unwrap_err().to_string();
     assert_eq!(error, "model 0: 7 positions are given, but its control mesh has 8 vertices");
     let error = renderer.set_positions(model, 5, &[[0.0; 3]; 8]).unwrap_err().to_string();
@@ -330,13 +337,41 @@ fn what_a_device_lacks_is_named_at_once() {
         let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
         assert_eq!(error, format!("{what} of Options is 0: it must be at least 1"));
     }
-    let options = Options { shaders: vec![("EVALUATE_ACC".into(), Vec::new())], ..Options::default() };
     // SAFETY: as above.
-    let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
-    assert_eq!(
-        error,
-        "Options::shaders: EVALUATE_ACC: there is no such shader to replace: gpu::shaders::ALL names those that there are"
-    );
+    let told = |target: &Target, options| unsafe { check(instance, device, target, &options) }.unwrap_err().to_string();
+    let code = shaders::TEXCOORD_FRAG;
+    let no_spirv = "give whole modules, as words in this machine's order of bytes (the first is 0x07230203)";
+    for (name, code, expected) in [
+        (
+            "EVALUATE_ACC",
+            code,
+            ": there is no such shader to replace: gpu::shaders::ALL names those that there are".to_owned(),
+        ),
+        (
+            "SHADE_LIT_FRAG",
+            code,
+            ": there is no such shader to replace: fragment shaders are those of styles: set Style::fragment to \
+             Fragment::Spirv"
+                .to_owned(),
+        ),
+        ("EVALUATE_ACC_TESE", &[], format!(" is no SPIR-V: {no_spirv}")),
+    ] {
+        let options = Options { shaders: vec![(name.into(), code.to_vec())], ..Options::default() };
+        assert_eq!(told(&stage.target(), options), format!("Options::shaders: {name}{expected}"));
+    }
+    let swapped: Vec<u32> = code.iter().map(|word| word.swap_bytes()).collect();
+    for bad in [Vec::new(), code[..5].to_vec(), swapped] {
+        let styles = vec![Style::default(), Style { fragment: Fragment::Spirv(bad), ..Style::default() }];
+        let error = told(&stage.target(), Options { styles, ..Options::default() });
+        assert_eq!(error, format!("Options::styles: Fragment::Spirv of style 1 is no SPIR-V: {no_spirv}"));
+    }
+    for (samples, given) in [
+        (vk::SampleCountFlags::empty(), "empty"),
+        (vk::SampleCountFlags::TYPE_1 | vk::SampleCountFlags::TYPE_4, "TYPE_1 | TYPE_4"),
+    ] {
+        let error = told(&Target { samples, ..stage.target() }, Options::default());
+        assert_eq!(error, format!("Target::samples is {given}: give one number of samples, such as TYPE_1"));
+    }
     stage.finish();
 }
 
