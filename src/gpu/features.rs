@@ -136,6 +136,10 @@ impl Features {
     }
 
     /// Calls `with` with the chain of feature structures to hand to `vkCreateDevice`, for Vulkan 1.3.
+    ///
+    /// In it is a `VkPhysicalDeviceVulkan13Features`, of which a chain has one at most, and none of the structures that were
+    /// promoted into it beside it (such as `VkPhysicalDeviceDynamicRenderingFeatures`). If you have one, or one of those, do
+    /// without this: set the features that are on here ([`Features::named`]) in your own structures.
     pub fn chain<R>(self, with: impl FnOnce(&mut vk::PhysicalDeviceFeatures2<'_>) -> R) -> R {
         let core = vk::PhysicalDeviceFeatures::default()
             .tessellation_shader(self.tessellation)
