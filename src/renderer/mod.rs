@@ -53,8 +53,10 @@ mod factor;
 mod gpu_data;
 mod lattice;
 mod lists;
+mod memory;
 mod model;
 mod model_options;
+mod names;
 mod options;
 mod pipelines;
 mod prepare;
@@ -72,6 +74,7 @@ pub use draw::DrawItem;
 pub use error::Error;
 pub use evaluated::EvaluatedVertices;
 pub use factor::{Cull, Factor};
+pub use memory::MemoryUsage;
 pub use model_options::{Construction, Evaluation, ModelOptions};
 pub use options::{Fragment, Geometry, Options, Requirements, Style, check, requirements};
 pub use tables::{Edges, ModelTables, TableBytes};
@@ -114,41 +117,6 @@ pub struct ModelId {
 
 /// How many renderers there were so far: each has a number of its own.
 static RENDERERS: AtomicU64 = AtomicU64::new(0);
-
-/// Bytes by what they are for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct MemoryUsage {
-    /// Connectivity or stencils, and texture coordinates, on the device.
-    pub tables: u64,
-    /// Control vertices on the device, and factors of edges.
-    pub positions: u64,
-    /// What the cached construction keeps, on the device: control points, what corners share, frames.
-    pub control_points: u64,
-    /// Vertices that were evaluated by compute, and indices of lattices, on the device.
-    pub vertices: u64,
-    /// Edges and faces of control meshes on the device, if a style draws them.
-    pub control_meshes: u64,
-    /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
-    pub staging: u64,
-    /// Lists of the patches that can be seen, on the device.
-    pub lists: u64,
-    /// What the host writes for each view.
-    pub views: u64,
-}
-
-impl MemoryUsage {
-    /// All together.
-    pub fn total(self) -> u64 {
-        self.tables
-            + self.positions
-            + self.control_points
-            + self.vertices
-            + self.control_meshes
-            + self.lists
-            + self.staging
-            + self.views
-    }
-}
 
 /// Something that must outlive the frames that may still use it.
 struct Retired {
@@ -195,6 +163,8 @@ impl Renderer {
     /// # Safety
     /// * The handles in `target` and `options` are of the context's device and live as long as the renderer, and the
     ///   caller's fragment shaders match the stage interface ([`Fragment`]) and the targets of their styles.
+    /// * The SPIR-V in `options` is valid: of [`Options::shaders`] each has the interface of the shader it stands for. No more is
+    ///   checked than how it starts.
     /// * The renderer is dropped only when the device is done with all command buffers recorded with it.
     pub unsafe fn new(context: &Arc<DeviceContext>, target: &Target, options: &Options) -> Result<Self, Error> {
         // SAFETY: as the caller promises.
@@ -320,7 +290,8 @@ impl Renderer {
     }
 
     /// Moves the control vertices of a model, from the next [`Renderer::cmd_prepare`] of `frame_index` on until other
-    /// positions are set in any frame. Object space, one position a vertex of the mesh, in its order.
+    /// positions are set in any frame. Object space, one position a vertex of the mesh, in its order. The numbers are not looked
+    /// at: patches around a vertex that is NaN or infinite are missing.
     ///
     /// The last use of `frame_index` must be done on the device.
     ///
@@ -364,5 +335,14 @@ impl Renderer {
     fn check_frame(&self, given: u32) -> Result<(), Error> {
         let frames = self.options.frames_in_flight;
         if given < frames { Ok(()) } else { Err(Error::NoSuchFrame { given, frames }) }
+    }
+}
+
+impl std::fmt::Debug for Renderer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Renderer")
+            .field("context", &self.context)
+            .field("models", &self.models.len())
+            .finish_non_exhaustive()
     }
 }

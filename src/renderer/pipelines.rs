@@ -7,9 +7,9 @@ use super::factor::Cut;
 use super::lattice::LatticePipelines;
 use super::lists::{ListPipelines, view_layout};
 use super::stages::{PatchStages, Sharing, reads_texels, spaced};
-use super::subdivision;
 use super::vertex_input::VertexInput;
 use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Style, Target};
+use super::{names, subdivision};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Spacing, Specialization, pipeline_layout, shaders,
 };
@@ -225,7 +225,7 @@ impl Pipelines {
         let (name, mut stages) = match key.geometry {
             GeometryKey::Control => {
                 let vertex = Shader::vertex(self.shaders.find("CONSTRUCT_CONTROL_MESH_VERT")?);
-                ("of the control mesh".to_owned(), vec![vertex.specialized(&reads_texels)])
+                ("control mesh".to_owned(), vec![vertex.specialized(&reads_texels)])
             }
             GeometryKey::Evaluated { displaced } => {
                 let vertex = match (displaced, self.texcoords) {
@@ -233,13 +233,13 @@ impl Pipelines {
                     (false, true) => "EVALUATE_LATTICE_VERT_TEXCOORD",
                     (false, false) => "EVALUATE_LATTICE_VERT",
                 };
-                ("of evaluated vertices".to_owned(), vec![Shader::vertex(self.shaders.find(vertex)?)])
+                ("evaluated vertices".to_owned(), vec![Shader::vertex(self.shaders.find(vertex)?)])
             }
             GeometryKey::Subdivision(level) => {
                 let vertex = Shader::vertex(self.shaders.find("CONSTRUCT_STENCIL_VERT")?);
                 let geometry = self.shaders.find(&subdivision::shader(level, self.capture, self.texcoords))?;
                 let stages = vec![vertex, Shader::geometry(geometry).specialized(&reads_texels)];
-                (format!("of faces subdivided {level} times"), stages)
+                (format!("faces subdivided {level} times"), stages)
             }
             GeometryKey::Patches(patch, cut) => {
                 let evaluation = self.shaders.find(&patch.evaluation(self.capture, self.texcoords))?;
@@ -256,13 +256,13 @@ impl Pipelines {
                     }
                     _ => vec![Shader::vertex(evaluation).specialized(&constants)],
                 };
-                (format!("{patch:?}"), stages)
+                (names::patches(patch, cut), stages)
             }
         };
         let target = style.target_or(&self.target);
         let encode = [Specialization::bool(1, target.encoding == ColorEncoding::Srgb)];
         stages.extend(fragment(style, target, key.geometry.is_displaced(), &encode));
-        let pipeline = self.create(&format!("subdiv style {} {name}", key.style), key, target, &stages)?;
+        let pipeline = self.create(&format!("subdiv style {}: {name}", key.style), key, target, &stages)?;
         self.made.insert(key, pipeline);
         Ok(())
     }

@@ -4,6 +4,7 @@
 mod adaptive;
 mod batches;
 mod bench;
+mod checks;
 #[path = "../common/mod.rs"]
 mod common;
 mod compute;

@@ -2,15 +2,12 @@
 //! what it says when it is used wrongly.
 
 use ash::vk;
-use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};
 use ash_subdiv::headless::{Headless, HeadlessOptions, Offscreen, OffscreenDesc};
 use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::renderer::{ColorEncoding, Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ContextOptions, ControlMesh, DeviceContext, DrawItem, Error, ModelOptions, Options, Renderer, Style,
-    Target, View, check, requirements, shape,
+    Construction, ControlMesh, DrawItem, Error, ModelOptions, Options, Renderer, Style, Target, View, shape,
 };
-use std::sync::Arc;
 
 #[allow(dead_code, reason = "other tests use the other shaders")]
 mod shaders {
@@ -306,99 +303,6 @@ fn wrong_use_is_told() {
     let error = renderer.set_positions(model, 5, &[[0.0; 3]; 8]).unwrap_err().to_string();
     assert_eq!(error, "frame index 5: Options::frames_in_flight is 2, so frames are 0 to 1");
     drop(renderer);
-    stage.finish();
-}
-
-#[test]
-fn what_a_device_lacks_is_named_at_once() {
-    let stage = Stage::new();
-    let (instance, device) = (stage.headless.instance(), stage.headless.physical_device());
-    let mut target = stage.target();
-    target.samples = vk::SampleCountFlags::TYPE_64;
-    let styles = vec![Style { line_width: 1e9, ..Style::default() }];
-    let options = Options { styles, ..Options::default() };
-    // SAFETY: the device is of the instance.
-    let error = unsafe { check(instance, device, &target, &options) }.unwrap_err().to_string();
-    let name = &stage.headless.properties().name;
-    assert!(error.starts_with(&format!("{name}: missing 64 samples a pixel (it has 1, 4), lines 1000000000 pixels")));
-    assert!(error.ends_with(": choose another device, or options that need less"), "{error}");
-    // SAFETY: as above.
-    unsafe { check(instance, device, &stage.target(), &Options::default()) }.unwrap();
-
-    let needs = requirements(&stage.target(), &Options { styles: vec![Style::wireframe()], ..Options::default() });
-    let expected =
-        Features { tessellation: true, dynamic_rendering: true, fill_mode_non_solid: true, ..Features::NONE };
-    assert_eq!(needs.features, expected);
-    for (options, what) in [
-        (Options { frames_in_flight: 0, ..Options::default() }, "frames_in_flight"),
-        (Options { views_per_frame: 0, ..Options::default() }, "views_per_frame"),
-    ] {
-        // SAFETY: as above.
-        let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
-        assert_eq!(error, format!("{what} of Options is 0: it must be at least 1"));
-    }
-    // SAFETY: as above.
-    let told = |target: &Target, options| unsafe { check(instance, device, target, &options) }.unwrap_err().to_string();
-    let code = shaders::TEXCOORD_FRAG;
-    let no_spirv = "give whole modules, as words in this machine's order of bytes (the first is 0x07230203)";
-    for (name, code, expected) in [
-        (
-            "EVALUATE_ACC",
-            code,
-            ": there is no such shader to replace: gpu::shaders::ALL names those that there are".to_owned(),
-        ),
-        (
-            "SHADE_LIT_FRAG",
-            code,
-            ": there is no such shader to replace: fragment shaders are those of styles: set Style::fragment to \
-             Fragment::Spirv"
-                .to_owned(),
-        ),
-        ("EVALUATE_ACC_TESE", &[], format!(" is no SPIR-V: {no_spirv}")),
-    ] {
-        let options = Options { shaders: vec![(name.into(), code.to_vec())], ..Options::default() };
-        assert_eq!(told(&stage.target(), options), format!("Options::shaders: {name}{expected}"));
-    }
-    let swapped: Vec<u32> = code.iter().map(|word| word.swap_bytes()).collect();
-    for bad in [Vec::new(), code[..5].to_vec(), swapped] {
-        let styles = vec![Style::default(), Style { fragment: Fragment::Spirv(bad), ..Style::default() }];
-        let error = told(&stage.target(), Options { styles, ..Options::default() });
-        assert_eq!(error, format!("Options::styles: Fragment::Spirv of style 1 is no SPIR-V: {no_spirv}"));
-    }
-    for (samples, given) in [
-        (vk::SampleCountFlags::empty(), "empty"),
-        (vk::SampleCountFlags::TYPE_1 | vk::SampleCountFlags::TYPE_4, "TYPE_1 | TYPE_4"),
-    ] {
-        let error = told(&Target { samples, ..stage.target() }, Options::default());
-        assert_eq!(error, format!("Target::samples is {given}: give one number of samples, such as TYPE_1"));
-    }
-    stage.finish();
-}
-
-/// Has nothing to give.
-struct NoMemory;
-
-// SAFETY: no allocation is ever made.
-unsafe impl Allocator for NoMemory {
-    fn allocate(&self, _: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError> {
-        Err("no memory".into())
-    }
-
-    unsafe fn free(&self, _: Allocation) {}
-}
-
-#[test]
-fn features_that_the_context_was_not_told_of_are_named() {
-    let stage = Stage::new();
-    let (instance, device) = (stage.headless.instance(), stage.headless.device());
-    let made = ContextOptions::default();
-    // SAFETY: the device is of the instance and outlives the context; nothing is made from the context.
-    let error = unsafe {
-        let context = DeviceContext::new(instance, stage.headless.physical_device(), device, Arc::new(NoMemory), made);
-        Renderer::new(&context, &stage.target(), &Options::default()).err().expect("an error").to_string()
-    };
-    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
-    assert!(error.contains(&format!("missing tessellationShader {off}, dynamicRendering {off}:")), "{error}");
     stage.finish();
 }
 

@@ -1,13 +1,11 @@
 //! Several passes over the same models, into attachments of their own.
 
+use crate::common;
 use crate::common::passes::{Moment, PassTarget};
-use crate::common::{self, stage::Stage};
 use ash::vk;
 use ash_subdiv::headless::Headless;
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
-use ash_subdiv::{
-    Construction, DrawItem, Error, ModelOptions, Options, Renderer, Style, Target, View, check, requirements, shape,
-};
+use ash_subdiv::{Construction, DrawItem, ModelOptions, Options, Renderer, Style, View, requirements, shape};
 
 #[allow(dead_code, reason = "other tests use the other shaders")]
 mod shaders {
@@ -137,22 +135,4 @@ fn attachments_that_our_shaders_do_not_know_stay() {
         assert_eq!(of(&theirs[1], [0, 0, 255, 255]), pixels - black);
     }
     headless.finish_silent();
-}
-
-#[test]
-fn every_target_is_checked() {
-    let stage = Stage::new();
-    let (instance, device) = (stage.headless.instance(), stage.headless.physical_device());
-    let target = |samples| Target::depth_only(vk::Format::D32_SFLOAT, samples);
-    let of_pass = Target::render_pass(vk::RenderPass::null(), 0, vk::SampleCountFlags::TYPE_1);
-    let options = |own| Options { styles: vec![Style { target: Some(own), ..Style::default() }], ..Options::default() };
-    assert!(!requirements(&of_pass, &options(of_pass.clone())).features.dynamic_rendering);
-    let one = options(target(vk::SampleCountFlags::TYPE_1));
-    assert!(requirements(&of_pass, &one).features.dynamic_rendering);
-    // SAFETY: the device is of the instance.
-    let told = |own| unsafe { check(instance, device, &of_pass, &own) }.map_err(|error: Error| error.to_string());
-    assert_eq!(told(one), Ok(()));
-    let error = told(options(target(vk::SampleCountFlags::TYPE_64))).unwrap_err();
-    assert!(error.contains("missing 64 samples a pixel (it has 1, 4)"), "{error}");
-    stage.finish();
 }
