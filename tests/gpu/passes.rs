@@ -3,9 +3,9 @@
 use crate::common;
 use crate::common::passes::{Moment, PassTarget};
 use ash::vk;
-use ash_subdiv::headless::Headless;
+use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
-use ash_subdiv::{Construction, DrawItem, ModelOptions, Options, Renderer, Style, View, requirements, shape};
+use ash_subdiv::{Construction, DrawItem, ModelOptions, Options, Renderer, Style, Target, View, requirements, shape};
 
 #[allow(dead_code, reason = "other tests use the other shaders")]
 mod shaders {
@@ -84,6 +84,33 @@ fn depth_alone_is_drawn_as_with_colours() {
             assert!(draw_visible(&main, &mut renderer, &visible) == depths, "{evaluation:?}");
         }
     }
+    headless.finish_silent();
+}
+
+#[test]
+fn samples_are_those_of_the_style() {
+    let headless = common::headless();
+    let mesh = shape("creature").expect("built in");
+    let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
+    let [one, four] = [vk::SampleCountFlags::TYPE_1, vk::SampleCountFlags::TYPE_4].map(|samples| {
+        let desc = OffscreenDesc { samples, ..OffscreenDesc::new(EXTENT.width, EXTENT.height) };
+        (Offscreen::new(&headless, &desc).expect("images"), Target::dynamic(desc.color, desc.depth, samples))
+    });
+    let mut pictures = Vec::new();
+    for (target, own) in [(&one.1, Some(four.1.clone())), (&four.1, None)] {
+        let styles = vec![Style::default(), Style { target: own, ..Style::default() }];
+        // SAFETY: every submission is waited for, so the renderer is dropped when idle.
+        let renderer = unsafe { Renderer::new(headless.context(), target, &Options { styles, ..Options::default() }) };
+        let mut renderer = renderer.expect("a renderer");
+        let model = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
+        prepare(&headless, &mut renderer);
+        let item = DrawItem { style: 1, ..DrawItem::new(model, 4.0) };
+        // SAFETY: inside rendering, after the preparation.
+        let record = |cmd| unsafe { renderer.cmd_draw(cmd, 0, &view, &[item]) };
+        pictures.push(four.0.draw(&headless, BLACK, record).expect("a picture"));
+    }
+    assert!(pictures[0] == pictures[1]);
+    drop((one, four));
     headless.finish_silent();
 }
 
