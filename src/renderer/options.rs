@@ -271,9 +271,8 @@ pub(super) fn check_properties(
     let mut counts: Vec<u32> = targets(target, options).map(|target| target.samples.as_raw()).collect();
     counts.sort_unstable();
     counts.dedup();
-    for count in
-        counts.into_iter().filter(|&count| !properties.sample_counts.contains(vk::SampleCountFlags::from_raw(count)))
-    {
+    counts.retain(|&count| !properties.sample_counts.contains(vk::SampleCountFlags::from_raw(count)));
+    for count in counts {
         let has: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
         missing.push(format!("{count} samples a pixel (it has {})", has.join(", ")));
     }

@@ -8,8 +8,7 @@ use super::lattice::LatticePipelines;
 use super::lists::{ListPipelines, view_layout};
 use super::stages::{PatchStages, Sharing, reads_texels, spaced};
 use super::vertex_input::VertexInput;
-use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Style, Target};
-use super::{names, subdivision};
+use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Style, Target, names, subdivision};
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Spacing, Specialization, pipeline_layout, shaders,
 };
