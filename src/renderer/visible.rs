@@ -40,8 +40,7 @@ struct VisibleItem {
 }
 
 impl VisibleItems {
-    /// The same, all in another of [`Options::styles`](super::Options::styles): such as one into depth alone, before
-    /// ([`Style::target`](super::Style::target)).
+    /// The same, all in another of [`Options::styles`](super::Options::styles): such as for depth alone.
     pub fn in_style(&self, style: usize) -> Self {
         let mut other = self.clone();
         other.items.iter_mut().for_each(|visible| visible.item.style = style);
