@@ -52,6 +52,8 @@ features! {
     geometry = "geometryShader",
     /// Indirect draws that start at any instance: patches that compute shaders left out.
     indirect_first_instance = "drawIndirectFirstInstance",
+    /// Colour attachments that differ in how they are written: shaders of ours that write to the first only.
+    independent_blend = "independentBlend",
     /// `double` in shaders.
     float64 = "shaderFloat64",
     /// Anisotropic texture filtering.
@@ -73,6 +75,7 @@ impl Features {
         statistics: false,
         geometry: false,
         indirect_first_instance: false,
+        independent_blend: false,
         float64: false,
         anisotropy: false,
         transform_feedback: false,
@@ -108,6 +111,7 @@ impl Features {
             statistics: core.pipeline_statistics_query == vk::TRUE,
             geometry: core.geometry_shader == vk::TRUE,
             indirect_first_instance: core.draw_indirect_first_instance == vk::TRUE,
+            independent_blend: core.independent_blend == vk::TRUE,
             float64: core.shader_float64 == vk::TRUE,
             anisotropy: core.sampler_anisotropy == vk::TRUE,
             transform_feedback: feedback.transform_feedback == vk::TRUE,
@@ -129,6 +133,10 @@ impl Features {
     }
 
     /// Calls `with` with the chain of feature structures to hand to `vkCreateDevice`, for Vulkan 1.3.
+    ///
+    /// In it is a `VkPhysicalDeviceVulkan13Features`, of which a chain has one at most, and none of the structures that were
+    /// promoted into it beside it (such as `VkPhysicalDeviceDynamicRenderingFeatures`). If you have one, or one of those, do
+    /// without this: set the features that are on here ([`Features::named`]) in your own structures.
     pub fn chain<R>(self, with: impl FnOnce(&mut vk::PhysicalDeviceFeatures2<'_>) -> R) -> R {
         let core = vk::PhysicalDeviceFeatures::default()
             .tessellation_shader(self.tessellation)
@@ -138,6 +146,7 @@ impl Features {
             .pipeline_statistics_query(self.statistics)
             .geometry_shader(self.geometry)
             .draw_indirect_first_instance(self.indirect_first_instance)
+            .independent_blend(self.independent_blend)
             .shader_float64(self.float64)
             .sampler_anisotropy(self.anisotropy);
         let mut v13 = vk::PhysicalDeviceVulkan13Features::default()

@@ -17,7 +17,7 @@ pub enum RenderTarget<'a> {
 }
 
 impl RenderTarget<'_> {
-    fn color_attachments(&self) -> usize {
+    pub(crate) fn color_attachments(&self) -> usize {
         match self {
             Self::Dynamic { color, .. } => color.len(),
             Self::RenderPass { color_attachments, .. } => *color_attachments as usize,
@@ -50,7 +50,7 @@ pub struct DepthBias {
     pub slope: f32,
 }
 
-/// How a fragment's colour meets what is there; the same for all colour attachments.
+/// How a fragment's colour meets what is there; the same for all colour attachments that are written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Blend {
     /// Replaces it.
@@ -107,6 +107,8 @@ pub struct GraphicsPipelineDesc<'a> {
     pub depth: Option<DepthState>,
     pub depth_bias: Option<DepthBias>,
     pub blend: Blend,
+    /// Leave all colour attachments but the first as they are.
+    pub first_color_only: bool,
     pub samples: vk::SampleCountFlags,
     /// Stop before rasterization: for capture and for timing the geometry.
     pub rasterizer_discard: bool,
@@ -134,6 +136,7 @@ impl<'a> GraphicsPipelineDesc<'a> {
             depth: None,
             depth_bias: None,
             blend: Blend::Opaque,
+            first_color_only: false,
             samples: vk::SampleCountFlags::TYPE_1,
             rasterizer_discard: false,
             dynamic_states: &[],
@@ -182,7 +185,11 @@ impl<'a> GraphicsPipelineDesc<'a> {
         if let Some(state) = self.depth {
             depth = depth.depth_test_enable(true).depth_write_enable(state.write).depth_compare_op(state.compare);
         }
-        let attachments = vec![self.blend.attachment(); self.target.color_attachments()];
+        let mut attachments = vec![self.blend.attachment(); self.target.color_attachments()];
+        if self.first_color_only {
+            // Nothing is written by default.
+            attachments.iter_mut().skip(1).for_each(|other| *other = vk::PipelineColorBlendAttachmentState::default());
+        }
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let dynamic_states = [&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR], self.dynamic_states].concat();
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
@@ -240,6 +247,9 @@ impl<'a> GraphicsPipelineDesc<'a> {
         }
         if has(vk::ShaderStageFlags::GEOMETRY) && !features.geometry {
             return unsupported("geometryShader is not enabled on the device".to_owned());
+        }
+        if self.first_color_only && self.target.color_attachments() > 1 && !features.independent_blend {
+            return unsupported("independentBlend is not enabled on the device".to_owned());
         }
         if self.patch_control_points > properties.max_patch_size {
             let (asked, max) = (self.patch_control_points, properties.max_patch_size);

@@ -4,7 +4,7 @@ use super::error::Parameters;
 use crate::capture::{CaptureDraw, Captured, CapturedVertex};
 use crate::limit::LimitSurface;
 use crate::mesh::ControlMesh;
-use crate::renderer::{Error, View};
+use crate::renderer::{Error, View, is_size};
 use crate::table::{Patch, prepare};
 use crate::topology::Topology;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec3};
@@ -147,7 +147,7 @@ struct Screen {
 
 impl Screen {
     fn new(view: &View) -> Result<Self, Error> {
-        if !view.viewport.iter().all(|&side| side > 0.0) {
+        if !is_size(view.viewport) {
             return Err(Error::NoScreen);
         }
         let half = DVec2::from(view.viewport.map(|side| f64::from(side) / 2.0));

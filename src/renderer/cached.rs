@@ -67,18 +67,24 @@ impl CachedPipelines {
     pub(super) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
         let stages = stages.for_control_points();
         let constants = stages.specialization(Cut::default(), self.context.properties());
-        self.make_one(Step::frames(stages), code.find("COMPUTE_FRAMES_COMP")?, &constants)?;
-        self.make_one(Step::Points(stages), code.find(&stages.control_points())?, &constants)
+        self.make_one(Step::frames(stages), "COMPUTE_FRAMES_COMP", code, &constants)?;
+        self.make_one(Step::Points(stages), &stages.control_points(), code, &constants)
     }
 
-    fn make_one(&mut self, step: Step, code: &[u32], constants: &[Specialization]) -> Result<(), GpuError> {
+    fn make_one(
+        &mut self,
+        step: Step,
+        shader: &str,
+        code: &ShaderCode,
+        constants: &[Specialization],
+    ) -> Result<(), GpuError> {
         if self.made.contains_key(&step) {
             return Ok(());
         }
         let desc = ComputePipelineDesc {
-            name: &format!("subdiv {step:?}"),
+            name: &format!("subdiv {shader}"),
             layout: self.layout.raw(),
-            shader: Shader::compute(code).specialized(constants),
+            shader: Shader::compute(code.find(shader)?).specialized(constants),
             cache: self.cache,
         };
         // SAFETY: the shader is ours and matches the layout.

@@ -6,6 +6,7 @@ use super::gpu_data::{COUNTER_CLOCKWISE_FLAG, DrawConstants};
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::stages::PatchStages;
+use super::view::is_size;
 use super::visible::ItemLists;
 use super::{Error, Evaluation, Geometry, ModelId, Renderer, Style, View, subdivision};
 use crate::gpu::{Domain, tessellated_vertices};
@@ -81,8 +82,8 @@ impl Renderer {
     /// [`Options::views_per_frame`](super::Options::views_per_frame). Items before the wrong one are recorded.
     ///
     /// # Safety
-    /// `cmd` is being recorded, inside rendering that fits [`Target`](super::Target), after [`Renderer::cmd_prepare`] of the same
-    /// frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`](super::Options::set_layouts).
+    /// `cmd` is being recorded, inside rendering that fits the [`Target`](super::Target) of the items' styles, after
+    /// [`Renderer::cmd_prepare`] of the same frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`](super::Options::set_layouts).
     pub unsafe fn cmd_draw(
         &mut self,
         cmd: vk::CommandBuffer,
@@ -311,7 +312,7 @@ impl Renderer {
         if !factor.is_valid() {
             return Err(Error::BadFactor { id, factor });
         }
-        if view.measured().viewport.contains(&0.0) && (factor.needs_viewport() || item.cull.small) {
+        if !is_size(view.measured().viewport) && (factor.needs_viewport() || item.cull.small) {
             return Err(Error::NoViewport { id });
         }
         let [scale, bias] = item.displacement;

@@ -27,8 +27,15 @@ pub(super) fn check_evaluation(
         return Err(Error::OtherTables { id, built: tables.evaluation, evaluation });
     }
     let displaced = tables.sharing() == Sharing::Displacement;
-    if displaced != options.displacement.is_some() {
-        return Err(Error::OtherDisplacement { id, displaced });
+    for (option, built, asked) in [
+        ("displacement", displaced, options.displacement.is_some()),
+        // Displacement shares normals in any case.
+        ("shared_normals", tables.sharing() != Sharing::Positions, displaced || options.shared_normals),
+        ("edge_factors", tables.edges().is_some(), options.edge_factors),
+    ] {
+        if built != asked {
+            return Err(Error::OtherOption { id, option, built });
+        }
     }
     if !evaluation.constructions().contains(&construction) {
         return Err(Error::NotConstructedBy { id, evaluation, construction });

@@ -117,6 +117,25 @@ impl Cut {
         self.metric | u32::from(frustum) << 2 | u32::from(back) << 3 | u32::from(small) << 4
     }
 
+    /// What is not as in draws with a uniform factor of all patches; else empty.
+    pub(super) fn words(self) -> [&'static str; 5] {
+        let metric = match self.metric {
+            0 => "",
+            1 => "pixels",
+            2 => "curvature",
+            _ => "edges",
+        };
+        let Cull { frustum, back, small } = self.cull;
+        let flag = |set, word| if set { word } else { "" };
+        [
+            metric,
+            flag(frustum, "cull frustum"),
+            flag(back, "cull back"),
+            flag(small, "cull small"),
+            flag(self.listed, "listed"),
+        ]
+    }
+
     /// A bit of its own among 64.
     pub(super) fn bit(self) -> u64 {
         1 << (self.flags() | u32::from(self.listed) << 5)

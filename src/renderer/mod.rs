@@ -11,6 +11,10 @@
 //!    irregular quads and triangles. As often as there are views. Or, to draw only what can be seen of models whose control points
 //!    are cached, [`Renderer::cmd_cull`] outside rendering and [`Renderer::cmd_draw_visible`] inside.
 //!
+//! Passes into other attachments, such as shadows, are draws in styles with a target of their own ([`Style::target`]), of the
+//! same models: what compute made of them is there for all. [`View::measured_from`] has a shadow be of the triangles that the eye
+//! sees, [`VisibleItems::in_style`] draws what one search found in several passes that show its view.
+//!
 //! | pass | reads | writes |
 //! |---|---|---|
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
@@ -30,7 +34,7 @@
 //! | TCS, cached | what VS has | control points, factors |
 //! | GS of models that are [`Evaluation::Subdivision`] | fans and their weights, positions | position, normal, texture coordinate; no TCS and TES |
 //! | TES | control points, the view | position, normal, texture coordinate |
-//! | FS | those, the view | the caller's attachments |
+//! | FS | those, the view | the caller's attachments; none of ours where there are none |
 //!
 //! Positions, rings, their weights and what is kept of them are texel buffers where the device has large ones, else storage buffers
 //! ([`DeviceProperties::reads_texels`](crate::gpu::DeviceProperties::reads_texels)).
@@ -49,8 +53,10 @@ mod factor;
 mod gpu_data;
 mod lattice;
 mod lists;
+mod memory;
 mod model;
 mod model_options;
+mod names;
 mod options;
 mod pipelines;
 mod prepare;
@@ -58,6 +64,7 @@ mod stages;
 mod streamed;
 mod subdivision;
 mod tables;
+mod target;
 mod vertex_input;
 mod view;
 mod visible;
@@ -67,9 +74,11 @@ pub use draw::DrawItem;
 pub use error::Error;
 pub use evaluated::EvaluatedVertices;
 pub use factor::{Cull, Factor};
+pub use memory::MemoryUsage;
 pub use model_options::{Construction, Evaluation, ModelOptions};
-pub use options::{ColorEncoding, Fragment, Geometry, Options, Pass, Requirements, Style, Target, check, requirements};
+pub use options::{Fragment, Geometry, Options, Requirements, Style, check, requirements};
 pub use tables::{Edges, ModelTables, TableBytes};
+pub use target::{ColorEncoding, Pass, Target};
 pub use view::{MeasuredFrom, View};
 pub use visible::VisibleItems;
 
@@ -81,6 +90,7 @@ pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
     stages::{reads_texels, spaced},
     subdivision::level as subdivision_level,
+    view::is_size,
 };
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, MAX_OFFSET_ALIGNMENT, MemoryLocation};
@@ -96,45 +106,17 @@ use model::{Model, Surroundings};
 use pipelines::Pipelines;
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Names a model of a [`Renderer`]. Never used again after the model is removed.
+/// Names a model of one [`Renderer`]; others do not know it. Never used again after the model is removed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ModelId(u64);
-
-/// Bytes by what they are for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct MemoryUsage {
-    /// Connectivity or stencils, and texture coordinates, on the device.
-    pub tables: u64,
-    /// Control vertices on the device, and factors of edges.
-    pub positions: u64,
-    /// What the cached construction keeps, on the device: control points, what corners share, frames.
-    pub control_points: u64,
-    /// Vertices that were evaluated by compute, and indices of lattices, on the device.
-    pub vertices: u64,
-    /// Edges and faces of control meshes on the device, if a style draws them.
-    pub control_meshes: u64,
-    /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
-    pub staging: u64,
-    /// Lists of the patches that can be seen, on the device.
-    pub lists: u64,
-    /// What the host writes for each view.
-    pub views: u64,
+pub struct ModelId {
+    renderer: u64,
+    number: u64,
 }
 
-impl MemoryUsage {
-    /// All together.
-    pub fn total(self) -> u64 {
-        self.tables
-            + self.positions
-            + self.control_points
-            + self.vertices
-            + self.control_meshes
-            + self.lists
-            + self.staging
-            + self.views
-    }
-}
+/// How many renderers there were so far: each has a number of its own.
+static RENDERERS: AtomicU64 = AtomicU64::new(0);
 
 /// Something that must outlive the frames that may still use it.
 struct Retired {
@@ -160,7 +142,7 @@ pub struct Renderer {
     pipelines: Pipelines,
     displacements: Displacements,
     models: HashMap<ModelId, Model>,
-    next_id: u64,
+    next_id: ModelId,
     retired: Vec<Retired>,
     views: Buffer,
     view_stride: u64,
@@ -173,14 +155,16 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer for targets like `target`.
+    /// A renderer for targets like `target`, but for styles with one of their own ([`Style::target`]).
     ///
     /// # Errors
-    /// [`Error::Unsupported`] if `context` was not made with what [`requirements`] asks for; failed Vulkan calls.
+    /// As [`check`], of what `context` was made with; failed Vulkan calls.
     ///
     /// # Safety
     /// * The handles in `target` and `options` are of the context's device and live as long as the renderer, and the
-    ///   caller's fragment shaders match the stage interface ([`Fragment`]) and `target`.
+    ///   caller's fragment shaders match the stage interface ([`Fragment`]) and the targets of their styles.
+    /// * The SPIR-V in `options` is valid: of [`Options::shaders`] each has the interface of the shader it stands for. No more is
+    ///   checked than how it starts.
     /// * The renderer is dropped only when the device is done with all command buffers recorded with it.
     pub unsafe fn new(context: &Arc<DeviceContext>, target: &Target, options: &Options) -> Result<Self, Error> {
         // SAFETY: as the caller promises.
@@ -216,7 +200,7 @@ impl Renderer {
             pipelines,
             displacements: Displacements::new(context)?,
             models: HashMap::new(),
-            next_id: 0,
+            next_id: ModelId { renderer: RENDERERS.fetch_add(1, Ordering::Relaxed), number: 0 },
             retired: Vec::new(),
             views,
             view_stride,
@@ -238,17 +222,17 @@ impl Renderer {
     }
 
     /// As [`Renderer::add_model`], with tables that were built elsewhere, such as on another thread, with the same
-    /// options.
+    /// options. Scheme, fallback, construction and refinement are those of the tables.
     ///
     /// # Errors
-    /// As [`Renderer::add_model`]; [`Error::PositionCount`]; [`Error::OtherTables`], [`Error::OtherDisplacement`].
+    /// As [`Renderer::add_model`]; [`Error::PositionCount`]; [`Error::OtherTables`], [`Error::OtherOption`].
     pub fn add_tables(
         &mut self,
         tables: ModelTables,
         positions: &[[f32; 3]],
         options: &ModelOptions,
     ) -> Result<ModelId, Error> {
-        let id = ModelId(self.next_id);
+        let id = self.next_id;
         if positions.len() != tables.control_vertices {
             return Err(Error::PositionCount { id, given: positions.len(), needed: tables.control_vertices });
         }
@@ -256,7 +240,7 @@ impl Renderer {
         let map = self.displacements.get(options.displacement)?;
         let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
         let model = Model::new(from, id, &options, tables, positions, map)?;
-        self.next_id += 1;
+        self.next_id.number += 1;
         self.models.insert(id, model);
         let made = self.make_pipelines(id, Factor::Uniform(1.0), Cull::NONE);
         made.inspect_err(|_| drop(self.models.remove(&id)))?;
@@ -306,7 +290,8 @@ impl Renderer {
     }
 
     /// Moves the control vertices of a model, from the next [`Renderer::cmd_prepare`] of `frame_index` on until other
-    /// positions are set in any frame. Object space, one position a vertex of the mesh, in its order.
+    /// positions are set in any frame. Object space, one position a vertex of the mesh, in its order. The numbers are not looked
+    /// at: patches around a vertex that is NaN or infinite are missing.
     ///
     /// The last use of `frame_index` must be done on the device.
     ///
@@ -350,5 +335,14 @@ impl Renderer {
     fn check_frame(&self, given: u32) -> Result<(), Error> {
         let frames = self.options.frames_in_flight;
         if given < frames { Ok(()) } else { Err(Error::NoSuchFrame { given, frames }) }
+    }
+}
+
+impl std::fmt::Debug for Renderer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Renderer")
+            .field("context", &self.context)
+            .field("models", &self.models.len())
+            .finish_non_exhaustive()
     }
 }

@@ -2,74 +2,15 @@
 
 use super::bindings::MODEL_BUFFERS;
 use super::pipelines::CONTROL_COMPONENTS;
+use super::stages::is_spirv;
 use super::visible::LIST_FEATURES;
-use super::{Error, Evaluation};
+use super::{Error, Evaluation, Pass, Target};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, shaders};
 use ash::vk;
 use glam::Mat4;
 
-/// What the renderer draws into.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Target {
-    /// The rendering that is open when draws are recorded.
-    pub pass: Pass,
-    /// Samples a pixel.
-    pub samples: vk::SampleCountFlags,
-    /// What the values in the colour attachment mean.
-    pub encoding: ColorEncoding,
-    /// Whether there is a depth attachment; without one nothing is hidden by what lies in front.
-    pub depth: bool,
-}
-
-/// What the values that our fragment shaders write mean. Your own shaders write what they like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum ColorEncoding {
-    /// Linear light: for sRGB formats, which encode by themselves, and for high dynamic range.
-    #[default]
-    Linear,
-    /// sRGB, encoded by the shader: for formats such as `R8G8B8A8_UNORM` that are shown as sRGB. Blending is then not
-    /// linear.
-    Srgb,
-}
-
-/// The rendering that [`Renderer::cmd_draw`](super::Renderer::cmd_draw) is recorded in.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Pass {
-    /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
-    Dynamic {
-        /// Of each colour attachment. Fragments are written to the first.
-        color: Vec<vk::Format>,
-        /// Of the depth attachment.
-        depth: vk::Format,
-        /// Of the stencil attachment. The crate does not test or write stencils.
-        stencil: vk::Format,
-        /// As in `VkRenderingInfo`: 0 without multiview.
-        view_mask: u32,
-    },
-    /// A subpass that has this many colour attachments. The render pass must live as long as the renderer.
-    RenderPass {
-        /// The render pass, or one compatible with it.
-        render_pass: vk::RenderPass,
-        /// Its subpass that is drawn in.
-        subpass: u32,
-        /// How many colour attachments the subpass has.
-        color_attachments: u32,
-    },
-}
-
-impl Target {
-    /// Dynamic rendering into one colour attachment and one for depth.
-    pub fn dynamic(color: vk::Format, depth: vk::Format, samples: vk::SampleCountFlags) -> Self {
-        let pass = Pass::Dynamic { color: vec![color], depth, stencil: vk::Format::UNDEFINED, view_mask: 0 };
-        Self { pass, samples, encoding: ColorEncoding::Linear, depth: depth != vk::Format::UNDEFINED }
-    }
-
-    /// A subpass with one colour attachment and one for depth.
-    pub fn render_pass(render_pass: vk::RenderPass, subpass: u32, samples: vk::SampleCountFlags) -> Self {
-        let pass = Pass::RenderPass { render_pass, subpass, color_attachments: 1 };
-        Self { pass, samples, encoding: ColorEncoding::Linear, depth: true }
-    }
-}
+/// How the names of shaders start that [`Style::fragment`] chooses from.
+pub(super) const STYLE_SHADERS: &str = "SHADE_";
 
 /// What of a model a [`Style`] draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -109,8 +50,11 @@ pub enum Fragment {
 pub struct Style {
     /// What of the model is drawn.
     pub geometry: Geometry,
-    /// How it is shaded.
+    /// How it is shaded. Where there are no colour attachments, shaders of the crate are left out; yours may discard.
     pub fragment: Fragment,
+    /// What is drawn into, if it is not what [`Renderer::new`](super::Renderer::new) was told: other passes over the same models,
+    /// such as shadows ([`Target::depth_only`]). Draws of the style are then recorded inside a rendering that fits this.
+    pub target: Option<Target>,
     /// Draw triangles as lines ([`Features::fill_mode_non_solid`]).
     pub wireframe: bool,
     /// The faces that are left out.
@@ -138,6 +82,7 @@ impl Default for Style {
         Self {
             geometry: Geometry::Surface,
             fragment: Fragment::Lit,
+            target: None,
             wireframe: false,
             cull: vk::CullModeFlags::NONE,
             front_face: vk::FrontFace::COUNTER_CLOCKWISE,
@@ -175,6 +120,16 @@ impl Style {
     /// The edges of the control mesh, over everything.
     pub fn cage() -> Self {
         Self { geometry: Geometry::ControlEdges, fragment: Fragment::Flat, depth: None, ..Self::default() }
+    }
+
+    /// What it draws into, by a renderer for `target`.
+    pub(super) fn target_or<'t>(&'t self, target: &'t Target) -> &'t Target {
+        self.target.as_ref().unwrap_or(target)
+    }
+
+    /// Whether there are colour attachments that its fragment shader, one of ours, knows nothing of.
+    pub(super) fn writes_first_only(&self, target: &Target) -> bool {
+        !matches!(self.fragment, Fragment::Spirv(_)) && target.render_target().color_attachments() > 1
     }
 }
 
@@ -241,13 +196,19 @@ impl Requirements {
     }
 }
 
+/// The renderer's, and those that styles have of their own.
+fn targets<'t>(target: &'t Target, options: &'t Options) -> impl Iterator<Item = &'t Target> {
+    std::iter::once(target).chain(options.styles.iter().filter_map(|style| style.target.as_ref()))
+}
+
 /// What a device must be made with; ask before creating it.
 pub fn requirements(target: &Target, options: &Options) -> Requirements {
     let features = Features {
         tessellation: true,
-        dynamic_rendering: matches!(target.pass, Pass::Dynamic { .. }),
+        dynamic_rendering: targets(target, options).any(|t| matches!(t.pass, Pass::Dynamic { .. })),
         fill_mode_non_solid: options.styles.iter().any(|s| s.wireframe),
         wide_lines: options.styles.iter().any(|s| s.line_width != 1.0),
+        independent_blend: options.styles.iter().any(|s| s.writes_first_only(s.target_or(target))),
         ..if options.visible_lists { LIST_FEATURES } else { Features::NONE }
     };
     let features = options.evaluations.iter().fold(features, |all, evaluation| all.union(evaluation.features()));
@@ -257,7 +218,8 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
 /// Tells whether a physical device can do what `options` ask.
 ///
 /// # Errors
-/// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::NoSuchShader`].
+/// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::BadSamples`],
+/// [`Error::NoSuchShader`], [`Error::NotSpirv`].
 ///
 /// # Safety
 /// `physical_device` comes from `instance`, whose version is at least 1.1.
@@ -272,12 +234,41 @@ pub unsafe fn check(
     check_properties(&properties, properties.features, target, options)
 }
 
+/// What no device could do.
+fn check_options(target: &Target, options: &Options) -> Result<(), Error> {
+    for (what, given) in [("frames_in_flight", options.frames_in_flight), ("views_per_frame", options.views_per_frame)]
+    {
+        if given == 0 {
+            return Err(Error::BadOption { what, given });
+        }
+    }
+    let mut samples = targets(target, options).map(|target| target.samples);
+    if let Some(given) = samples.find(|samples| samples.as_raw().count_ones() != 1) {
+        return Err(Error::BadSamples { given });
+    }
+    for (name, code) in &options.shaders {
+        if shaders::find(name).is_none() || name.starts_with(STYLE_SHADERS) {
+            return Err(Error::NoSuchShader { name: name.clone() });
+        }
+        if !is_spirv(code) {
+            return Err(Error::NotSpirv { what: format!("Options::shaders: {name}") });
+        }
+    }
+    for (number, style) in options.styles.iter().enumerate() {
+        if matches!(&style.fragment, Fragment::Spirv(code) if !is_spirv(code)) {
+            return Err(Error::NotSpirv { what: format!("Options::styles: Fragment::Spirv of style {number}") });
+        }
+    }
+    Ok(())
+}
+
 pub(super) fn check_properties(
     properties: &DeviceProperties,
     features: Features,
     target: &Target,
     options: &Options,
 ) -> Result<(), Error> {
+    check_options(target, options)?;
     let needed = requirements(target, options);
     let off = "(the device has it: enable it, and name it in ContextOptions::features)";
     let lacking = properties.features.missing(needed.features);
@@ -288,9 +279,13 @@ pub(super) fn check_properties(
         let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));
         missing.push(format!("Vulkan 1.3 (it has {major}.{minor})"));
     }
-    if !properties.sample_counts.contains(target.samples) {
-        let counts: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
-        missing.push(format!("{} samples a pixel (it has {})", target.samples.as_raw(), counts.join(", ")));
+    let mut counts: Vec<u32> = targets(target, options).map(|target| target.samples.as_raw()).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts.retain(|&count| !properties.sample_counts.contains(vk::SampleCountFlags::from_raw(count)));
+    for count in counts {
+        let has: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
+        missing.push(format!("{count} samples a pixel (it has {})", has.join(", ")));
     }
     for (what, least, has) in [
         // A list of patches besides; evaluation by compute has its vertices, too.
@@ -304,15 +299,6 @@ pub(super) fn check_properties(
     let width = options.styles.iter().map(|s| s.line_width).fold(0.0, f32::max);
     if width > 1.0 && width > properties.max_line_width {
         missing.push(format!("lines {width} pixels wide (it has {})", properties.max_line_width));
-    }
-    for (what, given) in [("frames_in_flight", options.frames_in_flight), ("views_per_frame", options.views_per_frame)]
-    {
-        if given == 0 {
-            return Err(Error::BadOption { what, given });
-        }
-    }
-    if let Some((name, _)) = options.shaders.iter().find(|(name, _)| shaders::find(name).is_none()) {
-        return Err(Error::NoSuchShader { name: name.clone() });
     }
     if missing.is_empty() { Ok(()) } else { Err(Error::Unsupported { device: properties.name.clone(), missing }) }
 }

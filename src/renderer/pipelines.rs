@@ -7,12 +7,10 @@ use super::factor::Cut;
 use super::lattice::LatticePipelines;
 use super::lists::{ListPipelines, view_layout};
 use super::stages::{PatchStages, Sharing, reads_texels, spaced};
-use super::subdivision;
 use super::vertex_input::VertexInput;
-use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Pass, Style, Target};
+use super::{ColorEncoding, Construction, Evaluation, Fragment, Geometry, Options, Style, Target, names, subdivision};
 use crate::gpu::{
-    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Spacing, Specialization,
-    pipeline_layout, shaders,
+    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Spacing, Specialization, pipeline_layout, shaders,
 };
 use ash::vk;
 use std::collections::HashMap;
@@ -53,6 +51,24 @@ pub(super) enum GeometryKey {
     /// Faces that are subdivided this many times.
     Subdivision(u32),
     Control,
+}
+
+impl GeometryKey {
+    fn is_displaced(self) -> bool {
+        match self {
+            Self::Patches(patch, _) => patch.sharing == Sharing::Displacement,
+            Self::Evaluated { displaced } => displaced,
+            Self::Subdivision(_) | Self::Control => false,
+        }
+    }
+
+    /// Control points that go into a control shader, if there is one.
+    fn input_points(self) -> u32 {
+        match self {
+            Self::Patches(patch, _) if patch.evaluation == Evaluation::Tessellation => patch.input_points(),
+            _ => 0,
+        }
+    }
 }
 
 /// The caller's own shaders in the place of ours, by name.
@@ -215,107 +231,83 @@ impl Pipelines {
         if self.made.contains_key(&key) {
             return Ok(());
         }
-        let style = &self.styles[key.style];
-        let properties = self.context.properties();
+        let (style, properties) = (&self.styles[key.style], self.context.properties());
         let reads_texels = [reads_texels(properties)];
-        let encode = [Specialization::bool(1, self.target.encoding == ColorEncoding::Srgb)];
-        let pipeline = match key.geometry {
+        let (constants, code);
+        let (name, mut stages) = match key.geometry {
             GeometryKey::Control => {
-                let name = format!("subdiv style {} of the control mesh", key.style);
-                let stages = [
-                    Shader::vertex(self.shaders.find("CONSTRUCT_CONTROL_MESH_VERT")?).specialized(&reads_texels),
-                    fragment(style, Sharing::Positions, &encode),
-                ];
-                self.create(&name, key, &stages, 0)?
+                let vertex = Shader::vertex(self.shaders.find("CONSTRUCT_CONTROL_MESH_VERT")?);
+                ("control mesh".to_owned(), vec![vertex.specialized(&reads_texels)])
             }
             GeometryKey::Evaluated { displaced } => {
-                let name = format!("subdiv style {} of evaluated vertices", key.style);
-                let (vertex, sharing) = match (displaced, self.texcoords) {
-                    (true, _) => ("EVALUATE_LATTICE_VERT_DISPLACED", Sharing::Displacement),
-                    (false, true) => ("EVALUATE_LATTICE_VERT_TEXCOORD", Sharing::Positions),
-                    (false, false) => ("EVALUATE_LATTICE_VERT", Sharing::Positions),
+                let vertex = match (displaced, self.texcoords) {
+                    (true, _) => "EVALUATE_LATTICE_VERT_DISPLACED",
+                    (false, true) => "EVALUATE_LATTICE_VERT_TEXCOORD",
+                    (false, false) => "EVALUATE_LATTICE_VERT",
                 };
-                let stages = [Shader::vertex(self.shaders.find(vertex)?), fragment(style, sharing, &encode)];
-                self.create(&name, key, &stages, 0)?
+                ("evaluated vertices".to_owned(), vec![Shader::vertex(self.shaders.find(vertex)?)])
             }
             GeometryKey::Subdivision(level) => {
-                let name = format!("subdiv style {} of faces subdivided {level} times", key.style);
+                let vertex = Shader::vertex(self.shaders.find("CONSTRUCT_STENCIL_VERT")?);
                 let geometry = self.shaders.find(&subdivision::shader(level, self.capture, self.texcoords))?;
-                let stages = [
-                    Shader::vertex(self.shaders.find("CONSTRUCT_STENCIL_VERT")?),
-                    Shader::geometry(geometry).specialized(&reads_texels),
-                    fragment(style, Sharing::Positions, &encode),
-                ];
-                self.create(&name, key, &stages, 0)?
+                let stages = vec![vertex, Shader::geometry(geometry).specialized(&reads_texels)];
+                (format!("faces subdivided {level} times"), stages)
             }
             GeometryKey::Patches(patch, cut) => {
-                let name = format!("subdiv style {} {patch:?}", key.style);
-                let fragment = fragment(style, patch.sharing, &encode);
                 let evaluation = self.shaders.find(&patch.evaluation(self.capture, self.texcoords))?;
-                let constants = patch.specialization(cut, properties);
-                match patch.evaluation {
+                constants = patch.specialization(cut, properties);
+                let stages = match patch.evaluation {
                     Evaluation::Tessellation => {
-                        self.create_tessellating(&name, key, patch, &constants, evaluation, fragment)?
+                        let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
+                        code = spaced(evaluation, spacing);
+                        self.tessellating(patch, &constants, &code)?
                     }
                     Evaluation::Geometry => {
                         let tile = Shader::vertex(self.shaders.find("CONSTRUCT_STENCIL_VERT")?);
-                        let evaluation = Shader::geometry(evaluation).specialized(&constants);
-                        self.create(&name, key, &[tile, evaluation, fragment], 0)?
+                        vec![tile, Shader::geometry(evaluation).specialized(&constants)]
                     }
-                    _ => {
-                        let evaluation = Shader::vertex(evaluation).specialized(&constants);
-                        self.create(&name, key, &[evaluation, fragment], 0)?
-                    }
-                }
+                    _ => vec![Shader::vertex(evaluation).specialized(&constants)],
+                };
+                (names::patches(patch, cut), stages)
             }
         };
+        let target = style.target_or(&self.target);
+        let encode = [Specialization::bool(1, target.encoding == ColorEncoding::Srgb)];
+        stages.extend(fragment(style, target, key.geometry.is_displaced(), &encode));
+        let pipeline = self.create(&format!("subdiv style {}: {name}", key.style), key, target, &stages)?;
         self.made.insert(key, pipeline);
         Ok(())
     }
 
-    fn create_tessellating(
-        &self,
-        name: &str,
-        key: PipelineKey,
+    /// The stages before the fragment shader.
+    fn tessellating<'s>(
+        &'s self,
         patch: PatchStages,
-        constants: &[Specialization],
-        evaluation: &[u32],
-        fragment: Shader,
-    ) -> Result<Owned<vk::Pipeline>, GpuError> {
+        constants: &'s [Specialization],
+        evaluation: &'s [u32],
+    ) -> Result<Vec<Shader<'s>>, GpuError> {
         let vertex = self.shaders.find(&patch.vertex(self.capture))?;
         let control = self.shaders.find(&patch.control(self.capture, self.texcoords))?;
-        let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
-        let evaluation = spaced(evaluation, spacing);
         let mut stages = vec![
             Shader::vertex(vertex).specialized(constants),
             Shader::tess_control(control).specialized(constants),
-            Shader::tess_evaluation(&evaluation),
+            Shader::tess_evaluation(evaluation),
         ];
         if self.capture == Capture::Triangles {
             stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
         }
-        stages.push(fragment);
-        self.create(name, key, &stages, patch.input_points())
+        Ok(stages)
     }
 
     fn create(
         &self,
         name: &str,
         key: PipelineKey,
+        target: &Target,
         stages: &[Shader],
-        patch_control_points: u32,
     ) -> Result<Owned<vk::Pipeline>, GpuError> {
         let style = &self.styles[key.style];
         let input = VertexInput::new(key.geometry, self.texcoords);
-        let target = match &self.target.pass {
-            Pass::Dynamic { color, depth, stencil, view_mask } => {
-                RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: *view_mask }
-            }
-            &Pass::RenderPass { render_pass, subpass, color_attachments } => {
-                RenderTarget::RenderPass { render_pass, subpass, color_attachments }
-            }
-        };
-        let stages = if style.rasterizer_discard { &stages[..stages.len() - 1] } else { stages };
         let topology = match key.geometry {
             GeometryKey::Subdivision(_)
             | GeometryKey::Patches(PatchStages { evaluation: Evaluation::Geometry, .. }, _) => {
@@ -325,7 +317,7 @@ impl Pipelines {
             _ => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
         let desc = GraphicsPipelineDesc {
-            patch_control_points,
+            patch_control_points: key.geometry.input_points(),
             vertex_bindings: input.bindings.as_slice(),
             vertex_attributes: &input.attributes,
             topology,
@@ -333,25 +325,26 @@ impl Pipelines {
             cull_mode: style.cull,
             front_face: style.front_face,
             line_width: style.line_width,
-            depth: if self.target.depth { style.depth } else { None },
+            depth: if target.depth { style.depth } else { None },
             depth_bias: style.depth_bias,
             blend: style.blend,
-            samples: self.target.samples,
+            first_color_only: style.writes_first_only(target),
+            samples: target.samples,
             rasterizer_discard: style.rasterizer_discard,
             cache: self.cache,
-            ..GraphicsPipelineDesc::new(name, self.layout.raw(), target, stages)
+            ..GraphicsPipelineDesc::new(name, self.layout.raw(), target.render_target(), stages)
         };
-        // SAFETY: the shaders are ours and match; the caller's fragment shader and target do by the contract of
-        // `Renderer::new`.
+        // SAFETY: the shaders are ours and match; the caller's shaders and targets do by the contract of `Renderer::new`.
         unsafe { desc.create(&self.context) }
     }
 }
 
-/// The fragment shader; `ours` are the constants of those that are ours.
-fn fragment<'a>(style: &'a Style, sharing: Sharing, ours: &'a [Specialization]) -> Shader<'a> {
-    let displaced = sharing == Sharing::Displacement;
+/// The fragment shader, if there is anything for it to do; `ours` are the constants of those that are ours.
+fn fragment<'a>(style: &'a Style, target: &Target, displaced: bool, ours: &'a [Specialization]) -> Option<Shader<'a>> {
     let code = match (&style.fragment, style.geometry) {
-        (Fragment::Spirv(code), _) => return Shader::fragment(code),
+        _ if style.rasterizer_discard => return None,
+        (Fragment::Spirv(code), _) => return Some(Shader::fragment(code)),
+        _ if target.render_target().color_attachments() == 0 => return None,
         (Fragment::Lit, Geometry::Surface) if displaced => shaders::SHADE_LIT_FRAG_DISPLACED,
         (Fragment::Normals, Geometry::Surface) if displaced => shaders::SHADE_NORMALS_FRAG_DISPLACED,
         (Fragment::Lit, Geometry::Surface) => shaders::SHADE_LIT_FRAG,
@@ -359,5 +352,5 @@ fn fragment<'a>(style: &'a Style, sharing: Sharing, ours: &'a [Specialization]) 
         (Fragment::Normals, Geometry::Surface) => shaders::SHADE_NORMALS_FRAG,
         _ => shaders::SHADE_FLAT_FRAG,
     };
-    Shader::fragment(code).specialized(ours)
+    Some(Shader::fragment(code).specialized(ours))
 }

@@ -22,7 +22,9 @@ impl Renderer {
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
     /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]). The device is done with what was recorded for
-    /// `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue.
+    /// `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue, and every one is: uploads
+    /// and changes are recorded once, and later frames count on them. A frame that turns out to have nothing to draw into, such
+    /// as when the swapchain is out of date, is submitted without draws.
     pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
         self.check_frame(frame_index)?;
         self.views_drawn[frame_index as usize] = 0;

@@ -236,10 +236,18 @@ pub(crate) fn reads_texels(device: &DeviceProperties) -> Specialization {
     Specialization::bool(9, device.reads_texels)
 }
 
+/// Words before the instructions of SPIR-V (1.6, 2.3).
+const HEADER_WORDS: usize = 5;
+
+/// Whether words start as SPIR-V does, and go on. Drivers crash on less.
+pub(super) fn is_spirv(code: &[u32]) -> bool {
+    const MAGIC: u32 = 0x0723_0203;
+    code.len() > HEADER_WORDS && code[0] == MAGIC
+}
+
 /// A tessellation evaluation shader with another spacing: the files all say `equal_spacing`.
 pub(crate) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
-    // SPIR-V 1.6, 2.3 and 3.6: five words of header; an instruction's first word is its length and its opcode.
-    const HEADER_WORDS: usize = 5;
+    // SPIR-V 1.6, 2.3 and 3.6: an instruction's first word is its length and its opcode.
     const OP_EXECUTION_MODE: u32 = 16;
     const SPACING_EQUAL: u32 = 1;
     let mode = match spacing {
@@ -251,7 +259,7 @@ pub(crate) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
     let mut at = HEADER_WORDS;
     while at < code.len() {
         let (words, opcode) = ((code[at] >> 16) as usize, code[at] & 0xffff);
-        if opcode == OP_EXECUTION_MODE && code[at + 2] == SPACING_EQUAL {
+        if opcode == OP_EXECUTION_MODE && code.get(at + 2) == Some(&SPACING_EQUAL) {
             code[at + 2] = mode;
         }
         at += words.max(1);

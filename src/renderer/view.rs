@@ -14,11 +14,16 @@ pub struct View {
     /// Towards the light, in world space; any length but zero.
     pub light: [f32; 3],
     /// Width and height of the viewport in pixels, for factors in pixels ([`Factor`](super::Factor)) and for leaving out
-    /// small patches; zero if it is not known.
+    /// small patches; zeros if it is not known. What is not a finite number above 0 counts as not known.
     pub viewport: [f32; 2],
     /// What factors and culling go by, if not by this view itself: such as the main view for its shadows, so that both are of
     /// the same triangles (and then without culling), or a view that another one is to look at.
     pub measured_from: Option<MeasuredFrom>,
+}
+
+/// Whether the size of a viewport is known.
+pub(crate) fn is_size(viewport: [f32; 2]) -> bool {
+    viewport.iter().all(|&side| side > 0.0 && side.is_finite())
 }
 
 /// A view by which factors and culling go.
@@ -33,8 +38,8 @@ pub struct MeasuredFrom {
 }
 
 impl View {
-    /// A perspective camera at `eye` that looks at `target`. `fov_y` is the full vertical angle in radians; the light
-    /// comes from above the left shoulder.
+    /// A perspective camera at `eye` that looks at `target`. `fov_y` is the full vertical angle in radians, `aspect` width by
+    /// height, above 0; the light comes from above the left shoulder.
     pub fn perspective(
         eye: [f32; 3],
         target: [f32; 3],
@@ -72,9 +77,11 @@ impl View {
         Self { viewport: [width as f32, height as f32], ..self }
     }
 
-    /// A camera that sees all of a box. `towards` leads from the box to the eye.
+    /// A camera that sees all of a box. `towards` leads from the box to the eye; `aspect` is width by height, and taken as 1 if it
+    /// is not a finite number above 0, as of a window without pixels.
     pub fn framing(bounds: [DVec3; 2], towards: [f32; 3], aspect: f32) -> Self {
         const FOV_Y: f32 = 0.6;
+        let aspect = if aspect > 0.0 && aspect.is_finite() { aspect } else { 1.0 };
         let [low, high] = bounds.map(|b| b.as_vec3());
         let centre = (low + high) / 2.0;
         let radius = ((high - low).length() / 2.0).max(f32::MIN_POSITIVE.sqrt());
@@ -144,6 +151,10 @@ mod tests {
         let view = View::perspective([1.0, 2.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 0.6, 1.5, [0.25, 40.0]);
         let [_, _, near, _] = view.data().viewport;
         assert!((near - 0.25).abs() < 1e-4, "{near}");
+        let framing = |aspect| View::framing([DVec3::NEG_ONE, DVec3::ONE], [0.0, 0.0, 1.0], aspect);
+        for aspect in [0.0, -2.0, f32::NAN, f32::INFINITY] {
+            assert_eq!(framing(aspect), framing(1.0));
+        }
         let parallel = Mat4::from_scale(Vec3::new(0.5, -0.5, 0.1)).to_cols_array_2d();
         assert_eq!(View { view_projection: parallel, ..view }.data().viewport[2], 1.0);
     }

@@ -5,9 +5,9 @@ pub mod edges;
 #[cfg(all(feature = "headless", feature = "png"))]
 pub mod golden;
 pub mod limit;
-pub mod random;
 #[cfg(feature = "headless")]
-pub mod render_pass;
+pub mod passes;
+pub mod random;
 #[cfg(feature = "headless")]
 pub mod stage;
 

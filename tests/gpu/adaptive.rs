@@ -293,11 +293,13 @@ fn wrong_use_is_told() {
     let options = ModelOptions { edge_factors: true, spacing: Spacing::FractionalOdd, ..ModelOptions::default() };
     let captured = Captured::new(&headless, &cube, &options).expect("a model");
     let error = |draw: CaptureDraw| captured.factors(&draw).expect_err("an error").to_string();
-    let unsized_view = View { viewport: [0.0; 2], ..view(&cube, [0.0, 0.0, 1.0]) };
-    assert_eq!(
-        error(CaptureDraw { view: unsized_view, ..CaptureDraw::new(Factor::Pixels(2.0)) }),
-        "model 0: factors in pixels and leaving out small patches need the size of the viewport: set View::viewport"
-    );
+    for viewport in [[0.0; 2], [5.0, -5.0], [f32::NAN, 5.0], [5.0, f32::INFINITY]] {
+        let unsized_view = View { viewport, ..view(&cube, [0.0, 0.0, 1.0]) };
+        assert_eq!(
+            error(CaptureDraw { view: unsized_view, ..CaptureDraw::new(Factor::Pixels(2.0)) }),
+            "model 0: factors in pixels and leaving out small patches need the size of the viewport: set View::viewport"
+        );
+    }
     assert_eq!(
         error(CaptureDraw { edge_factors: vec![1.0; 3], ..CaptureDraw::new(Factor::Edges(1.0)) }),
         "model 0: 3 factors are given, but its patches have 12 edges"
@@ -371,16 +373,27 @@ fn wrong_displacement_is_told() {
         );
         assert_eq!(first.add_model(&mesh, &options).unwrap_err().to_string(), told);
     }
-    let of = |displacement| ModelOptions { displacement, ..ModelOptions::default() };
-    for (built, options, how) in [(displacement, None, "with"), (None, displacement, "without")] {
-        let tables = ModelTables::new(&mesh, &of(built)).expect("tables");
-        let told = format!(
-            "model 0: its tables were built {how} ModelOptions::displacement, unlike its options: build them with the same \
-             options"
-        );
-        let error = first.add_tables(tables, &mesh.positions_f32(), &of(options)).unwrap_err();
-        assert_eq!(error.to_string(), told);
+    let plain = ModelOptions::default();
+    for (option, other) in [
+        ("displacement", ModelOptions { displacement, ..plain.clone() }),
+        ("shared_normals", ModelOptions { shared_normals: true, ..plain.clone() }),
+        ("edge_factors", ModelOptions { edge_factors: true, ..plain.clone() }),
+    ] {
+        for (built, asked, how) in [(&other, &plain, "with"), (&plain, &other, "without")] {
+            let tables = ModelTables::new(&mesh, built).expect("tables");
+            let told = format!(
+                "model 0: its tables were built {how} ModelOptions::{option}, unlike its options: build them with the same \
+                 options"
+            );
+            let error = first.add_tables(tables, &mesh.positions_f32(), asked).unwrap_err();
+            assert_eq!(error.to_string(), told);
+        }
     }
+    // Displacement shares normals, whether that is asked for or not.
+    let [quiet, asked] =
+        [false, true].map(|shared_normals| ModelOptions { displacement, shared_normals, ..plain.clone() });
+    let tables = ModelTables::new(&mesh, &quiet).expect("tables");
+    first.add_tables(tables, &mesh.positions_f32(), &asked).expect("a model");
     drop((first, second, texture));
     headless.finish_silent();
 }

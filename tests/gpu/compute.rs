@@ -332,7 +332,7 @@ fn evaluations_that_need_features_say_so() {
     // SAFETY: the device is of the instance, has more than these features, and outlives the context; nothing is recorded.
     let context = unsafe { DeviceContext::new(instance, stage.headless.physical_device(), device, allocator, without) };
     // SAFETY: nothing is recorded.
-    let error = unsafe { Renderer::new(&context, &target, &options) }.err().expect("an error").to_string();
+    let error = unsafe { Renderer::new(&context, &target, &options) }.expect_err("an error").to_string();
     for feature in ["geometryShader (the device has it", "vertexPipelineStores", "drawIndirectFirstInstance"] {
         assert!(error.contains(feature), "{error}");
     }

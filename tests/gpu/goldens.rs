@@ -5,7 +5,7 @@
 
 use crate::common;
 use crate::common::golden;
-use crate::common::render_pass::{Moment, RenderPassTarget};
+use crate::common::passes::{Moment, PassTarget};
 use ash::vk;
 use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
@@ -227,7 +227,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
         false => view,
     };
     let desc = OffscreenDesc { samples: picture.samples, color: picture.format, ..OffscreenDesc::new(SIDE, SIDE) };
-    let pass = in_render_pass.then(|| RenderPassTarget::new(headless, EXTENT));
+    let pass = in_render_pass.then(|| PassTarget::new(headless, EXTENT));
     let target = match &pass {
         Some(pass) => pass.target(),
         None => Target::dynamic(desc.color, desc.depth, desc.samples),

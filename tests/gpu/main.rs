@@ -4,6 +4,7 @@
 mod adaptive;
 mod batches;
 mod bench;
+mod checks;
 #[path = "../common/mod.rs"]
 mod common;
 mod compute;
@@ -13,6 +14,7 @@ mod goldens;
 mod headless;
 mod lattices;
 mod module;
+mod passes;
 mod screen;
 mod seams;
 mod subdivision;

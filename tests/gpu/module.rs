@@ -2,15 +2,12 @@
 //! what it says when it is used wrongly.
 
 use ash::vk;
-use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};
 use ash_subdiv::headless::{Headless, HeadlessOptions, Offscreen, OffscreenDesc};
 use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::renderer::{ColorEncoding, Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ContextOptions, ControlMesh, DeviceContext, DrawItem, Error, ModelOptions, Options, Renderer, Style,
-    Target, View, check, requirements, shape,
+    Construction, ControlMesh, DrawItem, Error, ModelOptions, Options, Renderer, Style, Target, View, shape,
 };
-use std::sync::Arc;
 
 #[allow(dead_code, reason = "other tests use the other shaders")]
 mod shaders {
@@ -294,76 +291,18 @@ fn wrong_use_is_told() {
         draw(&mut renderer, 0, item),
         "2 views were already drawn or culled in frame 0: raise Options::views_per_frame"
     );
+    // Another renderer's first model is not this one's.
+    let mut other = stage.renderer(&Options::default());
+    let error = other.set_positions(model, 0, &[[0.0; 3]; 8]).unwrap_err().to_string();
+    assert_eq!(error, "model 0: there is no such model: it was removed, or is another renderer's");
+    let first = other.add_model(&mesh, &ModelOptions::default()).unwrap();
+    assert!(first != model && other.set_positions(model, 0, &[[0.0; 3]; 8]).is_err());
+    drop(other);
     let error = renderer.set_positions(model, 0, &[[0.0; 3]; 7]).unwrap_err().to_string();
     assert_eq!(error, "model 0: 7 positions are given, but its control mesh has 8 vertices");
     let error = renderer.set_positions(model, 5, &[[0.0; 3]; 8]).unwrap_err().to_string();
     assert_eq!(error, "frame index 5: Options::frames_in_flight is 2, so frames are 0 to 1");
     drop(renderer);
-    stage.finish();
-}
-
-#[test]
-fn what_a_device_lacks_is_named_at_once() {
-    let stage = Stage::new();
-    let (instance, device) = (stage.headless.instance(), stage.headless.physical_device());
-    let mut target = stage.target();
-    target.samples = vk::SampleCountFlags::TYPE_64;
-    let styles = vec![Style { line_width: 1e9, ..Style::default() }];
-    let options = Options { styles, ..Options::default() };
-    // SAFETY: the device is of the instance.
-    let error = unsafe { check(instance, device, &target, &options) }.unwrap_err().to_string();
-    let name = &stage.headless.properties().name;
-    assert!(error.starts_with(&format!("{name}: missing 64 samples a pixel (it has 1, 4), lines 1000000000 pixels")));
-    assert!(error.ends_with(": choose another device, or options that need less"), "{error}");
-    // SAFETY: as above.
-    unsafe { check(instance, device, &stage.target(), &Options::default()) }.unwrap();
-
-    let needs = requirements(&stage.target(), &Options { styles: vec![Style::wireframe()], ..Options::default() });
-    let expected =
-        Features { tessellation: true, dynamic_rendering: true, fill_mode_non_solid: true, ..Features::NONE };
-    assert_eq!(needs.features, expected);
-    for (options, what) in [
-        (Options { frames_in_flight: 0, ..Options::default() }, "frames_in_flight"),
-        (Options { views_per_frame: 0, ..Options::default() }, "views_per_frame"),
-    ] {
-        // SAFETY: as above.
-        let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
-        assert_eq!(error, format!("{what} of Options is 0: it must be at least 1"));
-    }
-    let options = Options { shaders: vec![("EVALUATE_ACC".into(), Vec::new())], ..Options::default() };
-    // SAFETY: as above.
-    let error = unsafe { check(instance, device, &stage.target(), &options) }.unwrap_err().to_string();
-    assert_eq!(
-        error,
-        "Options::shaders: EVALUATE_ACC: there is no such shader to replace: gpu::shaders::ALL names those that there are"
-    );
-    stage.finish();
-}
-
-/// Has nothing to give.
-struct NoMemory;
-
-// SAFETY: no allocation is ever made.
-unsafe impl Allocator for NoMemory {
-    fn allocate(&self, _: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError> {
-        Err("no memory".into())
-    }
-
-    unsafe fn free(&self, _: Allocation) {}
-}
-
-#[test]
-fn features_that_the_context_was_not_told_of_are_named() {
-    let stage = Stage::new();
-    let (instance, device) = (stage.headless.instance(), stage.headless.device());
-    let made = ContextOptions::default();
-    // SAFETY: the device is of the instance and outlives the context; nothing is made from the context.
-    let error = unsafe {
-        let context = DeviceContext::new(instance, stage.headless.physical_device(), device, Arc::new(NoMemory), made);
-        Renderer::new(&context, &stage.target(), &Options::default()).err().expect("an error").to_string()
-    };
-    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
-    assert!(error.contains(&format!("missing tessellationShader {off}, dynamicRendering {off}:")), "{error}");
     stage.finish();
 }
 

@@ -1,0 +1,36 @@
+//! What models take.
+
+/// Bytes by what they are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MemoryUsage {
+    /// Connectivity or stencils, and texture coordinates, on the device.
+    pub tables: u64,
+    /// Control vertices on the device, and factors of edges.
+    pub positions: u64,
+    /// What the cached construction keeps, on the device: control points, what corners share, frames.
+    pub control_points: u64,
+    /// Vertices that were evaluated by compute, and indices of lattices, on the device.
+    pub vertices: u64,
+    /// Edges and faces of control meshes on the device, if a style draws them.
+    pub control_meshes: u64,
+    /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
+    pub staging: u64,
+    /// Lists of the patches that can be seen, on the device.
+    pub lists: u64,
+    /// What the host writes for each view.
+    pub views: u64,
+}
+
+impl MemoryUsage {
+    /// All together.
+    pub fn total(self) -> u64 {
+        self.tables
+            + self.positions
+            + self.control_points
+            + self.vertices
+            + self.control_meshes
+            + self.lists
+            + self.staging
+            + self.views
+    }
+}

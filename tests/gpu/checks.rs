@@ -1,0 +1,129 @@
+//! What is found out before anything is made: what a device lacks, and options that no device goes with.
+
+use crate::common::stage::Stage;
+use ash::vk;
+use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};
+use ash_subdiv::renderer::Fragment;
+use ash_subdiv::{ContextOptions, DeviceContext, Error, Options, Renderer, Style, Target, check, requirements};
+use std::sync::Arc;
+
+#[allow(dead_code, reason = "other tests use the other shaders")]
+mod shaders {
+    include!(concat!(env!("OUT_DIR"), "/test_shaders.rs"));
+}
+
+fn target(stage: &Stage) -> Target {
+    let desc = stage.target.desc();
+    Target::dynamic(desc.color, desc.depth, desc.samples)
+}
+
+#[test]
+fn what_a_device_lacks_is_named_at_once() {
+    let stage = Stage::new();
+    let (instance, device) = (stage.headless.instance(), stage.headless.physical_device());
+    let mut many = target(&stage);
+    many.samples = vk::SampleCountFlags::TYPE_64;
+    let styles = vec![Style { line_width: 1e9, ..Style::default() }];
+    let options = Options { styles, ..Options::default() };
+    // SAFETY: the device is of the instance.
+    let error = unsafe { check(instance, device, &many, &options) }.unwrap_err().to_string();
+    let name = &stage.headless.properties().name;
+    assert!(error.starts_with(&format!("{name}: missing 64 samples a pixel (it has 1, 4), lines 1000000000 pixels")));
+    assert!(error.ends_with(": choose another device, or options that need less"), "{error}");
+    // SAFETY: as above.
+    unsafe { check(instance, device, &target(&stage), &Options::default()) }.unwrap();
+
+    let needs = requirements(&target(&stage), &Options { styles: vec![Style::wireframe()], ..Options::default() });
+    let expected =
+        Features { tessellation: true, dynamic_rendering: true, fill_mode_non_solid: true, ..Features::NONE };
+    assert_eq!(needs.features, expected);
+    for (options, what) in [
+        (Options { frames_in_flight: 0, ..Options::default() }, "frames_in_flight"),
+        (Options { views_per_frame: 0, ..Options::default() }, "views_per_frame"),
+    ] {
+        // SAFETY: as above.
+        let error = unsafe { check(instance, device, &target(&stage), &options) }.unwrap_err().to_string();
+        assert_eq!(error, format!("{what} of Options is 0: it must be at least 1"));
+    }
+    // SAFETY: as above.
+    let told = |target: &Target, options| unsafe { check(instance, device, target, &options) }.unwrap_err().to_string();
+    let code = shaders::TEXCOORD_FRAG;
+    let no_spirv = "give whole modules, as words in this machine's order of bytes (the first is 0x07230203)";
+    for (name, code, expected) in [
+        (
+            "EVALUATE_ACC",
+            code,
+            ": there is no such shader to replace: gpu::shaders::ALL names those that there are".to_owned(),
+        ),
+        (
+            "SHADE_LIT_FRAG",
+            code,
+            ": there is no such shader to replace: fragment shaders are those of styles: set Style::fragment to \
+             Fragment::Spirv"
+                .to_owned(),
+        ),
+        ("EVALUATE_ACC_TESE", &[], format!(" is no SPIR-V: {no_spirv}")),
+    ] {
+        let options = Options { shaders: vec![(name.into(), code.to_vec())], ..Options::default() };
+        assert_eq!(told(&target(&stage), options), format!("Options::shaders: {name}{expected}"));
+    }
+    let swapped: Vec<u32> = code.iter().map(|word| word.swap_bytes()).collect();
+    for bad in [Vec::new(), code[..5].to_vec(), swapped] {
+        let styles = vec![Style::default(), Style { fragment: Fragment::Spirv(bad), ..Style::default() }];
+        let error = told(&target(&stage), Options { styles, ..Options::default() });
+        assert_eq!(error, format!("Options::styles: Fragment::Spirv of style 1 is no SPIR-V: {no_spirv}"));
+    }
+    for (samples, given) in [
+        (vk::SampleCountFlags::empty(), "empty"),
+        (vk::SampleCountFlags::TYPE_1 | vk::SampleCountFlags::TYPE_4, "TYPE_1 | TYPE_4"),
+    ] {
+        let error = told(&Target { samples, ..target(&stage) }, Options::default());
+        assert_eq!(error, format!("Target::samples is {given}: give one number of samples, such as TYPE_1"));
+    }
+    stage.finish();
+}
+
+/// Has nothing to give.
+struct NoMemory;
+
+// SAFETY: no allocation is ever made.
+unsafe impl Allocator for NoMemory {
+    fn allocate(&self, _: &AllocationRequest<'_>) -> Result<Allocation, AllocatorError> {
+        Err("no memory".into())
+    }
+
+    unsafe fn free(&self, _: Allocation) {}
+}
+
+#[test]
+fn features_that_the_context_was_not_told_of_are_named() {
+    let stage = Stage::new();
+    let (instance, device) = (stage.headless.instance(), stage.headless.device());
+    let made = ContextOptions::default();
+    // SAFETY: the device is of the instance and outlives the context; nothing is made from the context.
+    let error = unsafe {
+        let context = DeviceContext::new(instance, stage.headless.physical_device(), device, Arc::new(NoMemory), made);
+        Renderer::new(&context, &target(&stage), &Options::default()).expect_err("an error").to_string()
+    };
+    let off = "(the device has it: enable it, and name it in ContextOptions::features)";
+    assert!(error.contains(&format!("missing tessellationShader {off}, dynamicRendering {off}:")), "{error}");
+    stage.finish();
+}
+
+#[test]
+fn every_target_is_checked() {
+    let stage = Stage::new();
+    let (instance, device) = (stage.headless.instance(), stage.headless.physical_device());
+    let depth_only = |samples| Target::depth_only(vk::Format::D32_SFLOAT, samples);
+    let of_pass = Target::render_pass(vk::RenderPass::null(), 0, vk::SampleCountFlags::TYPE_1);
+    let options = |own| Options { styles: vec![Style { target: Some(own), ..Style::default() }], ..Options::default() };
+    assert!(!requirements(&of_pass, &options(of_pass.clone())).features.dynamic_rendering);
+    let one = options(depth_only(vk::SampleCountFlags::TYPE_1));
+    assert!(requirements(&of_pass, &one).features.dynamic_rendering);
+    // SAFETY: the device is of the instance.
+    let told = |own| unsafe { check(instance, device, &of_pass, &own) }.map_err(|error: Error| error.to_string());
+    assert_eq!(told(one), Ok(()));
+    let error = told(options(depth_only(vk::SampleCountFlags::TYPE_64))).unwrap_err();
+    assert!(error.contains("missing 64 samples a pixel (it has 1, 4)"), "{error}");
+    stage.finish();
+}
