@@ -25,6 +25,8 @@
 #include "capture.glsl"
 #endif
 
+// The same bits in every pipeline: a pass for depth alone, and one that tests against it.
+invariant gl_Position;
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 #ifdef TEXCOORD

@@ -11,6 +11,8 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 
+// The same bits in every pipeline: a pass for depth alone, and one that tests against it.
+invariant gl_Position;
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 #ifdef TEXCOORD

@@ -43,7 +43,7 @@ layout(triangle_strip, max_vertices = 64) out;
 layout(location = 4) in uint tile_number[];  // among those of all patches of the draw
 
 out gl_PerVertex {
-    vec4 gl_Position;
+    invariant vec4 gl_Position;
 };
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;

@@ -24,6 +24,8 @@ layout(quads, equal_spacing, cw) in;
 // The control points that each corner owns.
 layout(location = 0) in vec3 owned[][OWNED];
 
+// The same bits in every pipeline: a pass for depth alone, and one that tests against it.
+invariant gl_Position;
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 #ifdef TEXCOORD

@@ -51,7 +51,7 @@ layout(location = 4) in uint patch_number[];
 
 // Without what else is in there, which would count.
 out gl_PerVertex {
-    vec4 gl_Position;
+    invariant vec4 gl_Position;
 };
 
 layout(location = 0) out vec3 world_position;

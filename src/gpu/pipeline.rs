@@ -10,7 +10,7 @@ use super::{DeviceContext, GpuError, Owned, Shader, VkResultExt};
 pub enum RenderTarget<'a> {
     #[allow(missing_docs, reason = "named as in Vulkan")]
     /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
-    Dynamic { color: &'a [vk::Format], depth: vk::Format, stencil: vk::Format, view_mask: u32 },
+    Dynamic { color: &'a [vk::Format], depth: vk::Format, stencil: vk::Format },
     #[allow(missing_docs, reason = "named as in Vulkan")]
     /// A subpass of a render pass that has this many colour attachments.
     RenderPass { render_pass: vk::RenderPass, subpass: u32, color_attachments: u32 },
@@ -210,12 +210,11 @@ impl<'a> GraphicsPipelineDesc<'a> {
             info = info.tessellation_state(&tessellation);
         }
         match self.target {
-            RenderTarget::Dynamic { color, depth, stencil, view_mask } => {
+            RenderTarget::Dynamic { color, depth, stencil } => {
                 rendering = rendering
                     .color_attachment_formats(color)
                     .depth_attachment_format(depth)
-                    .stencil_attachment_format(stencil)
-                    .view_mask(view_mask);
+                    .stencil_attachment_format(stencil);
                 info = info.push_next(&mut rendering);
             }
             RenderTarget::RenderPass { render_pass, subpass, .. } => {

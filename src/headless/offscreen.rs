@@ -93,7 +93,6 @@ impl Offscreen {
             color: std::slice::from_ref(&self.desc.color),
             depth: self.desc.depth,
             stencil: vk::Format::UNDEFINED,
-            view_mask: 0,
         }
     }
 

@@ -78,7 +78,7 @@ impl Target {
     pub(super) fn render_target(&self) -> RenderTarget<'_> {
         match &self.pass {
             Pass::Dynamic { color, depth, stencil } => {
-                RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil, view_mask: 0 }
+                RenderTarget::Dynamic { color, depth: *depth, stencil: *stencil }
             }
             &Pass::RenderPass { render_pass, subpass, color_attachments } => {
                 RenderTarget::RenderPass { render_pass, subpass, color_attachments }

@@ -98,7 +98,6 @@ impl Kit {
             color: std::slice::from_ref(&lane.target.color),
             depth: lane.target.depth,
             stencil: vk::Format::UNDEFINED,
-            view_mask: 0,
         };
         let pipeline = |pass: Pass| {
             let mut stages = stages.to_vec();
