@@ -4,6 +4,8 @@
 #include "draw.glsl"
 #include "positions.glsl"
 
+// The same bits in every pipeline: a pass for depth alone, and one that tests against it.
+invariant gl_Position;
 layout(location = 0) out vec3 world_position;
 
 void main() {

@@ -9,8 +9,8 @@
 // and give the SPIR-V to the renderer as `Options::shaders` under the name "EVALUATE_GREGORY_QUAD_TESE_DISPLACED"; the same
 // for `bicubic` and `gregory_triangle`. Without the tessellation stages it is `lattice.vert` alone (evaluation by compute;
 // "EVALUATE_LATTICE_VERT_DISPLACED"), or with one of -DBICUBIC, -DGREGORY_QUAD, -DGREGORY_TRIANGLE `instanced.vert`
-// ("EVALUATE_INSTANCED_VERT_BICUBIC_DISPLACED"; control points as vertex attributes, which is faster, with -DATTRIBUTES besides, under
-// that name and "_ATTRIBUTES") or, with -DCACHED besides, `strips.geom`
+// ("EVALUATE_INSTANCED_VERT_BICUBIC_DISPLACED"; for control points as vertex attributes, which is faster, with -DATTRIBUTES
+// besides, under that name and "_ATTRIBUTES") or, with -DCACHED besides, `strips.geom`
 // ("EVALUATE_STRIPS_GEOM_BICUBIC_CACHED_DISPLACED"). For the map include `displacement_map.glsl`. Light knows nothing of it: bring a
 // fragment shader of your own.
 #ifndef DISPLACE_GLSL

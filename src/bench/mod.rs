@@ -229,7 +229,7 @@ impl Contestant {
 
     /// Whether compute looks for the patches to leave out ([`Renderer::cmd_cull`](crate::Renderer::cmd_cull)); otherwise the
     /// control shader does.
-    pub(super) fn looks(self) -> bool {
+    pub(super) fn culls_by_compute(self) -> bool {
         self.cull != Cull::NONE && matches!(self.patches, Some((_, Construction::Cached)))
     }
 

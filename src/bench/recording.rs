@@ -39,8 +39,8 @@ pub struct Recording {
 }
 
 impl Bench<'_> {
-    /// Records frames of `models` models. Only the first frame of each crowd is submitted. At factor 1 and without rasterization: how
-    /// finely they are drawn makes no difference to the host.
+    /// Records frames of `models` models. Only the first frame of each crowd is submitted. At factor 1 and without
+    /// rasterization: how finely they are drawn makes no difference to the host.
     ///
     /// # Errors
     /// [`BenchError::NotRecorded`] for paths that the renderer does not draw; [`BenchError::BadOption`] without models; what
@@ -63,7 +63,7 @@ impl Bench<'_> {
         let target = Target::dynamic(target.color, target.depth, target.samples);
         let styles = vec![Style { rasterizer_discard: true, ..Style::default() }];
         let evaluations = vec![model_options.evaluation];
-        let visible_lists = contestant.looks();
+        let visible_lists = contestant.culls_by_compute();
         let options = Options {
             frames_in_flight: 1,
             views_per_frame: 1,
@@ -123,7 +123,7 @@ impl Bench<'_> {
             self.headless().record(|cmd| unsafe {
                 let (visible, prepare) = timed(|| {
                     renderer.cmd_prepare(cmd, 0)?;
-                    contestant.looks().then(|| renderer.cmd_cull(cmd, 0, frame.view, items)).transpose()
+                    contestant.culls_by_compute().then(|| renderer.cmd_cull(cmd, 0, frame.view, items)).transpose()
                 })?;
                 target.cmd_begin(cmd, [0.0; 4]);
                 let ((), draw) = timed(|| match &visible {

@@ -24,7 +24,7 @@ pub(super) struct Surface {
     evaluation: Evaluation,
     cull: Cull,
     /// Whether compute looks for what can be seen.
-    looks: bool,
+    culls_by_compute: bool,
     /// What is drawn of the next pass.
     visible: Option<VisibleItems>,
 }
@@ -39,7 +39,7 @@ impl Surface {
         // In the order of `Pass::ALL`.
         let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
         let evaluations = vec![evaluation];
-        let looks = contestant.looks();
+        let culls_by_compute = contestant.culls_by_compute();
         let shaders = if as_published { published::shaders() } else { Vec::new() };
         let options = Options {
             frames_in_flight: 1,
@@ -47,7 +47,7 @@ impl Surface {
             styles,
             evaluations,
             shaders,
-            visible_lists: looks,
+            visible_lists: culls_by_compute,
             ..Options::default()
         };
         let render_target = Target::dynamic(target.color, target.depth, target.samples);
@@ -56,23 +56,23 @@ impl Surface {
             // SAFETY: the command buffer is being recorded, outside rendering.
             headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })
         };
-        let add = |renderer: &mut Renderer| {
-            let tables = tables.clone();
+        let add = |renderer: &mut Renderer, tables| {
             timed(|| {
                 let model = renderer.add_tables(tables, &positions, &model_options)?;
                 prepare(renderer)?;
                 Ok::<_, Error>(model)
             })
         };
+        let first = tables.clone();
         let ((mut renderer, model), pipelines) = timed(|| {
             // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
             let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options)? };
-            let (model, _) = add(&mut renderer)?;
+            let (model, _) = add(&mut renderer, first)?;
             Ok::<_, Error>((renderer, model))
         })?;
         // Others of the kind, now that the pipelines are there.
         let ((), upload) = median_of(|| {
-            let (other, time) = add(&mut renderer)?;
+            let (other, time) = add(&mut renderer, tables.clone())?;
             renderer.remove_model(other)?;
             // Its memory is freed here, and not in what is timed next.
             prepare(&mut renderer)?;
@@ -99,7 +99,7 @@ impl Surface {
             patches,
             evaluation,
             cull: contestant.cull,
-            looks,
+            culls_by_compute,
             visible: None,
         })
     }
@@ -145,7 +145,7 @@ impl Drawable for Surface {
     }
 
     unsafe fn cmd_begin_pass(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
-        if self.looks {
+        if self.culls_by_compute {
             let items = self.items(frame);
             // SAFETY: as the caller promises.
             self.visible = Some(unsafe { self.renderer.cmd_cull(cmd, 0, frame.view, &items)? });

@@ -40,6 +40,10 @@ features! {
     /// Keeps validation layers from warning of outputs that the next stage does not read, such as what invocations of a control
     /// shader tell each other; every device with Vulkan 1.3 has it.
     maintenance4 = "maintenance4",
+    /// `discard` in fragment shaders of the caller's, compiled for Vulkan 1.3.
+    terminate_invocation = "shaderTerminateInvocation",
+    /// The same by other compilers.
+    demote_to_helper_invocation = "shaderDemoteToHelperInvocation",
     /// Wireframe pictures.
     fill_mode_non_solid = "fillModeNonSolid",
     /// Lines of more than one pixel.
@@ -69,6 +73,8 @@ impl Features {
         dynamic_rendering: false,
         synchronization2: false,
         maintenance4: false,
+        terminate_invocation: false,
+        demote_to_helper_invocation: false,
         fill_mode_non_solid: false,
         wide_lines: false,
         vertex_stores: false,
@@ -105,6 +111,8 @@ impl Features {
             dynamic_rendering: v13.dynamic_rendering == vk::TRUE,
             synchronization2: v13.synchronization2 == vk::TRUE,
             maintenance4: v13.maintenance4 == vk::TRUE,
+            terminate_invocation: v13.shader_terminate_invocation == vk::TRUE,
+            demote_to_helper_invocation: v13.shader_demote_to_helper_invocation == vk::TRUE,
             fill_mode_non_solid: core.fill_mode_non_solid == vk::TRUE,
             wide_lines: core.wide_lines == vk::TRUE,
             vertex_stores: core.vertex_pipeline_stores_and_atomics == vk::TRUE,
@@ -152,7 +160,9 @@ impl Features {
         let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
             .dynamic_rendering(self.dynamic_rendering)
             .synchronization2(self.synchronization2)
-            .maintenance4(self.maintenance4);
+            .maintenance4(self.maintenance4)
+            .shader_terminate_invocation(self.terminate_invocation)
+            .shader_demote_to_helper_invocation(self.demote_to_helper_invocation);
         let mut feedback = vk::PhysicalDeviceTransformFeedbackFeaturesEXT::default().transform_feedback(true);
         let mut all = vk::PhysicalDeviceFeatures2::default().features(core).push_next(&mut v13);
         if self.transform_feedback {

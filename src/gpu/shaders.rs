@@ -24,6 +24,37 @@ pub fn named(constant: &str) -> Result<&'static [u32], GpuError> {
 
 #[cfg(test)]
 mod tests {
+    /// Depth of one pipeline is tested against that of another.
+    #[test]
+    fn positions_are_invariant() {
+        const HEADER_WORDS: usize = 5;
+        const OP_MEMBER_DECORATE: u32 = 72;
+        const INVARIANT: u32 = 18;
+        let draws = |name: &str| {
+            let surface = name.starts_with("EVALUATE_") || name.starts_with("SUBDIVIDE_");
+            surface && !name.contains("_COMP") || name.starts_with("CONSTRUCT_CONTROL_MESH_VERT")
+        };
+        let is_invariant = |code: &[u32]| {
+            let mut rest = &code[HEADER_WORDS..];
+            while let Some(&first) = rest.first() {
+                let (instruction, after) = rest.split_at((first >> 16) as usize);
+                if (first & 0xffff, instruction.last()) == (OP_MEMBER_DECORATE, Some(&INVARIANT)) {
+                    return true;
+                }
+                rest = after;
+            }
+            false
+        };
+        let (mut count, mut varying) = (0, Vec::new());
+        for (name, code) in super::ALL.iter().filter(|(name, _)| draws(name)) {
+            count += 1;
+            if !is_invariant(code) {
+                varying.push(name);
+            }
+        }
+        assert!(count > 50 && varying.is_empty(), "of {count}: {varying:?}");
+    }
+
     #[test]
     fn shaders_that_are_not_there_are_named() {
         assert_eq!(super::named("SHADE_LIT_FRAG").unwrap(), super::SHADE_LIT_FRAG);

@@ -236,11 +236,11 @@ impl ControlMesh {
     }
 }
 
-/// Everything that can be checked without neighbours. Gives the face offsets.
-/// The most vertices, and face corners, of a mesh: ring tables have up to three entries a face corner, counted in u32, where the
-/// top bit of an index is a flag.
+/// The most vertices, and face corners, of a mesh: ring tables have up to three entries a face corner, counted in u32, where
+/// the top bit of an index is a flag.
 pub(crate) const MAX_CORNERS: usize = 1 << 30;
 
+/// Everything that can be checked without neighbours. Gives the face offsets.
 fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     let count = data.positions.len();
     if count == 0 {

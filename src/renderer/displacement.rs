@@ -50,7 +50,8 @@ impl DisplacementMap {
     }
 }
 
-/// Names a displacement map of a [`Renderer`](super::Renderer).
+/// Names a displacement map of a [`Renderer`](super::Renderer) by how many it was told of before. That of another renderer is not
+/// told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct DisplacementId(pub(super) usize);
 

@@ -49,13 +49,13 @@ impl DrawItem {
     }
 
     /// What the shaders know of it, for all patches; `most` is the largest factor of an edge.
-    pub(super) fn constants(&self, model: &Model, style: &Style, most: f32) -> DrawConstants {
+    pub(super) fn constants(&self, model: &Model, style: &Style, view: &View, most: f32) -> DrawConstants {
         let [scale, bias] = self.displacement;
         let value = match self.factor {
             Factor::Uniform(factor) => factor.min(most),
             factor => factor.value(),
         };
-        let back = if style.leaves_out_counter_clockwise(&self.transform) { COUNTER_CLOCKWISE_FLAG } else { 0 };
+        let back = if style.leaves_out_counter_clockwise(&self.transform, view) { COUNTER_CLOCKWISE_FLAG } else { 0 };
         let flags = model.displacement_flags(self.displacement) | back;
         DrawConstants { flags, ..DrawConstants::new(&self.transform, [value, scale, bias]) }
     }
@@ -83,7 +83,8 @@ impl Renderer {
     ///
     /// # Safety
     /// `cmd` is being recorded, inside rendering that fits the [`Target`](super::Target) of the items' styles, after
-    /// [`Renderer::cmd_prepare`] of the same frame. The caller's sets from 2 on are bound, with layouts as in [`Options::set_layouts`](super::Options::set_layouts).
+    /// [`Renderer::cmd_prepare`] of the same frame. The caller's sets from 2 on are bound, with layouts as in
+    /// [`Options::set_layouts`](super::Options::set_layouts).
     pub unsafe fn cmd_draw(
         &mut self,
         cmd: vk::CommandBuffer,
@@ -177,7 +178,7 @@ impl Renderer {
         let style = self.style(item)?;
         let (model, most) = self.check_item(view, item)?;
         let device = self.context.device();
-        let mut constants = item.constants(model, style, most);
+        let mut constants = item.constants(model, style, view, most);
         let lists = lists.filter(|lists| !lists.is_empty());
         let cull = if lists.is_some() { Cull::NONE } else { item.cull };
         let cut = Cut::new(item.factor, cull);

@@ -64,10 +64,10 @@ impl Factor {
 pub struct Cull {
     /// Those beyond a plane of the view frustum; their hull grows by what displacement can move them.
     pub frustum: bool,
-    /// Those all of whose triangles face away: that the style leaves out ([`Style::cull`](super::Style::cull)), for which the picture is
-    /// the same; or, if it leaves out none, whose inside is seen, which are hidden if the surface is closed. Of more of them that can
-    /// be told where patches are cut finely. Not done where the surface is displaced, nor in parallel projections. Not for views
-    /// that are mirrors.
+    /// Those all of whose triangles face away: those that the style leaves out ([`Style::cull`](super::Style::cull)), so that the
+    /// picture is the same; or, if it leaves out none, those whose inside is seen, which are hidden if the surface is closed. Of more
+    /// of them that can be told where patches are cut finely. Not done where the surface is displaced, nor in parallel
+    /// projections. Views that mirror say so ([`View::mirrored`](super::View::mirrored)).
     pub back: bool,
     /// Those between the centres of pixels. For one sample a pixel, and filled triangles. Needs
     /// [`View::viewport`](super::View::viewport). Not done where the surface is displaced.

@@ -1,6 +1,5 @@
 //! What frame debuggers call the pipelines of patches.
 
-use super::Evaluation;
 use super::factor::Cut;
 use super::stages::{PatchStages, Sharing};
 use crate::gpu::Spacing;
@@ -29,7 +28,7 @@ pub(super) fn patches(stages: PatchStages, cut: Cut) -> String {
         },
         flag(stages.has_speakers, "speakers"),
         flag(stages.edge_factors, "factors of edges"),
-        flag(evaluation == Evaluation::Instanced && !stages.attributes, "no attributes"),
+        flag(stages.attributes, "attributes"),
     ];
     let mut name = format!("{} {kind}, {}, {}", scheme.name(), construction.name(), evaluation.name());
     for word in more.into_iter().chain(cut.words()).filter(|word| !word.is_empty()) {
@@ -43,7 +42,7 @@ pub(super) fn patches(stages: PatchStages, cut: Cut) -> String {
 mod tests {
     use super::*;
     use crate::patch::Scheme;
-    use crate::renderer::{Construction, Cull, Factor};
+    use crate::renderer::{Construction, Cull, Evaluation, Factor};
 
     #[test]
     fn pipelines_are_told_apart_in_few_words() {

@@ -4,7 +4,7 @@ use super::bindings::MODEL_BUFFERS;
 use super::pipelines::CONTROL_COMPONENTS;
 use super::stages::is_spirv;
 use super::visible::LIST_FEATURES;
-use super::{Error, Evaluation, Pass, Target};
+use super::{Error, Evaluation, Pass, Target, View};
 use crate::gpu::{Blend, ContextOptions, DepthBias, DepthState, DeviceProperties, Features, shaders};
 use ash::vk;
 use glam::Mat4;
@@ -41,7 +41,8 @@ pub enum Fragment {
     Normals,
     /// The colour of the draw as it is.
     Flat,
-    /// Your own, of Vulkan 1.3 or older, with the entry point `main`.
+    /// Your own, of Vulkan 1.3 or older, with the entry point `main`. What features it needs is yours to enable, such as
+    /// [`Features::terminate_invocation`] for `discard` that was compiled for Vulkan 1.3.
     Spirv(Vec<u32>),
 }
 
@@ -96,12 +97,12 @@ impl Default for Style {
 }
 
 impl Style {
-    /// Whether it leaves out what is seen counter-clockwise of a surface with this transform, else what is seen clockwise. If it
-    /// leaves out neither: the inside.
-    pub(super) fn leaves_out_counter_clockwise(&self, transform: &[[f32; 4]; 4]) -> bool {
+    /// Whether it leaves out what winds counter-clockwise as the eye sees it in space, of a surface with this transform; else what
+    /// winds clockwise. If it leaves out neither: the inside.
+    pub(super) fn leaves_out_counter_clockwise(&self, transform: &[[f32; 4]; 4], view: &View) -> bool {
         match self.cull {
-            vk::CullModeFlags::BACK => self.front_face == vk::FrontFace::CLOCKWISE,
-            vk::CullModeFlags::FRONT => self.front_face == vk::FrontFace::COUNTER_CLOCKWISE,
+            vk::CullModeFlags::BACK => (self.front_face == vk::FrontFace::CLOCKWISE) != view.mirrored,
+            vk::CullModeFlags::FRONT => (self.front_face == vk::FrontFace::COUNTER_CLOCKWISE) != view.mirrored,
             _ => Mat4::from_cols_array_2d(transform).determinant() < 0.0,
         }
     }
@@ -290,7 +291,11 @@ pub(super) fn check_properties(
     for (what, least, has) in [
         // A list of patches besides; evaluation by compute has its vertices, too.
         ("storage buffers a shader stage", MODEL_BUFFERS as u32 + 2, properties.max_stage_storage_buffers),
-        ("numbers a vertex from the control shader", CONTROL_COMPONENTS, properties.max_control_components),
+        (
+            "numbers a vertex from the control to the evaluation shader",
+            CONTROL_COMPONENTS,
+            properties.max_control_components,
+        ),
     ] {
         if has < least {
             missing.push(format!("{least} {what} (it has {has})"));
@@ -321,6 +326,6 @@ mod tests {
         let error = check_properties(&properties, properties.features, &target, &Options::default()).unwrap_err();
         let told = error.to_string();
         assert!(told.contains("15 storage buffers a shader stage (it has 4)"), "{told}");
-        assert!(told.contains("120 numbers a vertex from the control shader (it has 64)"), "{told}");
+        assert!(told.contains("120 numbers a vertex from the control to the evaluation shader (it has 64)"), "{told}");
     }
 }

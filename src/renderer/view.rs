@@ -16,6 +16,9 @@ pub struct View {
     /// Width and height of the viewport in pixels, for factors in pixels ([`Factor`](super::Factor)) and for leaving out
     /// small patches; zeros if it is not known. What is not a finite number above 0 counts as not known.
     pub viewport: [f32; 2],
+    /// Whether it shows a mirror image, as of a lake: then triangles wind the other way in the picture than in space, which
+    /// [`Cull::back`](super::Cull::back) has to know.
+    pub mirrored: bool,
     /// What factors and culling go by, if not by this view itself: such as the main view for its shadows, so that both are of
     /// the same triangles (and then without culling), or a view that another one is to look at.
     pub measured_from: Option<MeasuredFrom>,
@@ -57,6 +60,7 @@ impl View {
             eye: eye.into(),
             light: light.normalize_or(Vec3::Y).into(),
             viewport: [0.0; 2],
+            mirrored: false,
             measured_from: None,
         }
     }

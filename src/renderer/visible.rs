@@ -107,9 +107,10 @@ impl Renderer {
     /// [`DrawItem::cull`]: for [`Renderer::cmd_draw_visible`], as often as you like in this frame.
     ///
     /// It is for models that are [`Construction::Cached`](super::Construction::Cached) and whose
-    /// [evaluation leaves out patches](Evaluation::culls). Others are drawn as by [`Renderer::cmd_draw`]. Takes memory: eight bytes
-    /// a patch, and for instances what they read of it, 256 bytes of a Gregory patch, which is kept for later frames. Binds compute pipelines, with sets 0 and
-    /// 1, and counts as one of [`Options::views_per_frame`](super::Options::views_per_frame).
+    /// [evaluation leaves out patches](Evaluation::culls). Others are drawn as by [`Renderer::cmd_draw`]. Takes memory, which is
+    /// kept for later frames: eight bytes a patch, and for instances what they read of it, 256 bytes of a Gregory patch. Binds
+    /// compute pipelines, with sets 0 and 1, and counts as one of
+    /// [`Options::views_per_frame`](super::Options::views_per_frame).
     ///
     /// # Errors
     /// As [`Renderer::cmd_draw`]; [`Error::NoVisibleLists`]; [`Error::ListsTooLarge`]. What was recorded until then does no harm.
@@ -256,7 +257,7 @@ impl Renderer {
         };
         for VisibleItem { item, lists, .. } in &visible.items {
             let (model, most) = self.check_item(&visible.view, item)?;
-            let of_draw = item.constants(model, self.style(item)?, most);
+            let of_draw = item.constants(model, self.style(item)?, &visible.view, most);
             for list in lists {
                 let group = &model.tables.plan().groups()[list.group];
                 let of_list = list.constants(&of_draw, group);

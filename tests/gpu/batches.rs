@@ -125,6 +125,7 @@ fn straight_down() -> View {
         eye: [0.0, 0.0, 1.0],
         light: [0.0, 0.0, 1.0],
         viewport: [0.0; 2],
+        mirrored: false,
         measured_from: None,
     }
 }

@@ -53,6 +53,7 @@ impl Stage {
             eye: [0.0, 0.0, 10.0],
             light: [0.0, 0.0, 1.0],
             viewport: [0.0; 2],
+            mirrored: false,
             measured_from: None,
         };
         // SAFETY: as above, inside rendering.

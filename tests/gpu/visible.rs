@@ -136,8 +136,9 @@ fn lists_leave_out_what_the_control_shader_does() {
 #[test]
 fn pictures_stay_the_same() {
     let stage = Stage::new();
-    let style = Style { cull: ash::vk::CullModeFlags::BACK, ..Style::default() };
-    let mut renderer = stage.renderer(&Options { styles: vec![style], ..options() });
+    use ash::vk::CullModeFlags as Faces;
+    let styles = [Faces::BACK, Faces::FRONT].map(|cull| Style { cull, ..Style::default() });
+    let mut renderer = stage.renderer(&Options { styles: styles.into(), ..options() });
     for (name, scheme, shared_normals) in [
         ("creature-mixed", Scheme::Gregory, true),
         ("machine-part", Scheme::Gregory, false),
@@ -150,12 +151,12 @@ fn pictures_stay_the_same() {
             if evaluation.needs_segments() {
                 renderer.set_segments(model, 6).expect("segments");
             }
-            for view in views(&mesh) {
+            for (view, style) in views(&mesh).into_iter().flat_map(|view| [(view, 0), (view, 1)]) {
                 stage.prepare(&mut renderer, 0);
-                let item = DrawItem { cull: Cull::ALL, ..moved(model, 6.0.into()) };
+                let item = DrawItem { cull: Cull::ALL, style, ..moved(model, 6.0.into()) };
                 let all = draw_all(&stage, &mut renderer, &view, &[DrawItem { cull: Cull::NONE, ..item }]);
                 let visible = cull(&stage, &mut renderer, &view, &[item]);
-                assert!(draw(&stage, &mut renderer, &visible).unwrap() == all, "{name}, {evaluation:?}");
+                assert!(draw(&stage, &mut renderer, &visible).unwrap() == all, "{name}, {evaluation:?}, {style}");
                 assert!(all.chunks(4).any(|pixel| pixel != [0; 4]));
             }
         }

@@ -37,8 +37,8 @@ pub(in super::super) struct BenchArgs {
     /// Where normals come from, with commas: those that patches share cost time. For watertight schemes.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::normals())]
     normals: Vec<Normals>,
-    /// Measure each row of the tessellation stages and of instances again with patches left out that are not seen: `back` those that
-    /// face away, `frustum` those out of the picture, `small` those between pixels.
+    /// Measure each row of the tessellation stages and of instances again with patches left out that are not seen: `back`
+    /// those that face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
     cull: Vec<CullArg>,
     /// Tessellation factors, with commas; 4,8,16,32 if not given.
@@ -115,9 +115,9 @@ construction: control points alone: factor 1 less the bilinear floor at factor 1
               tessellation stages, as the floor.
 set-up:       tables and upload, without pipelines; the median of several.
 sure:         of --compare: that the frames of both runs differ, whatever made them. It does not know that machines drift
-              between runs; floors, which no change here makes faster or slower, tell by how much: `faster` and `slower`
-              are rows whose interval is wholly outside of what the intervals of all floors reach. Measure them along,
-              at several factors: few floors reach less far than the machine may drift.
+              between runs; floors, which do not draw the surface, tell by how much: `faster` and `slower` are rows whose
+              interval is wholly outside of what the intervals of all floors reach (floors themselves: not around 1).
+              Measure them along, at several factors: few floors reach less far than the machine may drift.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
 `compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one lattice for all patches, an
 instance for each, which the vertex shader evaluates; in `geometry` the geometry shader evaluates, in `geometry-two-pass` it

@@ -1,7 +1,8 @@
 //! Results of two days side by side.
 //!
 //! The frames of a run tell how sure a difference between two runs is, not what made it: between them, a machine drifts by
-//! more than within each. The floors, which no change of the crate makes faster or slower, tell how far it did.
+//! more than within each. The floors tell how far it did: they do not draw the surface. (They share the shaders of the view and of the
+//! stages' outputs with what does: a change of those, or of the driver, counts as the machine's.)
 
 use super::super::error::CliError;
 use super::super::output::note;
@@ -78,6 +79,12 @@ pub(super) fn check(old: &Results, options: &OptionsOut, meshes: &[MeshOut]) -> 
     if !now.iter().any(|name| before.contains(name)) {
         let [before, now] = [before, now].map(|names| names.join(", "));
         let message = format!("the results to compare with are of {before}, these of {now}: measure the same meshes");
+        return Err(CliError::Work(message));
+    }
+    let size = |mesh: &MeshOut| (mesh.vertices, mesh.faces, mesh.patches.clone());
+    let other = |mesh: &&MeshOut| old.meshes.iter().any(|old| old.name == mesh.name && size(old) != size(mesh));
+    if let Some(MeshOut { name, .. }) = meshes.iter().find(other) {
+        let message = format!("{name}: the results to compare with are of another mesh of that name: measure the same");
         return Err(CliError::Work(message));
     }
     Ok(())

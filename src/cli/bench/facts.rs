@@ -117,7 +117,7 @@ impl MeshOut {
 }
 
 /// The mesh of which this one is copies; itself, if nothing is known of it.
-pub(super) fn original<'m>(meshes: &'m [MeshOut], name: &'m str) -> &'m str {
+pub(super) fn original_name<'m>(meshes: &'m [MeshOut], name: &'m str) -> &'m str {
     let of = meshes.iter().find(|mesh| mesh.name == name).map(|mesh| mesh.of.as_str());
     of.filter(|of| !of.is_empty()).unwrap_or(name)
 }

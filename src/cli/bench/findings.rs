@@ -1,6 +1,6 @@
 //! What rows say together: how time grows, from how many passes on compute wins, what a view that clips costs.
 
-use super::facts::{MeshOut, original};
+use super::facts::{MeshOut, original_name};
 use super::results::{GEOMETRY, GPU, Interval, NONE, Row, Setting, Who};
 use ash_subdiv::Construction;
 use ash_subdiv::bench::Path;
@@ -89,7 +89,7 @@ impl Findings {
 
 /// The same for all copies of a mesh.
 pub(super) fn any_size(setting: &Setting, meshes: &[MeshOut]) -> Setting {
-    Setting { mesh: original(meshes, &setting.mesh).to_owned(), ..setting.clone() }
+    Setting { mesh: original_name(meshes, &setting.mesh).to_owned(), ..setting.clone() }
 }
 
 pub(super) fn any_passes(setting: &Setting) -> Setting {

@@ -62,10 +62,16 @@ pub(super) struct Interval {
 pub(super) struct Setting {
     pub mesh: String,
     pub spacing: String,
+    #[serde(default = "moving")]
     pub motion: String,
     pub view: String,
     /// Nought in what several counts say together.
     pub passes: u32,
+}
+
+/// Results of before there was a choice.
+fn moving() -> String {
+    Motion::Moving.name().to_owned()
 }
 
 /// Who is raced.

@@ -18,7 +18,7 @@ pub(super) fn prepare(folder: &Path) -> Result<(), CliError> {
     paths(folder).iter().try_for_each(|path| write_part(path, b"").map(drop))
 }
 
-/// Writes `results.json`, `results.csv` and `index.html`: all or none.
+/// Writes `results.json`, `results.csv` and `index.html`, each whole, and none before all could be written.
 pub(super) fn write(folder: &Path, results: &Results) -> Result<(), CliError> {
     let mut csv = Vec::new();
     write_csv(results, &mut csv)?;
