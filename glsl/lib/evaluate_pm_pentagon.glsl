@@ -15,9 +15,10 @@ Surface evaluate_pm_pentagon(float x, float y, float z) {
     PmCorner j = corner_of(1);
     Spoke si = pm_spoke(i, owned[4][5]);
     Spoke sj = pm_spoke(j, owned[0][5]);
-    vec3 sum = si.b103 + sj.b103 + pm_spoke(corner_of(2), owned[1][5]).b103 + pm_spoke(corner_of(3), owned[2][5]).b103 +
+    precise vec3 sum = si.b103 + sj.b103 + pm_spoke(corner_of(2), owned[1][5]).b103 + pm_spoke(corner_of(3), owned[2][5]).b103 +
         pm_spoke(corner_of(4), owned[3][5]).b103;
-    return evaluate_sector(i, j, si, sj, sum / 5.0, x, y, z);
+    precise vec3 centre = sum / 5.0;
+    return evaluate_sector(i, j, si, sj, centre, x, y, z);
 }
 
 Surface evaluate_surface(vec3 at) {

@@ -21,13 +21,13 @@ Surface evaluate_pm_quad(float u, float v) {
     bool below = v <= u;
     bool left = u + v <= 1.0;
     vec4 which = below ? (left ? vec4(1, 0, 0, 0) : vec4(0, 1, 0, 0)) : (left ? vec4(0, 0, 0, 1) : vec4(0, 0, 1, 0));
-    vec3 at = below ? (left ? vec3(1.0 - u - v, u - v, 2.0 * v) : vec3(u - v, u + v - 1.0, 2.0 - 2.0 * u))
+    precise vec3 at = below ? (left ? vec3(1.0 - u - v, u - v, 2.0 * v) : vec3(u - v, u + v - 1.0, 2.0 - 2.0 * u))
                     : (left ? vec3(v - u, 1.0 - u - v, 2.0 * u) : vec3(u + v - 1.0, v - u, 2.0 - 2.0 * v));
     PmCorner i = corner_of(which);
     PmCorner j = corner_of(which.wxyz);
     Spoke si = pm_spoke(i, PICK(which.yzwx, 5));
     Spoke sj = pm_spoke(j, i.b112);
-    vec3 centre = 0.25 * ((owned[0][5] + owned[1][5]) + (owned[2][5] + owned[3][5]));
+    precise vec3 centre = 0.25 * ((owned[0][5] + owned[1][5]) + (owned[2][5] + owned[3][5]));
     return evaluate_sector(i, j, si, sj, centre, at.x, at.y, at.z);
 }
 

@@ -22,14 +22,14 @@ Surface evaluate_pm_triangle(float u, float v, float w) {
     bool first = w <= u && w <= v;
     bool second = u <= v;
     vec3 which = first ? vec3(1, 0, 0) : second ? vec3(0, 1, 0) : vec3(0, 0, 1);
-    vec3 at = first ? vec3(u - w, v - w, 3.0 * w) : second ? vec3(v - u, w - u, 3.0 * u) : vec3(w - v, u - v, 3.0 * v);
+    precise vec3 at = first ? vec3(u - w, v - w, 3.0 * w) : second ? vec3(v - u, w - u, 3.0 * u) : vec3(w - v, u - v, 3.0 * v);
     PmCorner i = corner_of(which);
     PmCorner j = corner_of(which.zxy);
     PmCorner k = corner_of(which.yzx);
     Spoke si = pm_spoke(i, k.b112);
     Spoke sj = pm_spoke(j, i.b112);
     Spoke sk = pm_spoke(k, j.b112);
-    vec3 centre = (si.b103 + sj.b103 + sk.b103) / 3.0;
+    precise vec3 centre = (si.b103 + sj.b103 + sk.b103) / 3.0;
     return evaluate_sector(i, j, si, sj, centre, at.x, at.y, at.z);
 }
 

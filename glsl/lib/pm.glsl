@@ -24,11 +24,13 @@ struct Spoke {
 };
 
 vec3 pm_across(vec3 left, vec3 right, vec3 spoke) {
-    return (left + right - (2.0 * C) * spoke) / (2.0 * MU);
+    precise vec3 across = (left + right - (2.0 * C) * spoke) / (2.0 * MU);
+    return across;
 }
 
 Spoke pm_spoke(PmCorner corner, vec3 b112_before) {
-    vec3 b301 = pm_across(0.25 * (corner.v + 3.0 * corner.t_plus), 0.25 * (corner.v + 3.0 * corner.t_minus), corner.v);
+    precise vec3 plus = 0.25 * (corner.v + 3.0 * corner.t_plus), minus = 0.25 * (corner.v + 3.0 * corner.t_minus);
+    vec3 b301 = pm_across(plus, minus, corner.v);
     vec3 b202 = pm_across(corner.b211, corner.b121_before, b301);
     return Spoke(b301, b202, pm_across(corner.b112, b112_before, b202));
 }
@@ -42,17 +44,18 @@ Surface evaluate_sector(PmCorner i, PmCorner j, Spoke si, Spoke sj, vec3 centre,
     vec3 r20 = si.b202, r21 = i.b112, r22 = sj.b202;
     vec3 r30 = si.b103, r31 = sj.b103;
 #define STEP(p, q, r) ((x * (p) + y * (q)) + z * (r))
-    vec3 s00 = STEP(r00, r01, r10), s01 = STEP(r01, r02, r11), s02 = STEP(r02, r03, r12), s03 = STEP(r03, r04, r13);
-    vec3 s10 = STEP(r10, r11, r20), s11 = STEP(r11, r12, r21), s12 = STEP(r12, r13, r22);
-    vec3 s20 = STEP(r20, r21, r30), s21 = STEP(r21, r22, r31);
-    vec3 s30 = STEP(r30, r31, centre);
-    vec3 q00 = STEP(s00, s01, s10), q01 = STEP(s01, s02, s11), q02 = STEP(s02, s03, s12);
-    vec3 q10 = STEP(s10, s11, s20), q11 = STEP(s11, s12, s21);
-    vec3 q20 = STEP(s20, s21, s30);
-    vec3 a = STEP(q00, q01, q10), b = STEP(q01, q02, q11), c = STEP(q10, q11, q20);
+    precise vec3 s00 = STEP(r00, r01, r10), s01 = STEP(r01, r02, r11), s02 = STEP(r02, r03, r12), s03 = STEP(r03, r04, r13);
+    precise vec3 s10 = STEP(r10, r11, r20), s11 = STEP(r11, r12, r21), s12 = STEP(r12, r13, r22);
+    precise vec3 s20 = STEP(r20, r21, r30), s21 = STEP(r21, r22, r31);
+    precise vec3 s30 = STEP(r30, r31, centre);
+    precise vec3 q00 = STEP(s00, s01, s10), q01 = STEP(s01, s02, s11), q02 = STEP(s02, s03, s12);
+    precise vec3 q10 = STEP(s10, s11, s20), q11 = STEP(s11, s12, s21);
+    precise vec3 q20 = STEP(s20, s21, s30);
+    precise vec3 a = STEP(q00, q01, q10), b = STEP(q01, q02, q11), c = STEP(q10, q11, q20);
     vec3 chords = cross(j.v - i.v, centre - i.v);
-    return Surface(STEP(a, b, c), 4.0 * (a - c), 4.0 * (b - c), chords);
+    precise vec3 position = STEP(a, b, c), du = 4.0 * (a - c), dv = 4.0 * (b - c);
 #undef STEP
+    return Surface(position, du, dv, chords);
 }
 
 #endif
