@@ -169,24 +169,27 @@ impl Drawable for Surface {
     }
 
     fn bytes(&self) -> Vec<TableBytes> {
-        let MemoryUsage { vertices, lists, .. } = self.renderer.memory_usage();
-        let besides = [("vertices", vertices), ("lists", lists)].into_iter().filter(|(_, bytes)| *bytes > 0);
+        let MemoryUsage { vertices, indices, lists, .. } = self.renderer.memory_usage();
+        let besides = [("vertices", vertices), ("indices", indices), ("lists", lists)]
+            .into_iter()
+            .filter(|(_, bytes)| *bytes > 0);
         self.bytes.iter().copied().chain(besides).collect()
     }
 
     fn moved_bytes(&self, motion: Motion) -> [u64; 2] {
         let all = self.bytes();
         let of = |name| all.iter().find(|(of, _)| *of == name).map_or(0, |(_, bytes)| *bytes);
-        let [points, frames, vertices, lists] = ["control_points", "frames", "vertices", "lists"].map(of);
-        let tables = all.iter().map(|(_, bytes)| bytes).sum::<u64>() - points - frames - vertices - lists;
+        let [points, frames, vertices] = ["control_points", "frames", "vertices"].map(of);
+        let drawn = of("indices") + of("lists");
+        let tables = all.iter().map(|(_, bytes)| bytes).sum::<u64>() - points - frames - vertices - drawn;
         if points == 0 {
             return [0, tables];
         }
         // Frames are written, and read again for the points.
         let makes_points = tables + 2 * frames + points;
         let [once, each] = match self.evaluation {
-            Evaluation::Compute => [makes_points + points + vertices, vertices],
-            _ => [makes_points, points + vertices + lists],
+            Evaluation::Compute => [makes_points + points + vertices, vertices + drawn],
+            _ => [makes_points, points + drawn],
         };
         [if motion == Motion::Moving { once } else { 0 }, each]
     }

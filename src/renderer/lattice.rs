@@ -5,7 +5,7 @@ use super::model::{device_buffer, upload_buffer};
 use super::pipelines::ShaderCode;
 use super::stages::{PatchStages, Sharing};
 use super::vertex_input::vertex_bytes;
-use super::{Capture, Error, Evaluation, ModelId};
+use super::{Capture, Error, Evaluation, MemoryUsage, ModelId};
 use crate::gpu::{
     Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, Shader,
     descriptor_set_layout, pipeline_layout,
@@ -167,10 +167,10 @@ impl Lattice {
         self.staged.take().map(|staged| (staged, self.indices.raw()))
     }
 
-    /// Bytes on the device, and on the host.
-    pub(super) fn bytes(&self) -> [u64; 2] {
-        let vertices = self.vertices.as_ref().map_or(0, |vertices| vertices.buffer.size());
-        [vertices + self.indices.size(), self.staged.as_ref().map_or(0, Buffer::size)]
+    pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
+        usage.vertices += self.vertices.as_ref().map_or(0, |vertices| vertices.buffer.size());
+        usage.indices += self.indices.size();
+        usage.staging += self.staged.as_ref().map_or(0, Buffer::size);
     }
 
     /// Records the dispatches for all patches of a model, whose set and stages these are.

@@ -9,8 +9,10 @@ pub struct MemoryUsage {
     pub positions: u64,
     /// What the cached construction keeps, on the device: control points, what corners share, frames.
     pub control_points: u64,
-    /// Vertices that were evaluated by compute, and indices of lattices, on the device.
+    /// Vertices that were evaluated by compute, on the device.
     pub vertices: u64,
+    /// Indices of the lattices of models that are not tessellated, on the device.
+    pub indices: u64,
     /// Edges and faces of control meshes on the device, if a style draws them.
     pub control_meshes: u64,
     /// What the host writes: positions of each frame in flight, and tables that were not copied yet.
@@ -28,6 +30,7 @@ impl MemoryUsage {
             + self.positions
             + self.control_points
             + self.vertices
+            + self.indices
             + self.control_meshes
             + self.lists
             + self.staging

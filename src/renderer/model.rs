@@ -354,9 +354,10 @@ impl Model {
         usage.control_points += self.control_points.iter().chain(&self.frames).map(Buffer::size).sum::<u64>();
         usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
         let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
-        let [vertices, staged_indices] = self.lattice.as_ref().map_or([0; 2], Lattice::bytes);
-        usage.vertices += vertices;
-        usage.staging += staged_positions + staged_factors + staged_indices + uploads;
+        usage.staging += staged_positions + staged_factors + uploads;
+        if let Some(lattice) = &self.lattice {
+            lattice.add_memory(usage);
+        }
     }
 }
 
