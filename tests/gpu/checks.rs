@@ -3,7 +3,7 @@
 use crate::common::stage::Stage;
 use ash::vk;
 use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};
-use ash_subdiv::renderer::Fragment;
+use ash_subdiv::renderer::{Fragment, Pass};
 use ash_subdiv::{ContextOptions, DeviceContext, Error, Options, Renderer, Style, Target, check, requirements};
 use std::sync::Arc;
 
@@ -99,14 +99,20 @@ unsafe impl Allocator for NoMemory {
 fn features_that_the_context_was_not_told_of_are_named() {
     let stage = Stage::new();
     let (instance, device) = (stage.headless.instance(), stage.headless.device());
-    let made = ContextOptions::default();
     // SAFETY: the device is of the instance and outlives the context; nothing is made from the context.
-    let error = unsafe {
+    let told = |target: &Target| unsafe {
+        let made = ContextOptions::default();
         let context = DeviceContext::new(instance, stage.headless.physical_device(), device, Arc::new(NoMemory), made);
-        Renderer::new(&context, &target(&stage), &Options::default()).expect_err("an error").to_string()
+        Renderer::new(&context, target, &Options::default()).expect_err("an error").to_string()
     };
+    let error = told(&target(&stage));
     let off = "(the device has it: enable it, and name it in ContextOptions::features)";
     assert!(error.contains(&format!("missing tessellationShader {off}, dynamicRendering {off}:")), "{error}");
+    let mut two = target(&stage);
+    if let Pass::Dynamic { color, .. } = &mut two.pass {
+        color.push(color[0]);
+    }
+    assert!(told(&two).contains(&format!(", independentBlend {off}:")), "{}", told(&two));
     stage.finish();
 }
 

@@ -1,8 +1,8 @@
 //! Results of two days side by side.
 //!
 //! The frames of a run tell how sure a difference between two runs is, not what made it: between them, a machine drifts by
-//! more than within each. The floors tell how far it did: they do not draw the surface. (They share the shaders of the view and of the
-//! stages' outputs with what does: a change of those, or of the driver, counts as the machine's.)
+//! more than within each. The floors tell how far it did: they do not draw the surface. (They share the shaders of the view
+//! and of the stages' outputs with what does: a change of those, or of the driver, counts as the machine's.)
 
 use super::super::error::CliError;
 use super::super::output::note;

@@ -155,6 +155,25 @@ fn bench_compares_what_can_be_compared_and_says_so_before_it_measures() {
     let alike = |old, new| format!("{cannot} {old}, these of {new}: measure alike");
     compare("--shape torus --refine 1", &alike("--refine 0", "--refine 1"));
     compare("--shape torus --instances 2", &alike("--instances 1", "--instances 2"));
+    // The results again, but for what is changed in them.
+    let changed = |name: &str, change: fn(&mut Value)| {
+        let mut results: Value = serde_json::from_slice(&fs::read(&old).unwrap()).unwrap();
+        change(&mut results);
+        let path = folder(name).join("results.json");
+        fs::write(&path, results.to_string()).unwrap();
+        path
+    };
+    let edited = changed("bench-edited", |results| results["meshes"][0]["vertices"] = json!(5));
+    fails(
+        &format!("bench --results {} --compare {}", edited.display(), old.display()),
+        1,
+        "torus: the results to compare with are of another mesh of that name: measure the same",
+    );
+    let elsewhere = changed("bench-elsewhere", |results| results["device"]["name"] = json!("another"));
+    let output = run(&format!("bench --results {} --compare {}", elsewhere.display(), old.display()));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.starts_with("note: the results to compare with are of another device: "), "{told}");
+    assert!(told.contains(", not another, ") && output.status.success(), "{told}");
     let (other, _) = measured(&folder("bench-factors"), "--shape torus --factors 3 --paths bilinear");
     fails(
         &format!("bench --results {} --compare {}", other.display(), old.display()),
