@@ -1,5 +1,6 @@
 // Which patches of a draw can be seen: of cached control points, one invocation for each patch, by the rules of the control
-// shaders. glsl/compute/compact.comp lists them.
+// shaders. Each workgroup lists those of its patches, in their order, and writes the indirect draws of them; for instances to have
+// what is kept of them as attributes, it also copies that, one after the other as on the list.
 // variants: OWNED=5, OWNED=5+TRIANGLE, OWNED=8
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -16,7 +17,16 @@
 #include "draw.glsl"
 #include "visible.glsl"
 
-layout(local_size_x = 64) in;
+// Whether what is kept of patches is copied.
+layout(constant_id = 11) const bool COPIES = false;
+
+// Patches of a workgroup. Rust twin: `REGION` in src/renderer/lists.rs.
+const uint REGION = 128u;
+layout(local_size_x = REGION) in;
+
+// A bit for each patch that can be seen; then their numbers.
+shared uint seen[REGION / 32u];
+shared uint listed[REGION];
 
 vec3 owned[CORNERS][OWNED];
 uint outside[CORNERS];
@@ -24,12 +34,7 @@ vec4 pixel_box[CORNERS];
 #include "culling.glsl"
 #include "edge_factors.glsl"
 
-void main() {
-    uint patch_number = gl_GlobalInvocationID.x;
-    uint count = draw.patches_per_instance;
-    if (patch_number >= count) {
-        return;
-    }
+bool can_be_seen(uint patch_number) {
     for (uint k = 0u; k < CORNERS; ++k) {
         vec4 texels[KEPT_TEXELS] = kept_texels(draw.first_corner + patch_number * CORNERS + k);
         for (int i = 0; i < OWNED; ++i) {
@@ -43,5 +48,61 @@ void main() {
         pixel_box[k] = examined.pixel_box;
         smallest = min(smallest, within_limits(plus_factor(patch_number, k)));
     }
-    visible.patches[count + patch_number] = is_culled(1.0 / smallest) ? 0u : 1u;
+    return !is_culled(1.0 / smallest);
+}
+
+void write_command(uint at, uvec4 words) {
+    for (uint i = 0u; i < 4u; ++i) {
+        visible.words[at + i] = words[i];
+    }
+}
+
+// The draws of so many patches, which are on the list from `start` on.
+void write_commands(uint start, uint count) {
+    if (draw.patches_per_instance == 0u) {
+        // VkDrawIndexedIndirectCommand: an instance for each patch.
+        uint at = draw.commands + 5u * gl_WorkGroupID.x;
+        write_command(at, uvec4(draw.vertices, count, draw.first_index, 0u));
+        visible.words[at + 4u] = start;
+        return;
+    }
+    // VkDrawIndirectCommand: whole instances, and what is left as one more.
+    uint at = draw.commands + 8u * gl_WorkGroupID.x, first_vertex = start * draw.vertices;
+    uint whole = count / draw.patches_per_instance, rest = count % draw.patches_per_instance;
+    write_command(at, uvec4(draw.patches_per_instance * draw.vertices, whole, first_vertex, 0u));
+    write_command(at + 4u, uvec4(rest * draw.vertices, rest > 0u ? 1u : 0u, first_vertex, whole));
+}
+
+void main() {
+    uint id = gl_LocalInvocationID.x, start = gl_WorkGroupID.x * REGION, patch_number = start + id;
+    uint word = id / 32u, bit = 1u << id % 32u;
+    if (id < REGION / 32u) {
+        seen[id] = 0u;
+    }
+    barrier();
+    if (patch_number < draw.count && can_be_seen(patch_number)) {
+        atomicOr(seen[word], bit);
+    }
+    barrier();
+    uint count = 0u, before = 0u;
+    for (uint i = 0u; i < REGION / 32u; ++i) {
+        before += i < word ? bitCount(seen[i]) : i == word ? bitCount(seen[i] & bit - 1u) : 0u;
+        count += bitCount(seen[i]);
+    }
+    if (id == 0u) {
+        write_commands(start, count);
+    }
+    if ((seen[word] & bit) != 0u) {
+        visible.words[start + before] = patch_number;
+        listed[before] = patch_number;
+    }
+    if (!COPIES) {
+        return;
+    }
+    barrier();
+    const uint TEXELS = CORNERS * STRIDE;
+    for (uint i = id; i < count * TEXELS; i += REGION) {
+        uvec4 texel = floatBitsToUint(kept_texel(draw.first_corner + listed[i / TEXELS] * CORNERS, i % TEXELS));
+        write_command(draw.copies + 4u * (start * TEXELS + i), texel);
+    }
 }

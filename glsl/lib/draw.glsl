@@ -14,6 +14,25 @@ layout(set = 0, binding = 0, std140) uniform View {
                     // distance of one is of half the height
 } view;
 
+#ifdef MAKES_LISTS
+// What is looked at, and how it is to be drawn. Rust twin: `ListConstants` in src/renderer/lists.rs.
+layout(push_constant, std430) uniform Draw {
+    vec4 transform[3];  // rows: object to world
+    float factor;
+    uint flags;
+    uint first_corner;
+    uint count;                 // of the patches
+    uint vertices;              // of a patch in a draw: the points of its corners, or the indices of a lattice
+    uint first_index;           // of a lattice
+    uint patches_per_instance;  // 0: an indexed draw with an instance for each
+    uint commands;              // the word of the list where they start
+    uint copies;                // the same of copies
+} draw;
+
+float draw_factor() {
+    return draw.factor;
+}
+#else
 layout(push_constant, std430) uniform Draw {
     vec4 transform[3];         // rows: object to world
     vec4 normal_transform[3];  // rows; w: see below
@@ -37,6 +56,13 @@ float displacement_bias() {
     return draw.normal_transform[2].w;
 }
 
+vec3 normal_to_world(vec3 normal) {
+    precise vec3 world = vec3(dot(draw.normal_transform[0].xyz, normal), dot(draw.normal_transform[1].xyz, normal),
+                              dot(draw.normal_transform[2].xyz, normal));
+    return world;
+}
+#endif
+
 vec3 to_world(vec3 position) {
     vec4 p = vec4(position, 1.0);
     // The same bits in every pipeline: patches of two kinds meet at their edges on the screen, too.
@@ -47,12 +73,6 @@ vec3 to_world(vec3 position) {
 vec4 to_clip(vec3 world) {
     precise vec4 clip = view.view_projection * vec4(world, 1.0);
     return clip;
-}
-
-vec3 normal_to_world(vec3 normal) {
-    precise vec3 world = vec3(dot(draw.normal_transform[0].xyz, normal), dot(draw.normal_transform[1].xyz, normal),
-                              dot(draw.normal_transform[2].xyz, normal));
-    return world;
 }
 
 #endif

@@ -1,20 +1,17 @@
-// The patches of a draw that can be seen: what glsl/compute/cull.comp finds and glsl/compute/compact.comp lists. Rust twin:
-// src/renderer/lists.rs.
+// The patches of a draw that can be seen, which glsl/compute/cull.comp lists. Rust twin: `ListLayout` in src/renderer/lists.rs.
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL
 
 #ifdef MAKES_LISTS
-#define VISIBLE_ACCESS
+#define VISIBLE_ACCESS writeonly
 #else
 #define VISIBLE_ACCESS readonly
 #endif
 
 layout(set = 0, binding = 1, std430) VISIBLE_ACCESS buffer Visible {
-    // Of the indirect draws.
-    uint commands[8];
-    // The numbers within the draw of the patches that can be seen, one after the other, in as many words as there are patches;
-    // then for each patch whether it can be seen.
-    uint patches[];
+    // The numbers within the draw of the patches that can be seen, of as many words as there are patches: of each workgroup from
+    // where its patches would be on. Then the indirect draws, and what is copied of patches, in the order of the list.
+    uint words[];
 } visible;
 
 #ifndef MAKES_LISTS
@@ -23,7 +20,7 @@ layout(constant_id = 10) const bool LISTED = false;
 
 // The number within the draw of the i-th patch that is drawn.
 uint patch_drawn(uint i) {
-    return LISTED ? visible.patches[i] : i;
+    return LISTED ? visible.words[i] : i;
 }
 #endif
 

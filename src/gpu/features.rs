@@ -56,6 +56,8 @@ features! {
     geometry = "geometryShader",
     /// Indirect draws that start at any instance: patches that compute shaders left out.
     indirect_first_instance = "drawIndirectFirstInstance",
+    /// Several indirect draws in one call: the same.
+    multi_draw_indirect = "multiDrawIndirect",
     /// Colour attachments that differ in how they are written: shaders of ours that write to the first only.
     independent_blend = "independentBlend",
     /// `double` in shaders.
@@ -81,6 +83,7 @@ impl Features {
         statistics: false,
         geometry: false,
         indirect_first_instance: false,
+        multi_draw_indirect: false,
         independent_blend: false,
         float64: false,
         anisotropy: false,
@@ -119,6 +122,7 @@ impl Features {
             statistics: core.pipeline_statistics_query == vk::TRUE,
             geometry: core.geometry_shader == vk::TRUE,
             indirect_first_instance: core.draw_indirect_first_instance == vk::TRUE,
+            multi_draw_indirect: core.multi_draw_indirect == vk::TRUE,
             independent_blend: core.independent_blend == vk::TRUE,
             float64: core.shader_float64 == vk::TRUE,
             anisotropy: core.sampler_anisotropy == vk::TRUE,
@@ -154,6 +158,7 @@ impl Features {
             .pipeline_statistics_query(self.statistics)
             .geometry_shader(self.geometry)
             .draw_indirect_first_instance(self.indirect_first_instance)
+            .multi_draw_indirect(self.multi_draw_indirect)
             .independent_blend(self.independent_blend)
             .shader_float64(self.float64)
             .sampler_anisotropy(self.anisotropy);

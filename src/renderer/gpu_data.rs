@@ -80,6 +80,10 @@ impl DrawConstants {
         }
     }
 
+    pub(crate) fn factor(&self) -> f32 {
+        self.normal_transform[0][3]
+    }
+
     pub(crate) fn set_factor(&mut self, factor: f32) {
         self.normal_transform[0][3] = factor;
     }

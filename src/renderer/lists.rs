@@ -1,73 +1,87 @@
 //! Lists of the patches that can be seen, made by compute: pipelines, memory, dispatches. See [`super::visible`].
 
+use super::Evaluation;
 use super::factor::Cut;
-use super::gpu_data::{DrawConstants, ViewData};
+use super::gpu_data::ViewData;
 use super::model::device_buffer;
 use super::pipelines::ShaderCode;
 use super::stages::PatchStages;
 use super::tables::TEXEL_BYTES;
 use crate::gpu::{
     Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, Owned, Shader,
-    descriptor_set_layout, pipeline_layout,
+    Specialization, descriptor_set_layout, pipeline_layout,
 };
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The most patches of a list. Each workgroup that makes it looks at all before its own.
-const MAX_PATCHES: u64 = 2048;
-/// Bytes of a list before its patches. GLSL twin: `Visible` in `glsl/lib/visible.glsl`.
-const HEADER_BYTES: u64 = 4 * 8;
-/// Bytes of a list for each of its patches: its place on the list, and whether it can be seen.
-const PATCH_BYTES: u64 = 4 * 2;
+/// Bytes of a patch's place on a list.
+const PLACE_BYTES: u64 = 4;
 /// The most bytes of a list.
 const MAX_BYTES: u64 = 1 << 20;
-/// Invocations in a workgroup of `glsl/compute/cull.comp` and `compact.comp`.
-const GROUP: u32 = 64;
+/// Patches that a workgroup lists. GLSL twin: `REGION` in `glsl/compute/cull.comp`.
+const REGION: u32 = 128;
 
-/// From one command of a list to the next.
-pub(super) const COMMAND_BYTES: u32 = size_of::<vk::DrawIndirectCommand>() as u32;
-
-/// How large a list is, and what is in it.
-#[derive(Debug, Clone, Copy)]
+/// How large a list is, and what is in it: places of patches, then the indirect draws, then copies. Workgroups list the patches of
+/// a region each, and write its draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ListLayout {
+    /// Bytes of the commands of a region.
+    command_bytes: u64,
     /// Bytes of a patch that are copied behind the list, for instances to have them as attributes; else 0.
     copied: u64,
 }
 
 impl ListLayout {
     pub(super) fn new(stages: PatchStages) -> Self {
-        Self { copied: if stages.attributes { stages.patch_bytes().into() } else { 0 } }
+        let command_bytes = match stages.evaluation {
+            // Of whole instances, and of the rest.
+            Evaluation::Tessellation => 2 * size_of::<vk::DrawIndirectCommand>(),
+            _ => size_of::<vk::DrawIndexedIndirectCommand>(),
+        };
+        let copied = if stages.attributes { stages.patch_bytes().into() } else { 0 };
+        Self { command_bytes: command_bytes as u64, copied }
     }
 
     /// The most patches of a list.
     pub(super) fn max_patches(self) -> u32 {
-        let most = (MAX_BYTES - HEADER_BYTES - TEXEL_BYTES) / (PATCH_BYTES + self.copied);
-        most.min(MAX_PATCHES) as u32
+        let of_region = u64::from(REGION) * (PLACE_BYTES + self.copied) + self.command_bytes;
+        ((MAX_BYTES - TEXEL_BYTES) / of_region) as u32 * REGION
     }
 
-    /// Bytes of a list of so many patches before the copies.
-    pub(super) fn copies_start(patches: u32) -> u64 {
-        (HEADER_BYTES + PATCH_BYTES * u64::from(patches)).next_multiple_of(TEXEL_BYTES)
+    /// How many regions so many patches are.
+    pub(super) fn regions(patches: u32) -> u32 {
+        patches.div_ceil(REGION)
     }
 
-    /// The same as a word after the header.
-    pub(super) fn copies_word(patches: u32) -> u32 {
-        ((Self::copies_start(patches) - HEADER_BYTES) / 4) as u32
+    /// Bytes of a list of so many patches before the draws.
+    pub(super) fn commands_start(patches: u32) -> u64 {
+        PLACE_BYTES * u64::from(patches)
+    }
+
+    /// Bytes before the copies.
+    pub(super) fn copies_start(self, patches: u32) -> u64 {
+        let commands = self.command_bytes * u64::from(Self::regions(patches));
+        (Self::commands_start(patches) + commands).next_multiple_of(TEXEL_BYTES)
     }
 
     /// Bytes of a list of so many patches, up to the next.
     pub(super) fn bytes(self, patches: u32) -> u64 {
-        (Self::copies_start(patches) + self.copied * u64::from(patches)).next_multiple_of(MAX_OFFSET_ALIGNMENT)
+        (self.copies_start(patches) + self.copied * u64::from(patches)).next_multiple_of(MAX_OFFSET_ALIGNMENT)
     }
 }
 
-/// What a list and its indirect draws are made of: push constants. GLSL twin: `Compact` in `glsl/compute/compact.comp`.
+/// What a list and its indirect draws are made of: push constants. GLSL twin: `Draw` in `glsl/lib/draw.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub(super) struct Compact {
-    /// Of all patches.
+pub(super) struct ListConstants {
+    /// As of [`DrawConstants`](super::gpu_data::DrawConstants).
+    pub transform: [[f32; 4]; 3],
+    pub factor: f32,
+    pub flags: u32,
+    pub first_corner: u32,
+    /// Of the patches.
     pub count: u32,
     /// Vertices of a patch in a draw: the points of its corners, or the indices of a lattice.
     pub vertices: u32,
@@ -75,8 +89,9 @@ pub(super) struct Compact {
     pub first_index: u32,
     /// 0 for indexed draws with an instance for each patch.
     pub patches_per_instance: u32,
-    pub first_corner: u32,
-    /// The word of the list after its header where the copies start.
+    /// The word of the list where the draws start.
+    pub commands: u32,
+    /// The same of copies.
     pub copies: u32,
 }
 
@@ -155,14 +170,7 @@ pub(super) struct ListPipelines {
     layout: Owned<vk::PipelineLayout>,
     cache: vk::PipelineCache,
     /// By [`PatchStages::for_culling`].
-    culling: HashMap<(PatchStages, Cut), Owned<vk::Pipeline>>,
-    /// By [`copying`].
-    compacting: HashMap<Option<PatchStages>, Owned<vk::Pipeline>>,
-}
-
-/// What tells apart the pipelines that make lists: what is copied, if anything is.
-fn copying(stages: PatchStages) -> Option<PatchStages> {
-    stages.attributes.then(|| stages.for_culling())
+    made: HashMap<(PatchStages, Cut), Owned<vk::Pipeline>>,
 }
 
 impl ListPipelines {
@@ -172,92 +180,56 @@ impl ListPipelines {
         sets: [vk::DescriptorSetLayout; 2],
         cache: vk::PipelineCache,
     ) -> Result<Self, GpuError> {
-        let size = size_of::<DrawConstants>() as u32;
+        let size = size_of::<ListConstants>() as u32;
         let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
         // SAFETY: the set layouts are of this device.
         let layout = unsafe { pipeline_layout(context, "subdiv lists of patches", &sets, &constants)? };
-        Ok(Self { context: context.clone(), layout, cache, culling: HashMap::new(), compacting: HashMap::new() })
+        Ok(Self { context: context.clone(), layout, cache, made: HashMap::new() })
     }
 
     /// Makes what patches need that are left out by these rules.
     pub(super) fn make(&mut self, stages: PatchStages, cut: Cut, code: &ShaderCode) -> Result<(), GpuError> {
-        let constants = stages.specialization(cut, self.context.properties());
-        let key = copying(stages);
-        if !self.compacting.contains_key(&key) {
-            let name = if key.is_some() { "COMPUTE_COMPACT_COMP_COPIES" } else { "COMPUTE_COMPACT_COMP" };
-            let pipeline = self.create(name, Shader::compute(code.find(name)?).specialized(&constants))?;
-            self.compacting.insert(key, pipeline);
-        }
         let stages = stages.for_culling();
-        if !self.culling.contains_key(&(stages, cut)) {
-            let name = stages.culling();
-            let pipeline = self.create(&name, Shader::compute(code.find(&name)?).specialized(&constants))?;
-            self.culling.insert((stages, cut), pipeline);
+        if self.made.contains_key(&(stages, cut)) {
+            return Ok(());
         }
+        let name = stages.culling();
+        let constants = stages.specialization(cut, self.context.properties());
+        let constants: Vec<_> = constants.into_iter().chain([Specialization::bool(11, stages.attributes)]).collect();
+        let desc = ComputePipelineDesc {
+            name: &format!("subdiv {name}"),
+            layout: self.layout.raw(),
+            shader: Shader::compute(code.find(&name)?).specialized(&constants),
+            cache: self.cache,
+        };
+        // SAFETY: the shader is ours and matches the layout.
+        let pipeline = unsafe { desc.create(&self.context)? };
+        self.made.insert((stages, cut), pipeline);
         Ok(())
     }
 
-    fn create(&self, name: &str, shader: Shader) -> Result<Owned<vk::Pipeline>, GpuError> {
-        let name = &format!("subdiv {name}");
-        let desc = ComputePipelineDesc { name, layout: self.layout.raw(), shader, cache: self.cache };
-        // SAFETY: the shader is ours and matches the layout.
-        unsafe { desc.create(&self.context) }
-    }
-
-    /// Records the dispatch that finds which patches can be seen of as many as
-    /// [`patches_per_instance`](DrawConstants::patches_per_instance) says.
+    /// Records the dispatch that makes a list.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering; the pipeline was made; the sets and the offsets in set 0 (of the view, of the
     /// list) are valid, and the list has room.
-    pub(super) unsafe fn cmd_cull(
+    pub(super) unsafe fn cmd_list(
         &self,
         cmd: vk::CommandBuffer,
         (stages, cut): (PatchStages, Cut),
         sets: [vk::DescriptorSet; 2],
         offsets: [u32; 2],
-        constants: &DrawConstants,
+        constants: &ListConstants,
     ) {
-        let Some(pipeline) = self.culling.get(&(stages.for_culling(), cut)) else { return };
-        let groups = constants.patches_per_instance.div_ceil(GROUP);
-        // SAFETY: as the caller promises.
-        unsafe { self.cmd_dispatch(cmd, pipeline, sets, offsets, bytemuck::bytes_of(constants), groups) };
-    }
-
-    /// Records the dispatch that makes a list of what was found, and its draws.
-    ///
-    /// # Safety
-    /// As [`ListPipelines::cmd_cull`], which went before, with a barrier in between.
-    pub(super) unsafe fn cmd_compact(
-        &self,
-        cmd: vk::CommandBuffer,
-        stages: PatchStages,
-        sets: [vk::DescriptorSet; 2],
-        offsets: [u32; 2],
-        compact: &Compact,
-    ) {
-        let Some(pipeline) = self.compacting.get(&copying(stages)) else { return };
-        let groups = compact.count.div_ceil(GROUP);
-        // SAFETY: as the caller promises.
-        unsafe { self.cmd_dispatch(cmd, pipeline, sets, offsets, bytemuck::bytes_of(compact), groups) };
-    }
-
-    unsafe fn cmd_dispatch(
-        &self,
-        cmd: vk::CommandBuffer,
-        pipeline: &Owned<vk::Pipeline>,
-        sets: [vk::DescriptorSet; 2],
-        offsets: [u32; 2],
-        constants: &[u8],
-        groups: u32,
-    ) {
+        let Some(pipeline) = self.made.get(&(stages.for_culling(), cut)) else { return };
         let (device, layout, point) = (self.context.device(), self.layout.raw(), vk::PipelineBindPoint::COMPUTE);
+        let bytes = bytemuck::bytes_of(constants);
         // SAFETY: as the caller promises.
         unsafe {
             device.cmd_bind_pipeline(cmd, point, pipeline.raw());
             device.cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, &offsets);
-            device.cmd_push_constants(cmd, layout, vk::ShaderStageFlags::COMPUTE, 0, constants);
-            device.cmd_dispatch(cmd, groups, 1, 1);
+            device.cmd_push_constants(cmd, layout, vk::ShaderStageFlags::COMPUTE, 0, bytes);
+            device.cmd_dispatch(cmd, ListLayout::regions(constants.count), 1, 1);
         }
     }
 }

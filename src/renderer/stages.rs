@@ -154,12 +154,17 @@ impl PatchStages {
         !matches!(files(self.scheme, self.kind)[0], "PM")
     }
 
-    /// What tells apart the pipelines that find which patches can be seen.
+    /// What tells apart the pipelines that list which patches can be seen.
     pub(super) fn for_culling(self) -> Self {
-        Self { sharing: Sharing::Positions, has_speakers: false, ..self.for_control_points() }
+        Self {
+            sharing: Sharing::Positions,
+            has_speakers: false,
+            attributes: self.attributes,
+            ..self.for_control_points()
+        }
     }
 
-    /// The name of the shader that finds which patches can be seen.
+    /// The name of the shader that lists which patches can be seen.
     pub(super) fn culling(self) -> String {
         match self.scheme.owned(self.kind) {
             4 => "COMPUTE_CULL_COMP".to_owned(),

@@ -8,7 +8,7 @@ use super::draw::Bound;
 use super::evaluated::Drawn;
 use super::factor::{Cull, Cut};
 use super::gpu_data::DrawConstants;
-use super::lists::{COMMAND_BYTES, Compact, FrameLists, ListLayout};
+use super::lists::{FrameLists, ListConstants, ListLayout};
 use super::model::Model;
 use super::pipelines::PipelineKey;
 use super::stages::PatchStages;
@@ -90,17 +90,31 @@ impl List {
         (group.first_corner + self.first as usize * group.kind.corners()) as u32
     }
 
-    fn constants(self, of_draw: &DrawConstants, group: &PatchGroup) -> DrawConstants {
-        DrawConstants {
+    /// Of what makes it, where the item is drawn with these.
+    fn constants(self, model: &Model, drawn: Drawn, of_draw: &DrawConstants) -> ListConstants {
+        let (stages, group) = (model.stages[self.group], &model.tables.plan().groups()[self.group]);
+        let (vertices, first_index) = match drawn {
+            Drawn::Lattice(lattice) => lattice.indices_of_patch(self.group),
+            _ => (stages.input_points(), 0),
+        };
+        ListConstants {
+            transform: of_draw.transform,
+            factor: of_draw.factor(),
+            flags: of_draw.flags,
             first_corner: self.first_corner(group),
-            first_patch: group.patches.start as u32 + self.first,
-            ..*of_draw
+            count: self.count,
+            vertices,
+            first_index,
+            patches_per_instance: self.patches_per_instance,
+            commands: (ListLayout::commands_start(self.count) / 4) as u32,
+            copies: (ListLayout::new(stages).copies_start(self.count) / 4) as u32,
         }
     }
 }
 
 /// What draws of lists need, in [`Features`].
-pub(super) const LIST_FEATURES: Features = Features { indirect_first_instance: true, ..Features::NONE };
+pub(super) const LIST_FEATURES: Features =
+    Features { indirect_first_instance: true, multi_draw_indirect: true, ..Features::NONE };
 
 impl Renderer {
     /// Records the search for the patches of some items that can be seen in a view, by their
@@ -108,7 +122,7 @@ impl Renderer {
     ///
     /// It is for models that are [`Construction::Cached`](super::Construction::Cached) and whose
     /// [evaluation leaves out patches](Evaluation::culls). Others are drawn as by [`Renderer::cmd_draw`]. Takes memory, which is
-    /// kept for later frames: eight bytes a patch, and for instances what they read of it, 256 bytes of a Gregory patch. Binds
+    /// kept for later frames: some five bytes a patch, and for instances what they read of it, 256 bytes of a Gregory patch. Binds
     /// compute pipelines, with sets 0 and 1, and counts as one of
     /// [`Options::views_per_frame`](super::Options::views_per_frame).
     ///
@@ -246,43 +260,25 @@ impl Renderer {
     }
 
     unsafe fn cmd_list(&self, cmd: vk::CommandBuffer, visible: &VisibleItems) -> Result<(), Error> {
-        use vk::PipelineStageFlags as Stage;
-        let (device, pipelines) = (self.context.device(), &self.pipelines.lists);
-        let barrier = |to, access| {
-            let written =
-                [vk::MemoryBarrier::default().src_access_mask(vk::AccessFlags::SHADER_WRITE).dst_access_mask(access)];
-            let none = vk::DependencyFlags::empty();
-            // SAFETY: as the caller promises.
-            unsafe { device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, to, none, &written, &[], &[]) };
-        };
+        use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
         for VisibleItem { item, lists, .. } in &visible.items {
             let (model, most) = self.check_item(&visible.view, item)?;
             let of_draw = item.constants(model, self.style(item)?, &visible.view, most);
-            for list in lists {
-                let group = &model.tables.plan().groups()[list.group];
-                let of_list = list.constants(&of_draw, group);
-                let constants = DrawConstants { patches_per_instance: list.count, ..of_list };
-                let key = (model.stages[list.group], Cut::new(item.factor, item.cull));
-                let sets = [visible.set, model.set.raw];
-                // SAFETY: as the caller promises.
-                unsafe { pipelines.cmd_cull(cmd, key, sets, [visible.view_offset, list.offset], &constants) };
-            }
-        }
-        barrier(Stage::COMPUTE_SHADER, vk::AccessFlags::SHADER_READ);
-        for VisibleItem { item, lists, .. } in &visible.items {
-            let model = self.model(item.model)?;
             let drawn = model.drawn(item.factor)?;
             for list in lists {
-                let stages = model.stages[list.group];
-                let compact = compact(model, drawn, *list);
-                let sets = [visible.set, model.set.raw];
+                let constants = list.constants(model, drawn, &of_draw);
+                let key = (model.stages[list.group], Cut::new(item.factor, item.cull));
+                let (sets, offsets) = ([visible.set, model.set.raw], [visible.view_offset, list.offset]);
                 // SAFETY: as the caller promises.
-                unsafe { pipelines.cmd_compact(cmd, stages, sets, [visible.view_offset, list.offset], &compact) };
+                unsafe { self.pipelines.lists.cmd_list(cmd, key, sets, offsets, &constants) };
             }
         }
-        use vk::AccessFlags as Access;
         let read = Access::SHADER_READ | Access::INDIRECT_COMMAND_READ | Access::VERTEX_ATTRIBUTE_READ;
-        barrier(Stage::DRAW_INDIRECT | Stage::VERTEX_INPUT | Stage::VERTEX_SHADER, read);
+        let written = [vk::MemoryBarrier::default().src_access_mask(Access::SHADER_WRITE).dst_access_mask(read)];
+        let readers = Stage::DRAW_INDIRECT | Stage::VERTEX_INPUT | Stage::VERTEX_SHADER;
+        let (device, none) = (self.context.device(), vk::DependencyFlags::empty());
+        // SAFETY: as the caller promises.
+        unsafe { device.cmd_pipeline_barrier(cmd, Stage::COMPUTE_SHADER, readers, none, &written, &[], &[]) };
         Ok(())
     }
 
@@ -304,22 +300,30 @@ impl Renderer {
         unsafe {
             self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
             for list in own.lists.iter().filter(|list| list.group == group) {
-                let of_list = list.constants(of_draw, &model.tables.plan().groups()[group]);
-                let constants = DrawConstants { patches_per_instance: list.patches_per_instance, ..of_list };
+                let of_group = &model.tables.plan().groups()[group];
+                self.push(
+                    cmd,
+                    &DrawConstants {
+                        first_corner: list.first_corner(of_group),
+                        first_patch: of_group.patches.start as u32 + list.first,
+                        patches_per_instance: list.patches_per_instance,
+                        ..*of_draw
+                    },
+                );
                 self.cmd_bind_view(cmd, visible.set, [visible.view_offset, list.offset]);
-                self.push(cmd, &constants);
                 let offset = u64::from(list.offset);
-                if model.stages[group].attributes {
-                    let copies = offset + ListLayout::copies_start(list.count);
-                    device.cmd_bind_vertex_buffers(cmd, 0, &[visible.buffer], &[copies]);
-                }
+                let commands = offset + ListLayout::commands_start(list.count);
+                let regions = ListLayout::regions(list.count);
                 if list.patches_per_instance == 0 {
-                    device.cmd_draw_indexed_indirect(cmd, visible.buffer, offset, 1, 0);
-                    continue;
-                }
-                for command in 0..2 {
-                    let offset = offset + u64::from(command * COMMAND_BYTES);
-                    device.cmd_draw_indirect(cmd, visible.buffer, offset, 1, 0);
+                    if model.stages[group].attributes {
+                        let copies = offset + ListLayout::new(model.stages[group]).copies_start(list.count);
+                        device.cmd_bind_vertex_buffers(cmd, 0, &[visible.buffer], &[copies]);
+                    }
+                    let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
+                    device.cmd_draw_indexed_indirect(cmd, visible.buffer, commands, regions, stride);
+                } else {
+                    let stride = size_of::<vk::DrawIndirectCommand>() as u32;
+                    device.cmd_draw_indirect(cmd, visible.buffer, commands, 2 * regions, stride);
                 }
             }
         }
@@ -330,15 +334,4 @@ impl Renderer {
 fn pieces(group: &PatchGroup, layout: ListLayout) -> impl Iterator<Item = (u32, u32)> {
     let (patches, most) = (group.patches.len() as u32, layout.max_patches());
     (0..patches).step_by(most as usize).map(move |first| (first, most.min(patches - first)))
-}
-
-fn compact(model: &Model, drawn: Drawn, list: List) -> Compact {
-    let List { group, count, patches_per_instance, .. } = list;
-    let (vertices, first_index) = match drawn {
-        Drawn::Lattice(lattice) => lattice.indices_of_patch(group),
-        _ => (model.stages[group].input_points(), 0),
-    };
-    let first_corner = list.first_corner(&model.tables.plan().groups()[group]);
-    let copies = ListLayout::copies_word(count);
-    Compact { count, vertices, first_index, patches_per_instance, first_corner, copies }
 }

@@ -326,7 +326,8 @@ fn evaluations_that_need_features_say_so() {
     let evaluations = vec![Evaluation::GeometryTwoPass, Evaluation::Compute];
     let options = Options { evaluations, visible_lists: true, ..Options::default() };
     let needs = requirements(&target, &options).features;
-    assert!(needs.geometry && needs.vertex_stores && needs.indirect_first_instance);
+    assert!(needs.geometry && needs.vertex_stores);
+    assert!(needs.indirect_first_instance && needs.multi_draw_indirect);
     let without = requirements(&target, &Options::default()).context_options();
     let (instance, device) = (stage.headless.instance(), stage.headless.device());
     let allocator = Arc::new(Borrowed(stage.headless.context().clone()));
