@@ -35,6 +35,9 @@ pub struct DeviceProperties {
     pub driver_info: String,
     /// How many patches a draw instance may hold.
     pub patch_batch: PatchBatch,
+    /// Indices of triangles that the driver takes at a time, making vertices anew after: lattices with more are drawn as strips,
+    /// which have a third. Mesa's draw module (lavapipe) takes 1023, looking each of them up, too; others have no such limit.
+    pub indices_at_once: u32,
     /// Sample counts that colour and depth attachments both have.
     pub sample_counts: vk::SampleCountFlags,
     /// The largest tessellation factor.
@@ -93,6 +96,7 @@ impl DeviceProperties {
             driver_name: text(driver.driver_name_as_c_str()),
             driver_info: text(driver.driver_info_as_c_str()),
             patch_batch: PatchBatch::of_driver(driver.driver_id),
+            indices_at_once: if driver.driver_id == vk::DriverId::MESA_LLVMPIPE { 1023 } else { u32::MAX },
             sample_counts: limits.framebuffer_color_sample_counts & limits.framebuffer_depth_sample_counts,
             max_tessellation_level: limits.max_tessellation_generation_level,
             max_patch_size: limits.max_tessellation_patch_size,

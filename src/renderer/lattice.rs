@@ -10,7 +10,7 @@ use crate::gpu::{
     Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, Shader,
     descriptor_set_layout, pipeline_layout,
 };
-use crate::table::{PatchPlan, lattice_indices, lattice_triangles, lattice_vertices};
+use crate::table::{LatticeIndices, PatchPlan, lattice_vertices};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
@@ -85,6 +85,8 @@ pub(super) struct Lattice {
     /// Those that compute evaluates.
     pub vertices: Option<LatticeVertices>,
     indices: Buffer,
+    /// What indices are of.
+    topology: vk::PrimitiveTopology,
     /// In the order of the plan.
     groups: Vec<LatticeGroup>,
     staged: Option<Buffer>,
@@ -127,22 +129,29 @@ impl Lattice {
         if computed && bytes > max {
             return Err(Error::TableTooLarge { id, table: "evaluated vertices", bytes, max });
         }
+        // Those of a block of patches are no strip: lines from one to the other would be seen.
+        let of_patches = if computed {
+            LatticeIndices::List
+        } else {
+            let kinds = plan.groups().iter().map(|group| group.kind);
+            LatticeIndices::new(kinds, segments, context.properties().indices_at_once)
+        };
         let (mut groups, mut indices) = (Vec::new(), Vec::new());
         let mut first_vertex = 0;
-        let mut blocks: [Option<(u32, u32)>; 2] = [None; 2];
+        let mut blocks: [Option<(u32, u32, u32)>; 2] = [None; 2];
         for group in plan.groups() {
             let (kind, patches) = (group.kind, group.patches.len() as u32);
             let vertices = lattice_vertices(kind, segments);
-            let (first_index, block) = *blocks[usize::from(kind.is_triangular())].get_or_insert_with(|| {
+            let (first_index, of_patch, block) = *blocks[usize::from(kind.is_triangular())].get_or_insert_with(|| {
                 let alike = plan.groups().iter().filter(|g| g.kind.is_triangular() == kind.is_triangular());
                 let most = alike.map(|g| g.patches.len() as u64).max().unwrap_or(1);
                 let block = if computed { (BLOCK_VERTICES / vertices).clamp(1, most) } else { 1 };
-                let (first, of_patch) = (indices.len() as u32, lattice_indices(kind, segments));
+                let (first, of_patch) = (indices.len() as u32, of_patches.of(kind, segments));
                 let starts = (0..block).map(|patch| (patch * vertices) as u32);
                 indices.extend(starts.flat_map(|start| of_patch.iter().map(move |i| start + i)));
-                (first, block as u32)
+                (first, of_patch.len() as u32, block as u32)
             });
-            let (vertices, of_patch) = (vertices as u32, 3 * lattice_triangles(kind, segments) as u32);
+            let vertices = vertices as u32;
             groups.push(LatticeGroup { patches, vertices, first_vertex, indices: of_patch, first_index, block });
             if computed {
                 // What fits into the buffer can be counted by 32 bits.
@@ -155,7 +164,7 @@ impl Lattice {
         let mut staged = upload_buffer(context, "subdiv indices to copy", index_bytes)?;
         staged.write(0, &indices)?;
         let indices = device_buffer(context, "subdiv indices", index_bytes, vk::BufferUsageFlags::INDEX_BUFFER)?;
-        Ok(Self { segments, vertices, indices, groups, staged: Some(staged) })
+        Ok(Self { segments, vertices, indices, topology: topology(of_patches), groups, staged: Some(staged) })
     }
 
     pub(super) fn needs_copies(&self) -> bool {
@@ -227,8 +236,9 @@ impl Lattice {
         // SAFETY: as the caller promises.
         unsafe {
             device.cmd_bind_index_buffer(cmd, self.indices.raw(), 0, vk::IndexType::UINT32);
-            if let Some(vertices) = &self.vertices {
-                device.cmd_bind_vertex_buffers(cmd, 0, &[vertices.buffer.raw()], &[0]);
+            match &self.vertices {
+                Some(vertices) => device.cmd_bind_vertex_buffers(cmd, 0, &[vertices.buffer.raw()], &[0]),
+                None => device.cmd_set_primitive_topology(cmd, self.topology),
             }
         }
     }
@@ -250,6 +260,14 @@ impl Lattice {
             // SAFETY: as the caller promises.
             unsafe { device.cmd_draw_indexed(cmd, count, 1, first_index, offset, 0) };
         }
+    }
+}
+
+/// What indices are drawn as.
+pub(crate) fn topology(of: LatticeIndices) -> vk::PrimitiveTopology {
+    match of {
+        LatticeIndices::List => vk::PrimitiveTopology::TRIANGLE_LIST,
+        LatticeIndices::Strip => vk::PrimitiveTopology::TRIANGLE_STRIP,
     }
 }
 

@@ -316,6 +316,11 @@ impl Pipelines {
             _ if style.geometry == Geometry::ControlEdges => vk::PrimitiveTopology::LINE_LIST,
             _ => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
+        // A lattice says what its indices are of.
+        let dynamic_states: &[_] = match key.geometry {
+            GeometryKey::Patches(stages, _) if stages.is_instanced() => &[vk::DynamicState::PRIMITIVE_TOPOLOGY],
+            _ => &[],
+        };
         let desc = GraphicsPipelineDesc {
             patch_control_points: key.geometry.input_points(),
             vertex_bindings: input.bindings.as_slice(),
@@ -331,6 +336,7 @@ impl Pipelines {
             first_color_only: style.writes_first_only(target),
             samples: target.samples,
             rasterizer_discard: style.rasterizer_discard,
+            dynamic_states,
             cache: self.cache,
             ..GraphicsPipelineDesc::new(name, self.layout.raw(), target.render_target(), stages)
         };

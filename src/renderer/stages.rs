@@ -96,10 +96,14 @@ impl PatchStages {
         Self { evaluation, spacing, edge_factors: false, attributes: false, ..self }
     }
 
-    /// Whether the vertex shader evaluates instances, with no more control points than a device has attributes.
+    /// Whether the vertex shader evaluates instances of a lattice.
+    pub(super) fn is_instanced(self) -> bool {
+        matches!(self.evaluation, Evaluation::Instanced | Evaluation::GeometryTwoPass)
+    }
+
+    /// Whether it does with no more control points than a device has attributes.
     pub(super) fn fit_attributes(self, device: &DeviceProperties) -> bool {
-        let instanced = matches!(self.evaluation, Evaluation::Instanced | Evaluation::GeometryTwoPass);
-        instanced && self.attribute_offsets().count() <= device.max_vertex_attributes as usize
+        self.is_instanced() && self.attribute_offsets().count() <= device.max_vertex_attributes as usize
     }
 
     /// Where the attributes of an instance are in what is kept of a patch, in bytes.

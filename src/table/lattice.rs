@@ -13,7 +13,7 @@ pub(crate) fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
 }
 
 /// How many triangles.
-pub(crate) fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
+fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
     let n = u64::from(n);
     if kind.is_triangular() { n * n } else { 2 * n * n }
 }
@@ -46,8 +46,31 @@ fn rises(n: u32, column: u32, row: u32) -> bool {
     }
 }
 
+/// What the indices of a lattice are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum LatticeIndices {
+    List,
+    Strip,
+}
+
+impl LatticeIndices {
+    /// A strip where the list of a patch of any of these kinds has more than so many indices.
+    pub(crate) fn new(kinds: impl IntoIterator<Item = PatchKind>, n: u32, at_once: u32) -> Self {
+        let long = kinds.into_iter().any(|kind| 3 * lattice_triangles(kind, n) > at_once.into());
+        if long { Self::Strip } else { Self::List }
+    }
+
+    /// Those of a patch.
+    pub(crate) fn of(self, kind: PatchKind, n: u32) -> Vec<u32> {
+        match self {
+            Self::List => lattice_list(kind, n),
+            Self::Strip => lattice_strip(kind, n),
+        }
+    }
+}
+
 /// Three vertices for each triangle, counter-clockwise where (u, v) is.
-pub(crate) fn lattice_indices(kind: PatchKind, n: u32) -> Vec<u32> {
+fn lattice_list(kind: PatchKind, n: u32) -> Vec<u32> {
     let mut indices = Vec::with_capacity(3 * lattice_triangles(kind, n) as usize);
     for row in 0..n {
         if kind.is_triangular() {
@@ -69,6 +92,57 @@ pub(crate) fn lattice_indices(kind: PatchKind, n: u32) -> Vec<u32> {
     indices
 }
 
+/// The vertices of a row of triangles as a strip, from left to right, and whether the first of them is seen turned around. Where
+/// diagonals change their direction, a vertex comes twice.
+fn strip_row(kind: PatchKind, n: u32, row: u32) -> (Vec<u32>, bool) {
+    if kind.is_triangular() {
+        let (above, below) = (row * (row + 1) / 2, (row + 1) * (row + 2) / 2);
+        let pairs = (0..=row).flat_map(|k| [below + k, above + k]);
+        return (pairs.chain([below + row + 1]).collect(), true);
+    }
+    // From the second of a pair to the first of the next goes a diagonal.
+    let pair = |k: u32, rises: bool| {
+        let [above, below] = [row, row + 1].map(|row| row * (n + 1) + k);
+        if rises { [below, above] } else { [above, below] }
+    };
+    let mut rising = rises(n, 0, row);
+    let (mut vertices, turned) = (Vec::from(pair(0, rising)), !rising);
+    for k in 0..n {
+        if rises(n, k, row) != rising {
+            vertices.push(pair(k, rising)[0]);
+            rising = !rising;
+        }
+        vertices.extend(pair(k + 1, rising));
+    }
+    (vertices, turned)
+}
+
+/// The triangles of [`lattice_list`] as one strip, from row to row and back. In between are triangles that have a vertex twice;
+/// their sides are those of others.
+fn lattice_strip(kind: PatchKind, n: u32) -> Vec<u32> {
+    let mut strip: Vec<u32> = Vec::new();
+    for row in 0..n {
+        let (mut vertices, mut turned) = strip_row(kind, n, row);
+        if row % 2 == 1 {
+            vertices.reverse();
+            turned ^= vertices.len() % 2 == 1;
+        }
+        // The row before ends with the side of which this is the lower vertex.
+        let common = vertices[0].min(vertices[1]);
+        while row > 0 && !strip.ends_with(&[common; 2]) {
+            strip.push(common);
+        }
+        let rest = if row > 0 && vertices[0] == common { &vertices[1..] } else { &vertices };
+        let first = strip.len() + rest.len() - vertices.len();
+        // Every other triangle of a strip is turned around.
+        if (first % 2 == 1) != turned {
+            strip.push(common);
+        }
+        strip.extend(rest);
+    }
+    strip
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,7 +153,7 @@ mod tests {
         for kind in PatchKind::ALL {
             for n in [1, 2, 5] {
                 let parameters = grid_parameters(kind, n + 1);
-                let indices = lattice_indices(kind, n);
+                let indices = lattice_list(kind, n);
                 assert_eq!(parameters.len() as u64, lattice_vertices(kind, n));
                 assert_eq!(indices.len() as u64, 3 * lattice_triangles(kind, n));
                 let area = indices.chunks(3).map(|t| {
@@ -92,6 +166,30 @@ mod tests {
                 let whole = if kind.is_triangular() { 0.5 } else { 1.0 };
                 assert!((areas.iter().sum::<f64>() - whole).abs() < 1e-12);
             }
+        }
+    }
+
+    #[test]
+    fn strips_have_the_same_triangles() {
+        for (kind, n) in PatchKind::ALL.into_iter().flat_map(|kind| (1..20).map(move |n| (kind, n))) {
+            let sorted = |triangles: Vec<[u32; 3]>| {
+                let turned = |t: [u32; 3]| (0..3).map(|i| [t[i], t[(i + 1) % 3], t[(i + 2) % 3]]).min().unwrap();
+                let mut all: Vec<_> = triangles.into_iter().map(turned).collect();
+                all.sort();
+                all
+            };
+            let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|[a, b]| [a.min(b), a.max(b)]);
+            let list = sorted(lattice_list(kind, n).chunks(3).map(|t| [t[0], t[1], t[2]]).collect());
+            let strip = lattice_strip(kind, n);
+            let of_strip = strip.windows(3).enumerate();
+            let of_strip = of_strip.map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] });
+            let (empty, real): (Vec<_>, Vec<_>) = of_strip.partition(|t| sides(t).iter().any(|[a, b]| a == b));
+            assert_eq!(sorted(real), list, "{kind:?}, {n}");
+            // Nothing new where edges are drawn.
+            let drawn: Vec<_> = list.iter().flat_map(sides).collect();
+            let mut more = empty.iter().flat_map(sides).filter(|[a, b]| a != b);
+            assert!(more.all(|side| drawn.contains(&side)), "{kind:?}, {n}");
+            assert!(strip.len() <= (2 * n * (n + 3) + 4) as usize, "{kind:?}, {n}: {}", strip.len());
         }
     }
 

@@ -18,9 +18,7 @@ mod subdivision;
 
 pub use cpu::{CpuSurface, grid_parameters};
 pub use error::TableError;
-pub(crate) use lattice::{
-    MAX_SEGMENTS, TILE_VERTICES, lattice_indices, lattice_tiles, lattice_triangles, lattice_vertices,
-};
+pub(crate) use lattice::{LatticeIndices, MAX_SEGMENTS, TILE_VERTICES, lattice_tiles, lattice_vertices};
 pub use plan::{Patch, PatchGroup, PatchPlan};
 pub use prepare::{FaceOrigin, Notice, Prepared, prepare, prepare_patches, prepare_quads};
 pub use rings::RingTable;

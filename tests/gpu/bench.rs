@@ -51,10 +51,16 @@ fn covered(pixels: &[u8]) -> usize {
 #[test]
 fn a_vertex_buffer_is_the_same_surface() {
     let headless = headless();
-    for (name, spacing) in [("creature", Spacing::Equal), ("cloth", Spacing::FractionalEven)] {
+    // At 16 its indices are those of a strip.
+    for (name, spacing, factor) in [
+        ("creature", Spacing::Equal, 4.0),
+        ("cloth", Spacing::FractionalEven, 4.0),
+        ("creature", Spacing::Equal, 16.0),
+        ("creature-mixed", Spacing::Equal, 16.0),
+    ] {
         let bench = Bench::new(&headless, BenchOptions { spacing, ..options() }).unwrap();
         let subject = subject(name);
-        let [drawn, before] = [GREGORY, floor(Path::VertexBuffer)].map(|c| bench.picture(&subject, c, 4.0).unwrap());
+        let [drawn, before] = [GREGORY, floor(Path::VertexBuffer)].map(|c| bench.picture(&subject, c, factor).unwrap());
         let (pixels, other) = (covered(&drawn), different(&drawn, &before));
         // Rounding moves the silhouette by a pixel here and there.
         assert!(pixels > 1500 && other * 100 <= pixels, "{name}: {other} of {pixels}");

@@ -264,7 +264,7 @@ fn pictures_follow_positions_and_segments() {
         .map(|options| (renderer.add_model(&mesh, &options).expect("a model"), options.evaluation))
         .collect();
     let small: Vec<_> = mesh.positions_f32().iter().map(|p| p.map(|x| 0.5 * x)).collect();
-    for (frame, n, moves) in [(0, 4, false), (1, 4, true), (0, 9, false), (1, 9, true), (0, 1, true), (1, 3, false)] {
+    for (frame, n, moves) in [(0, 4, false), (1, 4, true), (0, 9, false), (1, 9, true), (0, 1, true), (1, 16, false)] {
         for &(model, evaluation) in &models {
             if evaluation.needs_segments() {
                 renderer.set_segments(model, n).unwrap();
@@ -286,6 +286,30 @@ fn pictures_follow_positions_and_segments() {
             for &(model, evaluation) in &models {
                 assert_same(&picture(model), &expected, &format!("{evaluation:?}: {n} in frame {frame}"));
             }
+        }
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+/// Lines tell, also where indices are those of a strip.
+#[test]
+fn triangles_are_those_of_the_tessellation_stages() {
+    let stage = Stage::new();
+    let mesh = shape("single-quad").expect("built in");
+    let mut renderer = stage.renderer(&Options { styles: vec![Style::wireframe()], ..Options::default() });
+    for n in [3, 4, 16, 17] {
+        let mut expected = None;
+        for way in std::iter::once(ModelOptions::default()).chain(ways(Scheme::Gregory)) {
+            let model = renderer.add_model(&mesh, &way).expect("a model");
+            if way.evaluation.needs_segments() {
+                renderer.set_segments(model, n).unwrap();
+            }
+            stage.prepare(&mut renderer, 0);
+            let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, n as f32)]).expect("a picture");
+            let what = format!("{:?} {:?}: {n}", way.evaluation, way.construction);
+            assert_same(&picture, expected.get_or_insert(picture.clone()), &what);
+            renderer.remove_model(model).unwrap();
         }
     }
     drop(renderer);

@@ -29,6 +29,7 @@ struct Input<'a> {
     patch_control_points: u32,
     bindings: &'a [vk::VertexInputBindingDescription],
     attributes: &'a [vk::VertexInputAttributeDescription],
+    dynamic_states: &'a [vk::DynamicState],
 }
 
 /// Layouts and the view, as `glsl/lib/draw.glsl` has them.
@@ -111,6 +112,7 @@ impl Kit {
                 depth: Some(DepthState::LESS),
                 samples: lane.target.samples,
                 rasterizer_discard: pass == Pass::Geometry,
+                dynamic_states: input.dynamic_states,
                 ..GraphicsPipelineDesc::new("bench floor", self.layout.raw(), target, &stages)
             };
             // SAFETY: the shaders are ours and match each other, the layout and the target.

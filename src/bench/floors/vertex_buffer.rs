@@ -5,8 +5,8 @@ use crate::bench::BenchError;
 use crate::bench::drawable::{Drawable, Frame, Lane, Setup, timed};
 use crate::gpu::{Buffer, GpuError, Owned, Shader, shaders};
 use crate::patch::Scheme;
-use crate::renderer::{DrawConstants, TableBytes};
-use crate::table::{CpuSurface, lattice_indices, lattice_triangles, lattice_vertices};
+use crate::renderer::{DrawConstants, TableBytes, topology};
+use crate::table::{CpuSurface, LatticeIndices, lattice_vertices};
 use crate::topology::PatchKind;
 use ash::vk;
 use glam::Vec3;
@@ -27,6 +27,7 @@ struct Triangles {
     vertices: Buffer,
     indices: Buffer,
     count: u32,
+    topology: vk::PrimitiveTopology,
 }
 
 #[repr(C)]
@@ -50,20 +51,22 @@ impl<'a> VertexBuffer<'a> {
             vk::VertexInputAttributeDescription::default().location(location).format(format).offset(offset)
         };
         let attributes = [attribute(0, 0), attribute(1, 12)];
-        let input = Input { patch_control_points: 0, bindings: &bindings, attributes: &attributes };
+        let dynamic_states = &[vk::DynamicState::PRIMITIVE_TOPOLOGY];
+        let input = Input { patch_control_points: 0, bindings: &bindings, attributes: &attributes, dynamic_states };
         let stages = [Shader::vertex(shaders::EVALUATE_LATTICE_VERT)];
         let (pipelines, pipelines_ms) = timed(|| kit.pipelines(lane, &stages, &input))?;
         let setup = Setup { pipelines: pipelines_ms, ..Setup::default() };
         Ok(Self { lane, kit, pipelines, surface, points, drawn: None, setup, _nothing: nothing })
     }
 
-    /// What the device must hold for `n` segments an edge, before anything is evaluated.
-    fn check(&self, n: u32) -> Result<(), GpuError> {
+    /// What the device must hold for `n` segments an edge and such indices of a patch of each kind, before anything is evaluated.
+    fn check(&self, n: u32, of_kinds: &[Vec<u32>]) -> Result<(), GpuError> {
         let (mut vertices, mut indices) = (0, 0);
         for kind in PatchKind::ALL {
             let patches = u64::from(self.surface.plan().count(kind));
             vertices += patches * lattice_vertices(kind, n);
-            indices += patches * 3 * lattice_triangles(kind, n);
+            // Three more join strips.
+            indices += patches * (of_kinds[kind as usize].len() as u64 + 3);
         }
         let bytes = (vertices * size_of::<Vertex>() as u64).max(4 * indices);
         let max = self.lane.headless.properties().max_buffer_size;
@@ -74,13 +77,24 @@ impl<'a> VertexBuffer<'a> {
         Ok(())
     }
 
-    /// Vertices and indices of all patches with `n` segments an edge.
-    fn triangles(&self, n: u32) -> (Vec<Vertex>, Vec<u32>) {
+    /// Vertices and indices of all patches with `n` segments an edge, and such indices of a patch of each kind.
+    fn triangles(&self, n: u32, of_patches: LatticeIndices, of_kinds: &[Vec<u32>]) -> (Vec<Vertex>, Vec<u32>) {
         let grids = self.surface.grid(&self.points, n + 1);
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
         for (patch, grid) in self.surface.plan().patches().iter().zip(grids) {
             let first = vertices.len() as u32;
-            indices.extend(lattice_indices(patch.kind, n).into_iter().map(|i| first + i));
+            let of_patch = &of_kinds[patch.kind as usize];
+            if of_patches == LatticeIndices::Strip
+                && let (Some(&last), Some(&next)) = (indices.last(), of_patch.first())
+            {
+                // Triangles with a vertex twice, as many as it takes for the next not to be turned around.
+                indices.push(last);
+                if indices.len().is_multiple_of(2) {
+                    indices.push(last);
+                }
+                indices.push(first + next);
+            }
+            indices.extend(of_patch.iter().map(|i| first + i));
             vertices.extend(grid.iter().map(|s| Vertex { position: s.position.into(), normal: s.normal.into() }));
         }
         (vertices, indices)
@@ -92,14 +106,18 @@ impl Drawable for VertexBuffer<'_> {
         self.drawn = None;
         let headless = self.lane.headless;
         let n = self.lane.spacing.segments(factor, headless.properties().max_tessellation_level);
-        self.check(n)?;
-        let ((vertices, indices), tables) = timed(|| Ok::<_, BenchError>(self.triangles(n)))?;
+        let kinds = PatchKind::ALL.into_iter().filter(|&kind| self.surface.plan().count(kind) > 0);
+        let of_patches = LatticeIndices::new(kinds, n, headless.properties().indices_at_once);
+        let of_kinds = PatchKind::ALL.map(|kind| of_patches.of(kind, n));
+        self.check(n, &of_kinds)?;
+        let ((vertices, indices), tables) = timed(|| Ok::<_, BenchError>(self.triangles(n, of_patches, &of_kinds)))?;
         let (drawn, upload) = timed(|| {
             use vk::BufferUsageFlags as Usage;
             Ok::<_, BenchError>(Triangles {
                 vertices: device_buffer(headless, "bench vertices", Usage::VERTEX_BUFFER, &vertices)?,
                 indices: device_buffer(headless, "bench indices", Usage::INDEX_BUFFER, &indices)?,
                 count: indices.len() as u32,
+                topology: topology(of_patches),
             })
         })?;
         self.drawn = Some(drawn);
@@ -116,6 +134,7 @@ impl Drawable for VertexBuffer<'_> {
             let device = self.lane.headless.device();
             device.cmd_bind_vertex_buffers(cmd, 0, &[drawn.vertices.raw()], &[0]);
             device.cmd_bind_index_buffer(cmd, drawn.indices.raw(), 0, vk::IndexType::UINT32);
+            device.cmd_set_primitive_topology(cmd, drawn.topology);
             for transform in frame.instances {
                 let constants =
                     DrawConstants { colour: [0.7, 0.7, 0.7, 1.0], ..DrawConstants::new(transform, [1.0, 0.0, 0.0]) };
