@@ -17,7 +17,7 @@
 #include "draw.glsl"
 #include "visible.glsl"
 
-// Whether what is kept of patches is copied.
+// Whether what is kept of patches is copied. Set in src/renderer/lists.rs.
 layout(constant_id = 11) const bool COPIES = false;
 
 // Patches of a workgroup. Rust twin: `REGION` in src/renderer/lists.rs.
@@ -51,7 +51,7 @@ bool can_be_seen(uint patch_number) {
     return !is_culled(1.0 / smallest);
 }
 
-void write_command(uint at, uvec4 words) {
+void write_words(uint at, uvec4 words) {
     for (uint i = 0u; i < 4u; ++i) {
         visible.words[at + i] = words[i];
     }
@@ -61,16 +61,16 @@ void write_command(uint at, uvec4 words) {
 void write_commands(uint start, uint count) {
     if (draw.patches_per_instance == 0u) {
         // VkDrawIndexedIndirectCommand: an instance for each patch.
-        uint at = draw.commands + 5u * gl_WorkGroupID.x;
-        write_command(at, uvec4(draw.vertices, count, draw.first_index, 0u));
+        uint at = draw.count + 5u * gl_WorkGroupID.x;
+        write_words(at, uvec4(draw.vertices, count, draw.first_index, 0u));
         visible.words[at + 4u] = start;
         return;
     }
-    // VkDrawIndirectCommand: whole instances, and what is left as one more.
-    uint at = draw.commands + 8u * gl_WorkGroupID.x, first_vertex = start * draw.vertices;
+    // VkDrawIndirectCommand: whole instances, and what is left as one more; the draws start where the list ends.
+    uint at = draw.count + 8u * gl_WorkGroupID.x, first_vertex = start * draw.vertices;
     uint whole = count / draw.patches_per_instance, rest = count % draw.patches_per_instance;
-    write_command(at, uvec4(draw.patches_per_instance * draw.vertices, whole, first_vertex, 0u));
-    write_command(at + 4u, uvec4(rest * draw.vertices, rest > 0u ? 1u : 0u, first_vertex, whole));
+    write_words(at, uvec4(draw.patches_per_instance * draw.vertices, whole, first_vertex, 0u));
+    write_words(at + 4u, uvec4(rest * draw.vertices, rest > 0u ? 1u : 0u, first_vertex, whole));
 }
 
 void main() {
@@ -103,6 +103,6 @@ void main() {
     const uint TEXELS = CORNERS * STRIDE;
     for (uint i = id; i < count * TEXELS; i += REGION) {
         uvec4 texel = floatBitsToUint(kept_texel(draw.first_corner + listed[i / TEXELS] * CORNERS, i % TEXELS));
-        write_command(draw.copies + 4u * (start * TEXELS + i), texel);
+        write_words(draw.copies + 4u * (start * TEXELS + i), texel);
     }
 }

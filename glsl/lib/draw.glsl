@@ -1,5 +1,5 @@
 // What every shader of a draw knows: the view and the draw's own constants.
-// Rust twins: `ViewData` and `DrawConstants` in src/renderer/gpu_data.rs.
+// Rust twins: `ViewData` and `DrawConstants` in src/renderer/gpu_data.rs, `ListConstants` in src/renderer/lists.rs.
 #ifndef DRAW_GLSL
 #define DRAW_GLSL
 
@@ -15,7 +15,7 @@ layout(set = 0, binding = 0, std140) uniform View {
 } view;
 
 #ifdef MAKES_LISTS
-// What is looked at, and how it is to be drawn. Rust twin: `ListConstants` in src/renderer/lists.rs.
+// What is looked at, and how it is to be drawn.
 layout(push_constant, std430) uniform Draw {
     vec4 transform[3];  // rows: object to world
     float factor;
@@ -25,8 +25,7 @@ layout(push_constant, std430) uniform Draw {
     uint vertices;              // of a patch in a draw: the points of its corners, or the indices of a lattice
     uint first_index;           // of a lattice
     uint patches_per_instance;  // 0: an indexed draw with an instance for each
-    uint commands;              // the word of the list where they start
-    uint copies;                // the same of copies
+    uint copies;                // the word of the list where they start
 } draw;
 
 float draw_factor() {

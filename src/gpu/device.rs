@@ -36,7 +36,7 @@ pub struct DeviceProperties {
     /// How many patches a draw instance may hold.
     pub patch_batch: PatchBatch,
     /// Indices of triangles that the driver takes at a time, making vertices anew after: lattices with more are drawn as strips,
-    /// which have a third. Mesa's draw module (lavapipe) takes 1023, looking each of them up, too; others have no such limit.
+    /// which have a third. Mesa's draw module (lavapipe) takes 1023, looking each of them up, too; of others no such limit is known.
     pub indices_at_once: u32,
     /// Sample counts that colour and depth attachments both have.
     pub sample_counts: vk::SampleCountFlags,

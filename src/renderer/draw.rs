@@ -74,8 +74,8 @@ pub(super) struct Bound {
 }
 
 impl Renderer {
-    /// Records the draws of one view. Viewport and scissor are the caller's to set. Binds sets 0 and 1, and pipelines, of which
-    /// some have the topology dynamic; push constants are overwritten.
+    /// Records the draws of one view. Viewport and scissor are the caller's to set. Binds sets 0 and 1, and pipelines;
+    /// push constants are overwritten, and the topology where that is dynamic.
     ///
     /// # Errors
     /// Unknown models, styles and frames, factors below 1 and more views than

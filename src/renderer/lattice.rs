@@ -38,16 +38,20 @@ pub(super) struct LatticePipelines {
     layout: Owned<vk::PipelineLayout>,
     cache: vk::PipelineCache,
     texcoords: bool,
+    /// As of the device, if strips may be drawn.
+    indices_at_once: u32,
     made: HashMap<PatchStages, Owned<vk::Pipeline>>,
 }
 
 impl LatticePipelines {
-    /// With the set layouts of the draws.
+    /// With the set layouts of the draws. Lines show the triangles that join the rows of strips, and not as those of others:
+    /// with `wireframe` there are none.
     pub(super) fn new(
         context: &Arc<DeviceContext>,
         [view, model]: [vk::DescriptorSetLayout; 2],
         cache: vk::PipelineCache,
         texcoords: bool,
+        wireframe: bool,
     ) -> Result<Self, GpuError> {
         let vertices = (vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::COMPUTE);
         let set_layout = descriptor_set_layout(context, "subdiv vertices", &[vertices])?;
@@ -56,7 +60,16 @@ impl LatticePipelines {
         // SAFETY: the set layouts are of this device.
         let layout =
             unsafe { pipeline_layout(context, "subdiv evaluation", &[view, model, set_layout.raw()], &constants)? };
-        Ok(Self { context: context.clone(), set_layout, layout, cache, texcoords, made: HashMap::new() })
+        let indices_at_once = if wireframe { u32::MAX } else { context.properties().indices_at_once };
+        Ok(Self {
+            context: context.clone(),
+            set_layout,
+            layout,
+            cache,
+            texcoords,
+            indices_at_once,
+            made: HashMap::new(),
+        })
     }
 
     /// Makes what patches need.
@@ -105,8 +118,9 @@ struct LatticeGroup {
     /// Vertices of a patch, and the first of all.
     vertices: u32,
     first_vertex: u32,
-    /// Indices of a patch, and the first.
+    /// Indices of a patch, those that join it to the one before in its block, and the first.
     indices: u32,
+    joint: u32,
     first_index: u32,
     /// Patches that there are indices for.
     block: u32,
@@ -129,13 +143,8 @@ impl Lattice {
         if computed && bytes > max {
             return Err(Error::TableTooLarge { id, table: "evaluated vertices", bytes, max });
         }
-        // Those of a block of patches are no strip: lines from one to the other would be seen.
-        let of_patches = if computed {
-            LatticeIndices::List
-        } else {
-            let kinds = plan.groups().iter().map(|group| group.kind);
-            LatticeIndices::new(kinds, segments, context.properties().indices_at_once)
-        };
+        let kinds = plan.groups().iter().map(|group| group.kind);
+        let of_patches = LatticeIndices::new(kinds, segments, pipelines.indices_at_once);
         let (mut groups, mut indices) = (Vec::new(), Vec::new());
         let mut first_vertex = 0;
         let mut blocks: [Option<(u32, u32, u32)>; 2] = [None; 2];
@@ -147,12 +156,14 @@ impl Lattice {
                 let most = alike.map(|g| g.patches.len() as u64).max().unwrap_or(1);
                 let block = if computed { (BLOCK_VERTICES / vertices).clamp(1, most) } else { 1 };
                 let (first, of_patch) = (indices.len() as u32, of_patches.of(kind, segments));
-                let starts = (0..block).map(|patch| (patch * vertices) as u32);
-                indices.extend(starts.flat_map(|start| of_patch.iter().map(move |i| start + i)));
+                let mut of_block = Vec::new();
+                (0..block).for_each(|patch| of_patches.append(&mut of_block, &of_patch, (patch * vertices) as u32));
+                indices.extend(of_block);
                 (first, of_patch.len() as u32, block as u32)
             });
             let vertices = vertices as u32;
-            groups.push(LatticeGroup { patches, vertices, first_vertex, indices: of_patch, first_index, block });
+            let joint = of_patches.joint(of_patch);
+            groups.push(LatticeGroup { patches, vertices, first_vertex, indices: of_patch, joint, first_index, block });
             if computed {
                 // What fits into the buffer can be counted by 32 bits.
                 first_vertex += patches * vertices;
@@ -236,9 +247,12 @@ impl Lattice {
         // SAFETY: as the caller promises.
         unsafe {
             device.cmd_bind_index_buffer(cmd, self.indices.raw(), 0, vk::IndexType::UINT32);
-            match &self.vertices {
-                Some(vertices) => device.cmd_bind_vertex_buffers(cmd, 0, &[vertices.buffer.raw()], &[0]),
-                None => device.cmd_set_primitive_topology(cmd, self.topology),
+            if let Some(vertices) = &self.vertices {
+                device.cmd_bind_vertex_buffers(cmd, 0, &[vertices.buffer.raw()], &[0]);
+            }
+            // If nothing is drawn, the pipeline that is bound may not have it dynamic.
+            if !self.groups.is_empty() {
+                device.cmd_set_primitive_topology(cmd, self.topology);
             }
         }
     }
@@ -248,14 +262,14 @@ impl Lattice {
     /// # Safety
     /// `cmd` is being recorded, inside rendering, after [`Lattice::cmd_bind`], with a pipeline for it.
     pub(super) unsafe fn cmd_draw(&self, device: &ash::Device, cmd: vk::CommandBuffer, group: usize) {
-        let LatticeGroup { patches, vertices, first_vertex, indices, first_index, block } = self.groups[group];
+        let LatticeGroup { patches, vertices, first_vertex, indices, joint, first_index, block } = self.groups[group];
         if self.vertices.is_none() {
             // SAFETY: as the caller promises.
             unsafe { device.cmd_draw_indexed(cmd, indices, patches, first_index, 0, 0) };
             return;
         }
         for patch in (0..patches).step_by(block as usize) {
-            let count = indices * block.min(patches - patch);
+            let count = (indices + joint) * block.min(patches - patch) - joint;
             let offset = (first_vertex + patch * vertices) as i32;
             // SAFETY: as the caller promises.
             unsafe { device.cmd_draw_indexed(cmd, count, 1, first_index, offset, 0) };

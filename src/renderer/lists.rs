@@ -21,11 +21,11 @@ const PLACE_BYTES: u64 = 4;
 /// The most bytes of a list.
 const MAX_BYTES: u64 = 1 << 20;
 /// Patches that a workgroup lists. GLSL twin: `REGION` in `glsl/compute/cull.comp`.
-const REGION: u32 = 128;
+pub(super) const REGION: u32 = 128;
 
 /// How large a list is, and what is in it: places of patches, then the indirect draws, then copies. Workgroups list the patches of
 /// a region each, and write its draws.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct ListLayout {
     /// Bytes of the commands of a region.
     command_bytes: u64,
@@ -89,11 +89,12 @@ pub(super) struct ListConstants {
     pub first_index: u32,
     /// 0 for indexed draws with an instance for each patch.
     pub patches_per_instance: u32,
-    /// The word of the list where the draws start.
-    pub commands: u32,
-    /// The same of copies.
+    /// The word of the list where the copies start.
     pub copies: u32,
 }
+
+const _: () = assert!(std::mem::offset_of!(ListConstants, count) == 60);
+const _: () = assert!(size_of::<ListConstants>() == 80);
 
 /// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
 pub(super) fn view_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::DescriptorSetLayout>, GpuError> {

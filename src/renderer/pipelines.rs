@@ -137,7 +137,8 @@ impl Pipelines {
         let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
         let sets = [view_layout.raw(), model_layout.raw()];
         let cached = CachedPipelines::new(context, sets, options.pipeline_cache)?;
-        let lattice = LatticePipelines::new(context, sets, options.pipeline_cache, options.texcoords)?;
+        let wireframe = options.styles.iter().any(|style| style.wireframe);
+        let lattice = LatticePipelines::new(context, sets, options.pipeline_cache, options.texcoords, wireframe)?;
         let lists = ListPipelines::new(context, sets, options.pipeline_cache)?;
         Ok(Self {
             context: context.clone(),
@@ -318,6 +319,7 @@ impl Pipelines {
         };
         // A lattice says what its indices are of.
         let dynamic_states: &[_] = match key.geometry {
+            GeometryKey::Evaluated { .. } => &[vk::DynamicState::PRIMITIVE_TOPOLOGY],
             GeometryKey::Patches(stages, _) if stages.is_instanced() => &[vk::DynamicState::PRIMITIVE_TOPOLOGY],
             _ => &[],
         };

@@ -8,7 +8,7 @@ use super::draw::Bound;
 use super::evaluated::Drawn;
 use super::factor::{Cull, Cut};
 use super::gpu_data::DrawConstants;
-use super::lists::{FrameLists, ListConstants, ListLayout};
+use super::lists::{FrameLists, ListConstants, ListLayout, REGION};
 use super::model::Model;
 use super::pipelines::PipelineKey;
 use super::stages::PatchStages;
@@ -106,7 +106,6 @@ impl List {
             vertices,
             first_index,
             patches_per_instance: self.patches_per_instance,
-            commands: (ListLayout::commands_start(self.count) / 4) as u32,
             copies: (ListLayout::new(stages).copies_start(self.count) / 4) as u32,
         }
     }
@@ -122,7 +121,7 @@ impl Renderer {
     ///
     /// It is for models that are [`Construction::Cached`](super::Construction::Cached) and whose
     /// [evaluation leaves out patches](Evaluation::culls). Others are drawn as by [`Renderer::cmd_draw`]. Takes memory, which is
-    /// kept for later frames: some five bytes a patch, and for instances what they read of it, 256 bytes of a Gregory patch. Binds
+    /// kept for later frames: a little more than four bytes a patch, and for instances what they read of it, 256 bytes of a Gregory patch. Binds
     /// compute pipelines, with sets 0 and 1, and counts as one of
     /// [`Options::views_per_frame`](super::Options::views_per_frame).
     ///
@@ -177,7 +176,7 @@ impl Renderer {
         };
         if bytes > 0 {
             // SAFETY: as the caller promises.
-            unsafe { self.cmd_list(cmd, &visible)? };
+            unsafe { self.cmd_lists(cmd, &visible)? };
         }
         Ok(visible)
     }
@@ -259,7 +258,7 @@ impl Renderer {
         Ok(lists.into_iter().map(|(list, bytes)| List { offset: room.take(bytes), ..list }).collect())
     }
 
-    unsafe fn cmd_list(&self, cmd: vk::CommandBuffer, visible: &VisibleItems) -> Result<(), Error> {
+    unsafe fn cmd_lists(&self, cmd: vk::CommandBuffer, visible: &VisibleItems) -> Result<(), Error> {
         use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
         for VisibleItem { item, lists, .. } in &visible.items {
             let (model, most) = self.check_item(&visible.view, item)?;
@@ -295,34 +294,38 @@ impl Renderer {
         bound: &mut Bound,
     ) {
         let device = self.context.device();
-        let geometry = model.stages[group].geometry(Cut::listed(item.factor));
+        let (stages, of_group) = (model.stages[group], &model.tables.plan().groups()[group]);
+        let geometry = stages.geometry(Cut::listed(item.factor));
         // SAFETY: as the caller promises.
         unsafe {
             self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
             for list in own.lists.iter().filter(|list| list.group == group) {
-                let of_group = &model.tables.plan().groups()[group];
-                self.push(
-                    cmd,
-                    &DrawConstants {
-                        first_corner: list.first_corner(of_group),
-                        first_patch: of_group.patches.start as u32 + list.first,
-                        patches_per_instance: list.patches_per_instance,
-                        ..*of_draw
-                    },
-                );
+                let constants = DrawConstants {
+                    first_corner: list.first_corner(of_group),
+                    first_patch: of_group.patches.start as u32 + list.first,
+                    patches_per_instance: list.patches_per_instance,
+                    ..*of_draw
+                };
+                self.push(cmd, &constants);
                 self.cmd_bind_view(cmd, visible.set, [visible.view_offset, list.offset]);
                 let offset = u64::from(list.offset);
                 let commands = offset + ListLayout::commands_start(list.count);
                 let regions = ListLayout::regions(list.count);
                 if list.patches_per_instance == 0 {
-                    if model.stages[group].attributes {
-                        let copies = offset + ListLayout::new(model.stages[group]).copies_start(list.count);
+                    if stages.attributes {
+                        let copies = offset + ListLayout::new(stages).copies_start(list.count);
                         device.cmd_bind_vertex_buffers(cmd, 0, &[visible.buffer], &[copies]);
                     }
                     let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
                     device.cmd_draw_indexed_indirect(cmd, visible.buffer, commands, regions, stride);
+                    continue;
+                }
+                let stride = size_of::<vk::DrawIndirectCommand>() as u32;
+                if list.patches_per_instance > REGION {
+                    // No region has whole instances: of its two draws only the second has anything.
+                    let rest = commands + u64::from(stride);
+                    device.cmd_draw_indirect(cmd, visible.buffer, rest, regions, 2 * stride);
                 } else {
-                    let stride = size_of::<vk::DrawIndirectCommand>() as u32;
                     device.cmd_draw_indirect(cmd, visible.buffer, commands, 2 * regions, stride);
                 }
             }

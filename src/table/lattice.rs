@@ -67,6 +67,25 @@ impl LatticeIndices {
             Self::Strip => lattice_strip(kind, n),
         }
     }
+
+    /// How many more join a patch that has so many to the same of another. In a strip, triangles with a vertex twice: as many as it
+    /// takes for the next not to be turned around.
+    pub(crate) fn joint(self, indices: u32) -> u32 {
+        match self {
+            Self::List => 0,
+            Self::Strip => 2 + indices % 2,
+        }
+    }
+
+    /// Appends those of a patch, whose vertices start at `first`, to those of others.
+    pub(crate) fn append(self, all: &mut Vec<u32>, of_patch: &[u32], first: u32) {
+        if let (Self::Strip, Some(&last), Some(&next)) = (self, all.last(), of_patch.first()) {
+            let joint = self.joint(all.len() as u32);
+            all.extend((1..joint).map(|_| last));
+            all.push(first + next);
+        }
+        all.extend(of_patch.iter().map(|i| first + i));
+    }
 }
 
 /// Three vertices for each triangle, counter-clockwise where (u, v) is.

@@ -292,23 +292,35 @@ fn pictures_follow_positions_and_segments() {
     stage.finish();
 }
 
-/// Lines tell, also where indices are those of a strip.
+/// Lines tell: also of what is hidden, and of what faces away.
 #[test]
 fn triangles_are_those_of_the_tessellation_stages() {
     let stage = Stage::new();
-    let mesh = shape("single-quad").expect("built in");
-    let mut renderer = stage.renderer(&Options { styles: vec![Style::wireframe()], ..Options::default() });
-    for n in [3, 4, 16, 17] {
-        let mut expected = None;
+    let inside = Style { cull: vk::CullModeFlags::FRONT, ..Style::wireframe() };
+    let styles = vec![Style::default(), Style::wireframe(), inside];
+    let mut renderer = stage.renderer(&Options { styles, views_per_frame: 32, ..Options::default() });
+    for (name, n) in ["single-quad", "cube"].into_iter().flat_map(|name| [3, 4, 16, 17].map(|n| (name, n))) {
+        let mesh = shape(name).expect("built in");
+        let mut expected = [None, None];
         for way in std::iter::once(ModelOptions::default()).chain(ways(Scheme::Gregory)) {
             let model = renderer.add_model(&mesh, &way).expect("a model");
             if way.evaluation.needs_segments() {
                 renderer.set_segments(model, n).unwrap();
             }
             stage.prepare(&mut renderer, 0);
-            let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, n as f32)]).expect("a picture");
-            let what = format!("{:?} {:?}: {n}", way.evaluation, way.construction);
-            assert_same(&picture, expected.get_or_insert(picture.clone()), &what);
+            // Of a single quad nothing faces away.
+            let styles = if name == "cube" { vec![vec![0, 1], vec![2]] } else { vec![vec![0, 1]] };
+            for (styles, expected) in styles.into_iter().zip(&mut expected) {
+                let items = styles.into_iter().map(|style| DrawItem {
+                    style,
+                    colors: [[0.2 + 0.4 * style as f32; 4]; 4],
+                    ..DrawItem::new(model, n as f32)
+                });
+                let items: Vec<_> = items.collect();
+                let picture = stage.draw(&mut renderer, 0, &items).expect("a picture");
+                let what = format!("{name}, {:?} {:?}: {n}", way.evaluation, way.construction);
+                assert_same(&picture, expected.get_or_insert(picture.clone()), &what);
+            }
             renderer.remove_model(model).unwrap();
         }
     }

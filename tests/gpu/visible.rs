@@ -271,7 +271,7 @@ fn lists_grow_with_what_is_drawn() {
         // Each frame has its own, and keeps them.
         let lists = renderer.memory_usage().lists;
         let patches = renderer.tables(instanced).unwrap().plan().patches().len() as u64;
-        assert_eq!(lists > before + (4 + 256) * patches, before == 0 || frame == 1, "{lists} bytes");
+        assert_eq!(lists > before + (4 + 192) * patches, before == 0 || frame == 1, "{lists} bytes");
         before = lists;
     }
     // More than offsets of 32 bits reach, which takes no memory to find out.

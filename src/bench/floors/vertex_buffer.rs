@@ -83,18 +83,7 @@ impl<'a> VertexBuffer<'a> {
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
         for (patch, grid) in self.surface.plan().patches().iter().zip(grids) {
             let first = vertices.len() as u32;
-            let of_patch = &of_kinds[patch.kind as usize];
-            if of_patches == LatticeIndices::Strip
-                && let (Some(&last), Some(&next)) = (indices.last(), of_patch.first())
-            {
-                // Triangles with a vertex twice, as many as it takes for the next not to be turned around.
-                indices.push(last);
-                if indices.len().is_multiple_of(2) {
-                    indices.push(last);
-                }
-                indices.push(first + next);
-            }
-            indices.extend(of_patch.iter().map(|i| first + i));
+            of_patches.append(&mut indices, &of_kinds[patch.kind as usize], first);
             vertices.extend(grid.iter().map(|s| Vertex { position: s.position.into(), normal: s.normal.into() }));
         }
         (vertices, indices)

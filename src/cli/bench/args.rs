@@ -114,7 +114,7 @@ x base:       the median of ratios to the first row, frame by frame, with the in
 construction: control points alone: factor 1 less the bilinear floor at factor 1, without rasterization; of paths with the
               tessellation stages, as the floor.
 set-up:       tables and upload, without pipelines; the median of several.
-triangles:    before clipping; of lattices drawn as strips (on lavapipe, from 14 segments on) with those that join rows, of no area.
+triangles:    before clipping; of lattices drawn as strips (on lavapipe, of quads from 14 segments on) with those that join rows, of no area.
 sure:         of --compare: that the frames of both runs differ, whatever made them. It does not know that machines drift
               between runs; floors, which do not draw the surface, tell by how much: `faster` and `slower` are rows whose
               interval is wholly outside of what the intervals of all floors reach (floors themselves: not around 1).
