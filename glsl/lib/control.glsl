@@ -101,9 +101,11 @@ void finish_corner(uint patch_number) {
 #ifdef TEXCOORD
     texcoord[gl_InvocationID] = texcoords[draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID)];
 #endif
-    Examined examined = examine(uint(gl_InvocationID));
-    outside[gl_InvocationID] = examined.outside;
-    pixel_box[gl_InvocationID] = examined.pixel_box;
+    if ((DRAW_FLAGS & CULL_FLAGS) != 0u) {
+        Examined examined = examine(uint(gl_InvocationID));
+        outside[gl_InvocationID] = examined.outside;
+        pixel_box[gl_InvocationID] = examined.pixel_box;
+    }
 #ifdef CAPTURE_POINTS
     for (uint i = 0u; i < OWNED; ++i) {
         capture_point(draw.first_patch + patch_number, uint(gl_InvocationID) * OWNED + i,
