@@ -1,19 +1,16 @@
 //! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
 
+use super::computing::ComputePipelines;
 use super::factor::Cut;
 use super::model::{device_buffer, upload_buffer};
 use super::pipelines::ShaderCode;
 use super::stages::{PatchStages, Sharing};
 use super::vertex_input::vertex_bytes;
 use super::{Capture, Error, Evaluation, MemoryUsage, ModelId};
-use crate::gpu::{
-    Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, Shader,
-    descriptor_set_layout, pipeline_layout,
-};
+use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, descriptor_set_layout};
 use crate::table::{LatticeIndices, PatchPlan, lattice_vertices};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Vertices of a patch that a workgroup takes. GLSL twin: `GROUP_VERTICES` in `glsl/evaluate/lattice.comp`.
@@ -33,14 +30,11 @@ struct Dispatch {
 
 /// Pipelines by what they evaluate.
 pub(super) struct LatticePipelines {
-    context: Arc<DeviceContext>,
     set_layout: Owned<vk::DescriptorSetLayout>,
-    layout: Owned<vk::PipelineLayout>,
-    cache: vk::PipelineCache,
     texcoords: bool,
     /// As of the device, if strips may be drawn.
     indices_at_once: u32,
-    made: HashMap<PatchStages, Owned<vk::Pipeline>>,
+    pipelines: ComputePipelines<PatchStages, Dispatch>,
 }
 
 impl LatticePipelines {
@@ -55,40 +49,16 @@ impl LatticePipelines {
     ) -> Result<Self, GpuError> {
         let vertices = (vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::COMPUTE);
         let set_layout = descriptor_set_layout(context, "subdiv vertices", &[vertices])?;
-        let size = size_of::<Dispatch>() as u32;
-        let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
-        // SAFETY: the set layouts are of this device.
-        let layout =
-            unsafe { pipeline_layout(context, "subdiv evaluation", &[view, model, set_layout.raw()], &constants)? };
+        let sets = [view, model, set_layout.raw()];
+        let pipelines = ComputePipelines::new(context, "subdiv evaluation", &sets, cache)?;
         let indices_at_once = if wireframe { u32::MAX } else { context.properties().indices_at_once };
-        Ok(Self {
-            context: context.clone(),
-            set_layout,
-            layout,
-            cache,
-            texcoords,
-            indices_at_once,
-            made: HashMap::new(),
-        })
+        Ok(Self { set_layout, texcoords, indices_at_once, pipelines })
     }
 
     /// Makes what patches need.
     pub(super) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
-        if self.made.contains_key(&stages) {
-            return Ok(());
-        }
-        let name = stages.evaluation(Capture::Off, self.texcoords);
-        let constants = stages.specialization(Cut::default(), self.context.properties());
-        let desc = ComputePipelineDesc {
-            name: &format!("subdiv {name}"),
-            layout: self.layout.raw(),
-            shader: Shader::compute(code.find(&name)?).specialized(&constants),
-            cache: self.cache,
-        };
-        // SAFETY: the shader is ours and matches the layout.
-        let pipeline = unsafe { desc.create(&self.context)? };
-        self.made.insert(stages, pipeline);
-        Ok(())
+        let constants = stages.specialization(Cut::default(), self.pipelines.context().properties());
+        self.pipelines.make(stages, &stages.evaluation(Capture::Off, self.texcoords), code, &constants)
     }
 }
 
@@ -135,7 +105,7 @@ impl Lattice {
         plan: &PatchPlan,
         segments: u32,
     ) -> Result<Self, Error> {
-        let context = &pipelines.context;
+        let context = pipelines.pipelines.context();
         let computed = evaluation == Evaluation::Compute;
         let max = context.properties().max_storage_buffer_range;
         let counts = plan.groups().iter().map(|g| g.patches.len() as u64 * lattice_vertices(g.kind, segments));
@@ -207,14 +177,10 @@ impl Lattice {
         plan: &PatchPlan,
     ) {
         let Some(vertices) = &self.vertices else { return };
-        let (device, layout) = (pipelines.context.device(), pipelines.layout.raw());
-        let point = vk::PipelineBindPoint::COMPUTE;
+        let pipelines = &pipelines.pipelines;
         // SAFETY: as the caller promises.
-        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model, vertices.set.raw()], &[]) };
-        for ((&stages, group), lattice) in stages.iter().zip(plan.groups()).zip(&self.groups) {
-            let Some(pipeline) = pipelines.made.get(&stages) else { continue };
-            // SAFETY: as the caller promises.
-            unsafe { device.cmd_bind_pipeline(cmd, point, pipeline.raw()) };
+        unsafe { pipelines.cmd_bind(cmd, 1, &[model, vertices.set.raw()], &[]) };
+        for ((stages, group), lattice) in stages.iter().zip(plan.groups()).zip(&self.groups) {
             let corners = group.kind.corners() as u32;
             for patch in (0..lattice.patches).step_by(MAX_WORKGROUPS as usize) {
                 let dispatch = Dispatch {
@@ -224,12 +190,9 @@ impl Lattice {
                     vertices: lattice.vertices,
                 };
                 let patches = MAX_WORKGROUPS.min(lattice.patches - patch);
+                let groups = [patches, lattice.vertices.div_ceil(GROUP_VERTICES)];
                 // SAFETY: as the caller promises.
-                unsafe {
-                    let stage = vk::ShaderStageFlags::COMPUTE;
-                    device.cmd_push_constants(cmd, layout, stage, 0, bytemuck::bytes_of(&dispatch));
-                    device.cmd_dispatch(cmd, patches, lattice.vertices.div_ceil(GROUP_VERTICES), 1);
-                }
+                unsafe { pipelines.cmd_dispatch(cmd, stages, &dispatch, groups) };
             }
         }
     }
@@ -289,8 +252,8 @@ impl LatticeVertices {
     fn new(pipelines: &LatticePipelines, bytes: u64) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC;
-        let buffer = device_buffer(&pipelines.context, "subdiv vertices", bytes.max(4), usage)?;
-        let (context, layout) = (&pipelines.context, pipelines.set_layout.raw());
+        let (context, layout) = (pipelines.pipelines.context(), pipelines.set_layout.raw());
+        let buffer = device_buffer(context, "subdiv vertices", bytes.max(4), usage)?;
         let parts = [(vk::DescriptorType::STORAGE_BUFFER, buffer.descriptor())];
         // SAFETY: the layout is of this device, with this descriptor; the buffer goes with the set.
         let set = unsafe { DescriptorSet::of_buffers(context, layout, "subdiv vertices", &parts)? };

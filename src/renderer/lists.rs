@@ -1,6 +1,7 @@
 //! Lists of the patches that can be seen, made by compute: pipelines, memory, dispatches. See [`super::visible`].
 
 use super::Evaluation;
+use super::computing::ComputePipelines;
 use super::factor::Cut;
 use super::gpu_data::ViewData;
 use super::model::device_buffer;
@@ -8,12 +9,10 @@ use super::pipelines::ShaderCode;
 use super::stages::PatchStages;
 use super::tables::TEXEL_BYTES;
 use crate::gpu::{
-    Buffer, ComputePipelineDesc, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, Owned, Shader,
-    Specialization, descriptor_set_layout, pipeline_layout,
+    Buffer, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, Owned, Specialization, descriptor_set_layout,
 };
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Bytes of a patch's place on a list.
@@ -165,14 +164,8 @@ impl FrameLists {
     }
 }
 
-/// The pipelines that find which patches can be seen, and list them.
-pub(super) struct ListPipelines {
-    context: Arc<DeviceContext>,
-    layout: Owned<vk::PipelineLayout>,
-    cache: vk::PipelineCache,
-    /// By [`PatchStages::for_culling`].
-    made: HashMap<(PatchStages, Cut), Owned<vk::Pipeline>>,
-}
+/// The pipelines that find which patches can be seen, and list them: by [`PatchStages::for_culling`].
+pub(super) struct ListPipelines(ComputePipelines<(PatchStages, Cut), ListConstants>);
 
 impl ListPipelines {
     /// With the set layouts of the draws.
@@ -181,32 +174,15 @@ impl ListPipelines {
         sets: [vk::DescriptorSetLayout; 2],
         cache: vk::PipelineCache,
     ) -> Result<Self, GpuError> {
-        let size = size_of::<ListConstants>() as u32;
-        let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
-        // SAFETY: the set layouts are of this device.
-        let layout = unsafe { pipeline_layout(context, "subdiv lists of patches", &sets, &constants)? };
-        Ok(Self { context: context.clone(), layout, cache, made: HashMap::new() })
+        ComputePipelines::new(context, "subdiv lists of patches", &sets, cache).map(Self)
     }
 
     /// Makes what patches need that are left out by these rules.
     pub(super) fn make(&mut self, stages: PatchStages, cut: Cut, code: &ShaderCode) -> Result<(), GpuError> {
         let stages = stages.for_culling();
-        if self.made.contains_key(&(stages, cut)) {
-            return Ok(());
-        }
-        let name = stages.culling();
-        let constants = stages.specialization(cut, self.context.properties());
+        let constants = stages.specialization(cut, self.0.context().properties());
         let constants: Vec<_> = constants.into_iter().chain([Specialization::bool(11, stages.attributes)]).collect();
-        let desc = ComputePipelineDesc {
-            name: &format!("subdiv {name}"),
-            layout: self.layout.raw(),
-            shader: Shader::compute(code.find(&name)?).specialized(&constants),
-            cache: self.cache,
-        };
-        // SAFETY: the shader is ours and matches the layout.
-        let pipeline = unsafe { desc.create(&self.context)? };
-        self.made.insert((stages, cut), pipeline);
-        Ok(())
+        self.0.make((stages, cut), &stages.culling(), code, &constants)
     }
 
     /// Records the dispatch that makes a list.
@@ -222,15 +198,15 @@ impl ListPipelines {
         offsets: [u32; 2],
         constants: &ListConstants,
     ) {
-        let Some(pipeline) = self.made.get(&(stages.for_culling(), cut)) else { return };
-        let (device, layout, point) = (self.context.device(), self.layout.raw(), vk::PipelineBindPoint::COMPUTE);
-        let bytes = bytemuck::bytes_of(constants);
         // SAFETY: as the caller promises.
         unsafe {
-            device.cmd_bind_pipeline(cmd, point, pipeline.raw());
-            device.cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, &offsets);
-            device.cmd_push_constants(cmd, layout, vk::ShaderStageFlags::COMPUTE, 0, bytes);
-            device.cmd_dispatch(cmd, ListLayout::regions(constants.count), 1, 1);
+            self.0.cmd_bind(cmd, 0, &sets, &offsets);
+            self.0.cmd_dispatch(
+                cmd,
+                &(stages.for_culling(), cut),
+                constants,
+                [ListLayout::regions(constants.count), 1],
+            );
         }
     }
 }

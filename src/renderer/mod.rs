@@ -43,6 +43,7 @@
 
 mod bindings;
 mod cached;
+mod computing;
 mod conversion;
 mod displacement;
 mod draw;
