@@ -15,29 +15,36 @@
 #ifndef OWNED
 #define OWNED 4
 #endif
+#define KEPT_FRAMES
 #include "control.glsl"
 #ifdef SHARED
+#include "shared.glsl"
 #include "write_shared.glsl"
 #endif
-
-layout(location = 0) in vec3 in_owned[][OWNED];
-layout(location = 8) in uint in_patch_number[];
-#ifdef SHARED
-layout(location = 7) in uint in_shared_bits[];
-layout(location = 9) in vec3 in_shared_with[][SHARED_VECTORS];
+#include "cached.glsl"
 #ifdef DISPLACED
-layout(location = 6) in float in_shared_lod[];
+#include "corner_lod.glsl"
 #endif
-#endif
+
+layout(location = 4) in uint in_patch_number[];
 
 void main() {
-    for (uint i = 0u; i < OWNED; ++i) {
-        owned[gl_InvocationID][i] = in_owned[gl_InvocationID][i];
+    uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
+    vec4 texels[KEPT_TEXELS] = kept_texels(corner);
+    for (int i = 0; i < OWNED; ++i) {
+        owned[gl_InvocationID][i] = kept_vector(texels, i);
     }
     finish_corner(in_patch_number[0]);
 #ifdef SHARED
-    uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
-    HAND_ON_SHARED(corner, gl_InvocationID);
+    vec3 with[SHARED_VECTORS];
+    for (int i = 0; i < SHARED_VECTORS; ++i) {
+        with[i] = kept_vector(texels, OWNED + i);
+    }
+    float lod = 0.0;
+#ifdef DISPLACED
+    lod = corner_lod(corner, corner_speaker(corner, framed_ring(patch_corner(corner).x)));
+#endif
+    write_shared(corner, with, kept_bits(texels), lod);
 #endif
     barrier();
     finish_patch(in_patch_number[0]);

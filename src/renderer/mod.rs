@@ -27,11 +27,10 @@
 //! | VS, instanced | lists of patches; control points, what corners share; the displacement map | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
 //! | GS | vertices and weights of the patch, positions; or control points | strips of models that are [`Evaluation::Geometry`], which have only VS (the number of a tile) and FS besides |
 //! | VS, two-stage | patch corners, rings and their weights, positions | what a corner of a patch takes from its ring: limit point, edge vectors, transversals and the like, what it shares |
-//! | VS, stencil | nothing | the number of the patch, for each patch |
-//! | VS, cached | lists of patches; control points, what corners share; displaced, frames | those, and levels of the map |
+//! | VS, stencil and cached | cached, lists of patches | the number of the patch, for each patch |
 //! | TCS, two-stage | what its corners took from their rings | control points, factors |
 //! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
-//! | TCS, cached | what VS has | control points, factors |
+//! | TCS, cached | control points, what corners share; displaced, frames | those, levels of the map, factors |
 //! | GS of models that are [`Evaluation::Subdivision`] | fans and their weights, positions | position, normal, texture coordinate; no TCS and TES |
 //! | TES | control points, the view | position, normal, texture coordinate |
 //! | FS | those, the view | the caller's attachments; none of ours where there are none |

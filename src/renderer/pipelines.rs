@@ -249,7 +249,7 @@ impl Pipelines {
                 ("evaluated vertices".to_owned(), vec![Shader::vertex(self.shaders.find(vertex)?)])
             }
             GeometryKey::Subdivision(level) => {
-                let vertex = Shader::vertex(self.shaders.find("CONSTRUCT_STENCIL_VERT")?);
+                let vertex = Shader::vertex(self.shaders.find("CONSTRUCT_PATCH_NUMBER_VERT")?);
                 let geometry = self.shaders.find(&subdivision::shader(level, self.capture, self.texcoords))?;
                 let stages = vec![vertex, Shader::geometry(geometry).specialized(&reads_texels)];
                 (format!("faces subdivided {level} times"), stages)
@@ -264,7 +264,7 @@ impl Pipelines {
                         self.tessellating(patch, &constants, &code)?
                     }
                     Evaluation::Geometry => {
-                        let tile = Shader::vertex(self.shaders.find("CONSTRUCT_STENCIL_VERT")?);
+                        let tile = Shader::vertex(self.shaders.find("CONSTRUCT_PATCH_NUMBER_VERT")?);
                         vec![tile, Shader::geometry(evaluation).specialized(&constants)]
                     }
                     _ => vec![Shader::vertex(evaluation).specialized(&constants)],

@@ -76,8 +76,8 @@ impl PatchStages {
     /// Control points that go into the control shader: one a corner, or one a patch that only says which patch it is.
     pub(super) fn input_points(self) -> u32 {
         match self.construction {
-            Construction::TwoStage | Construction::Cached => self.kind.corners() as u32,
-            Construction::Stencil => 1,
+            Construction::TwoStage => self.kind.corners() as u32,
+            Construction::Stencil | Construction::Cached => 1,
         }
     }
 
@@ -138,12 +138,8 @@ impl PatchStages {
     /// The name of the vertex shader.
     pub(super) fn vertex(self, capture: Capture) -> String {
         let sharing = self.sharing.suffix(capture);
-        match self.construction {
-            Construction::TwoStage => {}
-            Construction::Stencil => return "CONSTRUCT_STENCIL_VERT".to_owned(),
-            Construction::Cached => {
-                return format!("CONSTRUCT_CACHED_VERT_OWNED_{}{sharing}", self.scheme.owned(self.kind));
-            }
+        if self.construction != Construction::TwoStage {
+            return "CONSTRUCT_PATCH_NUMBER_VERT".to_owned();
         }
         let inner = match files(self.scheme, self.kind)[0] {
             "REGULAR" => String::new(),
