@@ -137,10 +137,10 @@ impl PatchStages {
 
     /// The name of the vertex shader.
     pub(super) fn vertex(self, capture: Capture) -> String {
-        let sharing = self.sharing.suffix(capture);
         if self.construction != Construction::TwoStage {
             return "CONSTRUCT_PATCH_NUMBER_VERT".to_owned();
         }
+        let sharing = self.sharing.suffix(capture);
         let inner = match files(self.scheme, self.kind)[0] {
             "REGULAR" => String::new(),
             scheme => format!("_{scheme}"),
