@@ -344,7 +344,11 @@ fn displaced_pictures_are_those_of_the_tessellation_stages() {
         // SAFETY: the texture outlives the renderer and is readable.
         let displacement = Some(unsafe { renderer.add_displacement((&texture).into()) });
         let shared = ways(Scheme::Gregory).filter(|way| way.evaluation.shares(way.construction));
+        // The levels of the map are found in other stages there.
+        let others = [Construction::Stencil, Construction::Cached];
+        let others = others.map(|construction| ModelOptions { construction, ..ModelOptions::default() });
         let models: Vec<_> = std::iter::once(ModelOptions::default())
+            .chain(others)
             .chain(shared)
             .map(|way| ModelOptions { displacement, ..way })
             .map(|way| (renderer.add_model(&mesh, &way).expect("a model"), way.evaluation))
