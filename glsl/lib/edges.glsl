@@ -59,9 +59,10 @@ SharedSample share(Surface own, vec3 at) {
 #define DIRECTION0(k, n) shared_with[k][SHARED_VECTORS - 1]
 #define DIRECTION1(k, n) shared_with[n][SHARED_VECTORS - 1]
 #define SHARP(k, n) (shared_bits[k] & SHARP_EDGE_BIT) != 0u
+#define START(k, n) owned[k][0]
 #define AFTER(k, n) owned[k][1]
 #define BEFORE(k, n) owned[n][2]
-#define BETWEEN(k, n) CONTROL_POINT(n, 2) - CONTROL_POINT(k, 1)
+#define END(k, n) owned[n][0]
 #define TEXCOORD0(k, n) shared_texcoord[k][0]
 #define TEXCOORD1(k, n) shared_texcoord[n][1]
 #define CORNER_TEXCOORD0(k, n) shared_texcoord[k][2]
@@ -78,7 +79,7 @@ SharedSample share(Surface own, vec3 at) {
     if (any(on)) {
         vec3 across = edge_across(PICK(ACROSS0), PICK(TRANSVERSAL0), PICK(TRANSVERSAL1), PICK(ACROSS1), way);
 #ifdef TRIANGLE
-        vec3 along = edge_slope(cubic_basis(way).slope, PICK(AFTER), PICK(BETWEEN), PICK(BEFORE));
+        vec3 along = curve_slope(curve_basis(way), PICK(START), PICK(AFTER), PICK(BEFORE), PICK(END));
 #else
         vec3 along = on.x ? own.du : on.y ? own.dv : on.z ? -own.du : -own.dv;
 #endif

@@ -25,12 +25,12 @@ vec3 tangent(vec3 x0, vec3 near, vec3 far, vec3 x2, float t) {
 }
 
 Surface evaluate_acc(float u, float v) {
-    Basis bu = cubic_basis(u);
-    Basis bv = cubic_basis(v);
-    vec3 c0 = symmetric_sum(bu.value, corner(0), edge_plus(0), edge_minus(1), corner(1));
-    vec3 c1 = symmetric_sum(bu.value, edge_minus(0), inner(0), inner(1), edge_plus(1));
-    vec3 c2 = symmetric_sum(bu.value, edge_plus(3), inner(3), inner(2), edge_minus(2));
-    vec3 c3 = symmetric_sum(bu.value, corner(3), edge_minus(3), edge_plus(2), corner(2));
+    vec4 bu = cubic_basis(u);
+    vec4 bv = cubic_basis(v);
+    vec3 c0 = symmetric_sum(bu, corner(0), edge_plus(0), edge_minus(1), corner(1));
+    vec3 c1 = symmetric_sum(bu, edge_minus(0), inner(0), inner(1), edge_plus(1));
+    vec3 c2 = symmetric_sum(bu, edge_plus(3), inner(3), inner(2), edge_minus(2));
+    vec3 c3 = symmetric_sum(bu, corner(3), edge_minus(3), edge_plus(2), corner(2));
     vec3 u0 = tangent(t_plus(0), edge_plus(0), edge_minus(1), -t_minus(1), u);
     vec3 u1 = tangent(x_minus(0), inner(0), inner(1), -x_plus(1), u);
     vec3 u2 = tangent(x_plus(3), inner(3), inner(2), -x_minus(2), u);
@@ -40,8 +40,8 @@ Surface evaluate_acc(float u, float v) {
     vec3 v2 = tangent(x_minus(1), inner(1), inner(2), -x_plus(2), v);
     vec3 v3 = tangent(t_plus(1), edge_plus(1), edge_minus(2), -t_minus(2), v);
     vec3 diagonals = cross(corner(2) - corner(0), corner(3) - corner(1));
-    return Surface(symmetric_sum(bv.value, c0, c1, c2, c3), symmetric_sum(bv.value, u0, u1, u2, u3),
-                   symmetric_sum(bu.value, v0, v1, v2, v3), diagonals);
+    return Surface(symmetric_sum(bv, c0, c1, c2, c3), symmetric_sum(bv, u0, u1, u2, u3),
+                   symmetric_sum(bu, v0, v1, v2, v3), diagonals);
 }
 
 Surface evaluate_surface(vec3 at) {

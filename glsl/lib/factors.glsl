@@ -50,9 +50,9 @@ float pixel_distance(vec3 a, vec3 b) {
 // The length in pixels of an edge's curve, as that of a polyline.
 float edge_pixels(vec3 p0, vec3 e0, vec3 e1, vec3 p1) {
     vec3 a = to_pixels(p0), e = to_pixels(p1);
-    vec3 b = to_pixels(symmetric_sum(cubic_basis(0.25).value, p0, e0, e1, p1));
-    vec3 c = to_pixels(symmetric_sum(cubic_basis(0.5).value, p0, e0, e1, p1));
-    vec3 d = to_pixels(symmetric_sum(cubic_basis(0.75).value, p0, e0, e1, p1));
+    vec3 b = to_pixels(symmetric_sum(cubic_basis(0.25), p0, e0, e1, p1));
+    vec3 c = to_pixels(symmetric_sum(cubic_basis(0.5), p0, e0, e1, p1));
+    vec3 d = to_pixels(symmetric_sum(cubic_basis(0.75), p0, e0, e1, p1));
     precise float pixels =
         (pixel_distance(a, b) + pixel_distance(d, e)) + (pixel_distance(b, c) + pixel_distance(c, d));
     return pixels;

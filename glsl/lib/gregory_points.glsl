@@ -1,4 +1,4 @@
-// The control points that corner k of a Gregory patch owns: p and, as seen from there, e+, e-, f+, f-. Rust twin:
+// What corner k of a Gregory patch keeps of the control points that it owns, p, e+, e-, f+, f-: see CONTROL_POINT. Rust twin:
 // `gregory_points` in src/patch/gregory.rs.
 #ifndef GREGORY_POINTS_GLSL
 #define GREGORY_POINTS_GLSL
@@ -19,9 +19,11 @@ void gregory_points(uint k) {
     OWNED_BY(k)[0] = limit.xyz;
     OWNED_BY(k)[1] = plus;
     OWNED_BY(k)[2] = minus;
-    OWNED_BY(k)[3] = face_point(plus, far_plus, limit.w, limit_next.w, in_inner[k][0]);
+    vec3 f_plus = face_point(plus, far_plus, limit.w, limit_next.w, in_inner[k][0]);
     // The face lies on the right of its minus edge.
-    OWNED_BY(k)[4] = face_point(minus, far_minus, limit.w, limit_before.w, -in_inner[k][1]);
+    vec3 f_minus = face_point(minus, far_minus, limit.w, limit_before.w, -in_inner[k][1]);
+    OWNED_BY(k)[3] = CORNERS == 4u ? f_plus - (plus + minus) : f_plus;
+    OWNED_BY(k)[4] = f_minus - f_plus;
 }
 
 #endif

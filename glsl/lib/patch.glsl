@@ -17,18 +17,13 @@ struct Sample {
     vec3 normal;
 };
 
-struct Basis {
-    vec4 value;
-    vec3 slope;  // the quadratic polynomials: of the differences of the points they make a third of the derivative
-};
-
 // The cubic Bernstein polynomials: at t and 1 - t the same numbers in reverse order.
-Basis cubic_basis(float t) {
+vec4 cubic_basis(float t) {
     precise float s = 1.0 - t;
     precise float ss = s * s;
     precise float tt = t * t;
     precise vec4 value = vec4(ss * s, 3.0 * ss * t, 3.0 * tt * s, tt * t);
-    return Basis(value, vec3(ss, 2.0 * (s * t), tt));
+    return value;
 }
 
 // The sum that both directions along an edge evaluate to the same bits.
@@ -63,72 +58,96 @@ vec3 unit_normal(vec3 du, vec3 dv, vec3 fallback) {
     return unit(parallel ? fallback : normal);
 }
 
-// A control point that is kept as seen from its corner.
+// A cubic Bezier curve by its ends and, as seen from either, the point beside it: what the ends count is the sum of two Bernstein
+// polynomials. At t and 1 - t the same numbers, in reverse order and with other signs.
+struct CurveBasis {
+    vec2 ends;    // of the ends
+    vec2 beside;  // of the points beside them
+    vec3 slope;   // of a third of the derivative: of the point beside the first end, of the way from end to end, of the point
+                  // beside the second
+};
+
+CurveBasis curve_basis(float t) {
+    precise float s = 1.0 - t;
+    precise float ss = s * s, tt = t * t;
+    precise float s3 = 3.0 * s, t3 = 3.0 * t;
+    precise vec2 ends = vec2(ss * (s + t3), tt * (t + s3));
+    precise vec2 beside = vec2(ss * t3, tt * s3);
+    precise float between = 2.0 * (s * t);
+    precise vec3 slope = vec3(ss - between, between, between - tt);
+    return CurveBasis(ends, beside, slope);
+}
+
+// The sum that both directions along an edge evaluate to the same bits.
+vec3 curve_point(CurveBasis at, vec3 p0, vec3 beside0, vec3 beside1, vec3 p1) {
+    precise vec3 sum = (at.ends.x * p0 + at.ends.y * p1) + (at.beside.x * beside0 + at.beside.y * beside1);
+    return sum;
+}
+
+// A third of the derivative. From either end the same but for its sign.
+vec3 curve_slope(CurveBasis at, vec3 p0, vec3 beside0, vec3 beside1, vec3 p1) {
+    precise vec3 sum = at.slope.y * (p1 - p0) + (at.slope.x * beside0 + at.slope.z * beside1);
+    return sum;
+}
+
 vec3 from_corner(vec3 p, vec3 vector) {
     precise vec3 point = p + vector;
     return point;
 }
 
-// A control point other than the corner itself, of those that a corner owns: bicubic and Gregory patches, with 4 and 5, keep
-// them as seen from the corner, for the differences of which normals are made.
+// Control point i of those that corner k owns, other than the corner itself. Bicubic and Gregory patches, with 4 and 5, keep other
+// things, of which positions and normals are made with the fewest operations. Rust twin: `Scheme::kept` in src/patch/scheme.rs.
+// - the points along the plus and the minus edge, as seen from the corner;
+// - of quads, the inner point as seen from where these two lead to one after the other; of triangles, as seen from the corner;
+// - of Gregory patches, the way from there (f+) to f-.
 #if defined(OWNED) && OWNED != 4 && OWNED != 5
 #define CONTROL_POINT(k, i) owned[k][i]
 #else
-#define CONTROL_POINT(k, i) from_corner(owned[k][0], owned[k][i])
+#ifdef TRIANGLE
+#define INNER_VECTOR(k) owned[k][3]
+#else
+#define INNER_VECTOR(k) from_corner(owned[k][1] + owned[k][2], owned[k][3])
+#endif
+#if OWNED == 5
+#define LAST_VECTOR(k) from_corner(INNER_VECTOR(k), owned[k][4])
+#else
+#define LAST_VECTOR(k) INNER_VECTOR(k)
+#endif
+#define CONTROL_POINT(k, i) \
+    from_corner(owned[k][0], (i) < 3 ? owned[k][i] : (i) == 3 ? INNER_VECTOR(k) : LAST_VECTOR(k))
 #endif
 
 Sample sample_of(Surface surface) {
     return Sample(surface.position, unit_normal(surface.du, surface.dv, surface.facing));
 }
 
-// A third of the derivative along a cubic: from its ends `near` and `far` to the points beside them, and between these. From either
-// end the same but for its sign.
-vec3 edge_slope(vec3 slope, vec3 near, vec3 middle, vec3 far) {
-    precise vec3 sum = (slope.x * near - slope.z * far) + slope.y * middle;
-    return sum;
-}
-
-// What a corner of a tensor-product patch owns: its point and, as seen from there, those along its plus and its minus edge, and
-// inside.
+// What a corner of a tensor-product patch has: its point; as seen from there, those along its plus and its minus edge; and the
+// inner point as seen from where these two lead to one after the other.
 struct TensorCorner {
-    vec3 p, plus, minus, inner;
+    vec3 p, plus, minus, twist;
 };
 
-// A 4 x 4 tensor-product Bezier patch.
-//
-// The row of points beside an edge is the row of the edge and vectors from there, so that slopes across an edge are made of
-// those vectors alone: with points, they would be differences of nearly equal numbers where a patch is small and far from the
-// origin. The derivative along an edge has the same bits for both its patches, but for its sign.
+// A 4 x 4 tensor-product Bezier patch, by its edges from a to b and from d to c, and by what lies inwards from them: so slopes
+// across an edge are made of vectors alone. With points, they would be differences of nearly equal numbers where a patch is small
+// and far from the origin. The derivative along an edge has the same bits for both its patches, but for its sign.
 Surface evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCorner d, float u, float v) {
-    Basis bu = cubic_basis(u);
-    Basis bv = cubic_basis(v);
-    // From a to b, and from d to c.
-    vec3 x1 = from_corner(a.p, a.plus), x2 = from_corner(b.p, b.minus);
-    vec3 y1 = from_corner(d.p, d.minus), y2 = from_corner(c.p, c.plus);
-    vec3 x = symmetric_sum(bu.value, a.p, x1, x2, b.p);
-    vec3 y = symmetric_sum(bu.value, d.p, y1, y2, c.p);
-    // From those edges inwards.
-    precise vec3 v1 = a.inner - a.plus, v2 = b.inner - b.minus;
-    precise vec3 w1 = d.inner - d.minus, w2 = c.inner - c.plus;
-    vec3 x_in = symmetric_sum(bu.value, a.minus, v1, v2, b.plus);
-    vec3 y_in = symmetric_sum(bu.value, d.plus, w1, w2, c.minus);
-    vec3 x_beside = from_corner(x, x_in), y_beside = from_corner(y, y_in);
-    vec3 position = symmetric_sum(bv.value, x, x_beside, y_beside, y);
-
-    // A third of the derivatives.
-    vec3 dv = edge_slope(bv.slope, x_in, y_beside - x_beside, y_in);
-    vec3 dx = edge_slope(bu.slope, a.plus, x2 - x1, b.minus);
-    vec3 dy = edge_slope(bu.slope, d.minus, y2 - y1, c.plus);
-    precise vec3 dx_in = bu.slope.x * (v1 - a.minus) + bu.slope.y * (v2 - v1) + bu.slope.z * (b.plus - v2);
-    precise vec3 dy_in = bu.slope.x * (w1 - d.plus) + bu.slope.y * (w2 - w1) + bu.slope.z * (c.minus - w2);
-    vec4 at = bv.value;
-    precise vec3 du = ((at.x + at.y) * dx + at.y * dx_in) + ((at.z + at.w) * dy + at.z * dy_in);
-    return Surface(position, du, dv, cross(c.p - a.p, d.p - b.p));
+    CurveBasis at_u = curve_basis(u), at_v = curve_basis(v);
+    vec3 x = curve_point(at_u, a.p, a.plus, b.minus, b.p);
+    vec3 y = curve_point(at_u, d.p, d.minus, c.plus, c.p);
+    vec3 x_in = curve_point(at_u, a.minus, a.twist, b.twist, b.plus);
+    vec3 y_in = curve_point(at_u, d.plus, d.twist, c.twist, c.minus);
+    vec3 dx = curve_slope(at_u, a.p, a.plus, b.minus, b.p);
+    vec3 dy = curve_slope(at_u, d.p, d.minus, c.plus, c.p);
+    vec3 dx_in = curve_slope(at_u, a.minus, a.twist, b.twist, b.plus);
+    vec3 dy_in = curve_slope(at_u, d.plus, d.twist, c.twist, c.minus);
+    return Surface(curve_point(at_v, x, x_in, y_in, y), curve_point(at_v, dx, dx_in, dy_in, dy),
+                   curve_slope(at_v, x, x_in, y_in, y), cross(c.p - a.p, d.p - b.p));
 }
 
-// The face point (a f+ + b f-) / (a + b); at a corner, where both weights vanish, it does not matter.
-vec3 blend(vec3 plus, float a, vec3 minus, float b) {
-    precise vec3 between = plus + (b / max(a + b, 1e-30)) * (minus - plus);
+// The face point (a f+ + b f-) / (a + b), where `change` leads from f+ to f-; at a corner, where both weights vanish, it does not
+// matter.
+vec3 blend(vec3 plus, float a, vec3 change, float b) {
+    precise vec3 between = plus + (b / max(a + b, 1e-30)) * change;
     return between;
 }
 

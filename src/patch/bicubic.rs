@@ -39,7 +39,7 @@ pub fn bicubic_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> [T; 16] {
 pub fn evaluate_bicubic<P: Point>(points: &[P; 16], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let corner = |slots: [usize; 4]| {
         let [p, plus, minus, inner] = slots.map(|slot| points[slot]);
-        TensorCorner { p, plus: plus - p, minus: minus - p, inner: inner - p }
+        TensorCorner::new(p, plus - p, minus - p, inner - p)
     };
     evaluate_tensor(&CORNER_SLOTS.map(corner), u, v)
 }
@@ -74,52 +74,92 @@ pub(crate) fn cubic<P: Point>(basis: &Basis<P::Scalar>, points: &[P; 4]) -> P {
     symmetric_sum(&basis.value, points)
 }
 
-/// A third of the derivative along a cubic: from its ends `near` and `far` to the points beside them, and between these. From
-/// either end the same but for its sign.
-///
-/// GLSL twin: `edge_slope` in `glsl/lib/patch.glsl`.
-pub(crate) fn edge_slope<P: Point>(slope: &[P::Scalar; 3], near: P, middle: P, far: P) -> P {
-    (near * slope[0] - far * slope[2]) + middle * slope[1]
+/// A cubic Bezier curve by its ends and, as seen from either, the point beside it: what the ends count is the sum of two
+/// Bernstein polynomials.
+pub(crate) struct CurveBasis<S> {
+    /// Of the ends.
+    ends: [S; 2],
+    /// Of the points beside them.
+    beside: [S; 2],
+    /// Of a third of the derivative: of the point beside the first end, of the way from end to end, of the point beside the
+    /// second.
+    slope: [S; 3],
 }
 
-/// What a corner of a tensor-product patch owns: its point and, as seen from there, those along its plus and its minus edge,
-/// and inside.
+impl<S: num_traits::Float> CurveBasis<S> {
+    /// At t and 1 - t the same numbers, in reverse order and with other signs, to the bit.
+    ///
+    /// GLSL twin: `curve_basis` in `glsl/lib/patch.glsl`.
+    pub(crate) fn new<P: Point<Scalar = S>>(t: S) -> Self {
+        let [one, two, three] = [1.0, 2.0, 3.0].map(scalar::<P>);
+        let s = one - t;
+        let (ss, tt, s3, t3) = (s * s, t * t, three * s, three * t);
+        let between = two * (s * t);
+        Self {
+            ends: [ss * (s + t3), tt * (t + s3)],
+            beside: [ss * t3, tt * s3],
+            slope: [ss - between, between, between - tt],
+        }
+    }
+}
+
+/// A point of a curve: a sum that both directions along an edge evaluate to the same bits. Of the ends, and between them the points
+/// beside as seen from there.
+///
+/// GLSL twin: `curve_point` in `glsl/lib/patch.glsl`.
+pub(crate) fn curve_point<P: Point>(at: &CurveBasis<P::Scalar>, [p0, beside0, beside1, p1]: [P; 4]) -> P {
+    (p0 * at.ends[0] + p1 * at.ends[1]) + (beside0 * at.beside[0] + beside1 * at.beside[1])
+}
+
+/// A third of the derivative there. From either end the same but for its sign.
+///
+/// GLSL twin: `curve_slope` in `glsl/lib/patch.glsl`.
+pub(crate) fn curve_slope<P: Point>(at: &CurveBasis<P::Scalar>, [p0, beside0, beside1, p1]: [P; 4]) -> P {
+    (p1 - p0) * at.slope[1] + (beside0 * at.slope[0] + beside1 * at.slope[2])
+}
+
+/// What [`curve_point`] takes of a cubic's Bezier points.
+pub(crate) fn seen_from_ends<P: Point>([p0, e0, e1, p1]: [P; 4]) -> [P; 4] {
+    [p0, e0 - p0, e1 - p1, p1]
+}
+
+/// What a corner of a tensor-product patch has.
 #[derive(Clone, Copy)]
 pub(crate) struct TensorCorner<P> {
-    pub p: P,
-    pub plus: P,
-    pub minus: P,
-    pub inner: P,
+    p: P,
+    /// As seen from `p`.
+    plus: P,
+    /// Likewise.
+    minus: P,
+    /// The inner point as seen from where `plus` and `minus` lead to one after the other.
+    twist: P,
+}
+
+impl<P: Point> TensorCorner<P> {
+    /// Of a corner and, as seen from there, the points along its plus and its minus edge, and inside.
+    pub(crate) fn new(p: P, plus: P, minus: P, inner: P) -> Self {
+        Self { p, plus, minus, twist: inner - (plus + minus) }
+    }
 }
 
 /// A 4 x 4 tensor-product Bezier patch at (u, v), u from the first corner to the second.
 ///
-/// The row of points beside an edge is the row of the edge and vectors from there, so that slopes across an edge are made of
-/// those vectors alone: with points, they would be differences of nearly equal numbers where a patch is small and far from
-/// the origin.
+/// By its edges along u, and by what lies inwards from them: so slopes across an edge are made of vectors alone. With points, they
+/// would be differences of nearly equal numbers where a patch is small and far from the origin.
 ///
 /// GLSL twin: `evaluate_tensor` in `glsl/lib/patch.glsl`.
 pub(crate) fn evaluate_tensor<P: Point>(corners: &[TensorCorner<P>; 4], u: P::Scalar, v: P::Scalar) -> Sample<P> {
-    let (bu, bv) = (Basis::new::<P>(u), Basis::new::<P>(v));
+    let (at_u, at_v) = (CurveBasis::new::<P>(u), CurveBasis::new::<P>(v));
     let [a, b, c, d] = corners;
-    // From a to b, and from d to c.
-    let (x1, x2) = (a.p + a.plus, b.p + b.minus);
-    let (y1, y2) = (d.p + d.minus, c.p + c.plus);
-    let (x, y) = (cubic(&bu, &[a.p, x1, x2, b.p]), cubic(&bu, &[d.p, y1, y2, c.p]));
-    // From those edges inwards.
-    let (v1, v2) = (a.inner - a.plus, b.inner - b.minus);
-    let (w1, w2) = (d.inner - d.minus, c.inner - c.plus);
-    let (x_in, y_in) = (cubic(&bu, &[a.minus, v1, v2, b.plus]), cubic(&bu, &[d.plus, w1, w2, c.minus]));
-    let (x_beside, y_beside) = (x + x_in, y + y_in);
-    let position = cubic(&bv, &[x, x_beside, y_beside, y]);
-
-    // A third of the derivatives.
-    let dv = edge_slope(&bv.slope, x_in, y_beside - x_beside, y_in);
-    let dx = edge_slope(&bu.slope, a.plus, x2 - x1, b.minus);
-    let dy = edge_slope(&bu.slope, d.minus, y2 - y1, c.plus);
-    let dx_in = ((v1 - a.minus) * bu.slope[0] + (v2 - v1) * bu.slope[1]) + (b.plus - v2) * bu.slope[2];
-    let dy_in = ((w1 - d.plus) * bu.slope[0] + (w2 - w1) * bu.slope[1]) + (c.minus - w2) * bu.slope[2];
-    let at = bv.value;
-    let du = (dx * (at[0] + at[1]) + dx_in * at[1]) + (dy * (at[2] + at[3]) + dy_in * at[2]);
+    // From a to b, inwards from there, inwards from d to c, and there.
+    let curves = [
+        [a.p, a.plus, b.minus, b.p],
+        [a.minus, a.twist, b.twist, b.plus],
+        [d.plus, d.twist, c.twist, c.minus],
+        [d.p, d.minus, c.plus, c.p],
+    ];
+    let points = curves.map(|curve| curve_point(&at_u, curve));
+    let (position, dv) = (curve_point(&at_v, points), curve_slope(&at_v, points));
+    let du = curve_point(&at_v, curves.map(|curve| curve_slope(&at_u, curve)));
     Sample { position, normal: unit_normal(du, dv, (c.p - a.p).cross(d.p - b.p)) }
 }

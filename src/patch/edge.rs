@@ -3,7 +3,7 @@
 //!
 //! From either end the sums are the same to the bit, but for the sign of those that point along the edge or across it.
 
-use super::bicubic::{Basis, cubic, edge_slope};
+use super::bicubic::{CurveBasis, curve_point, curve_slope, seen_from_ends};
 use super::point::{scalar, unit_normal};
 use super::{Blend, Frame, Point, RingValues, Scheme};
 
@@ -47,15 +47,14 @@ impl<P: Point + Blend> Edge<P> {
 
 /// The point at `t` along an edge.
 pub fn edge_position<P: Point>(edge: &Edge<P>, t: P::Scalar) -> P {
-    cubic(&Basis::new::<P>(t), &edge.curve)
+    curve_point(&CurveBasis::new::<P>(t), seen_from_ends(edge.curve))
 }
 
 /// The unit normal at `t` along an edge, of both its faces. Where curve and transversal are parallel it is along `facing`.
 ///
-/// GLSL twins: `edge_slope` in `glsl/lib/patch.glsl` and `edge_across` in `glsl/lib/edges.glsl`.
+/// GLSL twins: `curve_slope` in `glsl/lib/patch.glsl` and `edge_across` in `glsl/lib/edges.glsl`.
 pub fn edge_normal<P: Point>(edge: &Edge<P>, t: P::Scalar, facing: P) -> P {
-    let [p0, e0, e1, p1] = edge.curve;
-    let along = edge_slope(&Basis::new::<P>(t).slope, e0 - p0, e1 - e0, e1 - p1);
+    let along = curve_slope(&CurveBasis::new::<P>(t), seen_from_ends(edge.curve));
     let (s, three) = (scalar::<P>(1.0) - t, scalar::<P>(3.0));
     let (ss, tt) = (s * s, t * t);
     let across = (edge.across[0] * (ss * s) - edge.across[1] * (tt * t))

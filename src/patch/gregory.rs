@@ -7,7 +7,7 @@
 
 use super::point::{scalar, unit_normal};
 use super::{Blend, Frame, Point, RingValues, Sample};
-use crate::patch::bicubic::{Basis, TensorCorner, cubic, evaluate_tensor};
+use crate::patch::bicubic::{CurveBasis, TensorCorner, curve_point, evaluate_tensor, seen_from_ends};
 
 /// What a corner of a patch takes from its one-ring.
 #[derive(Debug)]
@@ -84,7 +84,7 @@ pub fn evaluate_gregory_quad<P: Point>(points: &[P; 20], u: P::Scalar, v: P::Sca
     let corner = |k: usize| {
         let seen = |x: P| x - p[k];
         let inner = blend(seen(f[2 * k]), beside[k][0], seen(f[2 * k + 1]), beside[k][1]);
-        TensorCorner { p: p[k], plus: seen(e[2 * k]), minus: seen(e[2 * k + 1]), inner }
+        TensorCorner::new(p[k], seen(e[2 * k]), seen(e[2 * k + 1]), inner)
     };
     evaluate_tensor(&std::array::from_fn(corner), u, v)
 }
@@ -102,13 +102,16 @@ pub fn evaluate_gregory_triangle<P: Point>(points: &[P; 15], u: P::Scalar, v: P:
     let [c1, c2, c3, c12, c24] = [1.0, 2.0, 3.0, 12.0, 24.0].map(scalar::<P>);
     let b = [u, v, c1 - u - v];
     let [p, e, f] = [&points[0..3], &points[3..9], &points[9..15]];
-    // On an edge the terms of the others are zero, and what is left has the bits of a quad's sum along its edge.
-    let cube = |k: usize| p[k] * ((b[k] * b[k]) * b[k]);
-    let corners = (cube(0) + cube(1)) + cube(2);
-    // The two inner terms of the cubic along the edge from corner k to corner n; the factor is 1 on the edge itself.
+    // On an edge the terms of the others are zero, and what is left has the bits of a quad's `curve_point` along its edge.
+    let corner = |k: usize| {
+        let (x, y, z) = (b[k], b[(k + 1) % 3], b[(k + 2) % 3]);
+        p[k] * ((x * x) * (x + ((c3 * y) * (x + y) + (c3 * z) * (x + z))))
+    };
+    let corners = (corner(0) + corner(1)) + corner(2);
+    // The points beside the ends of the edge from corner k to corner n, as seen from there; the factor is 1 on the edge itself.
     let edge_terms = |k: usize, n: usize| {
         let (x, y) = (b[k], b[n]);
-        (e[2 * k] * (c3 * (x * x) * y) + e[2 * n + 1] * (c3 * (y * y) * x)) * (x + y)
+        ((e[2 * k] - p[k]) * ((x * x) * (c3 * y)) + (e[2 * n + 1] - p[n]) * ((y * y) * (c3 * x))) * (x + y)
     };
     let edges = (edge_terms(0, 1) + edge_terms(1, 2)) + edge_terms(2, 0);
     let mut inner = P::default();
@@ -147,5 +150,5 @@ pub fn boundary_curve<P: Point>(points: &[P], corners: usize, k: usize) -> [P; 4
 
 /// A point on a boundary curve at `t` from its first end.
 pub fn evaluate_boundary<P: Point>(curve: &[P; 4], t: P::Scalar) -> P {
-    cubic(&Basis::new::<P>(t), curve)
+    curve_point(&CurveBasis::new::<P>(t), seen_from_ends(*curve))
 }

@@ -112,6 +112,26 @@ impl Scheme {
         }
     }
 
+    /// What the shaders keep of the control points that a corner of a patch owns ([`Scheme::corner_slots`]). Where the scheme
+    /// [shares the frame](Scheme::shares_frame), after the limit point: the edge points as seen from there; of quads, the inner
+    /// point as seen from where these two lead to one after the other, of triangles as seen from the limit point; of Gregory
+    /// patches, the way from that inner point to the other.
+    ///
+    /// GLSL twin: `CONTROL_POINT` in `glsl/lib/patch.glsl`, which takes it back.
+    pub(crate) fn kept<T: Blend>(self, kind: PatchKind, owned: &[T]) -> Vec<T> {
+        if !self.shares_frame(kind) {
+            return owned.to_vec();
+        }
+        let [p, plus, minus, inner] = [0, 1, 2, 3].map(|i| &owned[i]);
+        let seen = |x: &T| T::sum([(1.0, x), (-1.0, p)]);
+        let first = match kind {
+            PatchKind::Triangle => seen(inner),
+            _ => T::sum([(1.0, inner), (1.0, p), (-1.0, plus), (-1.0, minus)]),
+        };
+        let last = owned.get(4).map(|last| T::sum([(1.0, last), (-1.0, inner)]));
+        [p.clone(), seen(plus), seen(minus), first].into_iter().chain(last).collect()
+    }
+
     /// What the first stage of the two-stage construction makes of a one-ring. For regular rings it is the same in all
     /// schemes, and so it is where some of the faces fall back ([`RingShape::fallback`](super::RingShape::fallback)).
     pub fn frame<T: Blend>(self, ring: &RingValues<T>) -> Frame<T> {
@@ -144,8 +164,6 @@ impl Scheme {
     /// Whether the first three control points that a corner of a patch owns are the limit point of its [`Scheme::frame`] and
     /// the edge points at its plus and its minus edge ([`RingValues::edge_point`]): the boundary is then the same
     /// on both sides of an edge.
-    ///
-    /// The shaders keep all that the corner owns after the limit point as seen from there.
     pub fn shares_frame(self, kind: PatchKind) -> bool {
         kind == PatchKind::Regular || matches!(self, Self::Gregory | Self::GregoryFitted)
     }

@@ -2,7 +2,7 @@
 
 use super::PatchPlan;
 use crate::mesh::MeshError;
-use crate::patch::{Blend, FallbackRings, RingShape, RingValues, Row, Scheme};
+use crate::patch::{FallbackRings, RingShape, RingValues, Row, Scheme};
 use crate::table::Patch;
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -24,8 +24,8 @@ pub struct StencilTable {
     pub vertices: Vec<u32>,
     /// For each type, in words: for each corner of the patch where its entries start (counted from the start of the
     /// type), how many there are, and how many can be turned: those after the first. Then the entries: the number of
-    /// a vertex in the patch's one-ring and, as f32 bits, its weights in the control points that the corner owns
-    /// ([`Scheme::corner_slots`]). First those of the corner's ring, then others that have weight.
+    /// a vertex in the patch's one-ring and, as f32 bits, its weights in what is kept of the control points that the
+    /// corner owns ([`Scheme::corner_slots`]; after the limit point, vectors from there and between them). First those of the corner's ring, then others that have weight.
     pub types: Vec<u32>,
     /// How many types there are.
     pub type_count: usize,
@@ -109,30 +109,24 @@ impl StencilTable {
     fn push_type(&mut self, topology: &Topology, shared: &mut SharedRows, ring: &PatchRing) -> u32 {
         let local: HashMap<u32, u32> = ring.vertices.iter().zip(0..).map(|(&vertex, i)| (vertex, i)).collect();
         let Patch { kind, scheme, .. } = ring.patch;
-        let mut rows = ring.patch.control_points(topology, shared.fallback, |vertex| Row::unit(local[&vertex]));
+        let rows = ring.patch.control_points(topology, shared.fallback, |vertex| Row::unit(local[&vertex]));
         let start = self.types.len();
         self.types.resize(start + HEAD_WORDS * kind.corners(), 0);
         for (k, h) in ring.patch.corners(topology).enumerate() {
-            let owned = scheme.corner_slots(kind, k);
+            let owned = scheme.corner_slots(kind, k).into_iter().map(|slot| rows[slot].clone()).collect::<Vec<_>>();
+            let kept = scheme.kept(kind, &owned);
             let first = self.types.len();
             let ring_of_corner = CornerRing::of(topology, shared.fallback, h);
             let of_frame = if scheme.shares_frame(kind) { shared.of(&ring_of_corner) } else { &[] };
-            if scheme.shares_frame(kind) {
-                // As seen from the corner.
-                let corner = rows[owned[0]].clone();
-                for &slot in &owned[1..] {
-                    rows[slot].add_scaled(-1.0, &corner);
-                }
-            }
             // The other control points take each vertex once, wherever it is met first.
             let mut pending = vec![true; ring.vertices.len()];
             let around = ring_of_corner.entries.iter().map(|&(vertex, entry)| (local[&vertex], Some(entry)));
             for (vertex, entry) in around.chain((0..ring.vertices.len() as u32).map(|vertex| (vertex, None))) {
                 let own = std::mem::replace(&mut pending[vertex as usize], false);
-                let weights: Vec<f32> = (owned.iter().enumerate())
-                    .map(|(i, &slot)| match of_frame.get(i) {
+                let weights: Vec<f32> = (kept.iter().enumerate())
+                    .map(|(i, row)| match of_frame.get(i) {
                         Some(row) => entry.map_or(0.0, |entry| row.weight(entry)),
-                        None if own => rows[slot].weight(vertex),
+                        None if own => row.weight(vertex),
                         None => 0.0,
                     } as f32)
                     .collect();
@@ -141,7 +135,7 @@ impl StencilTable {
                     self.types.extend(weights.into_iter().map(f32::to_bits));
                 }
             }
-            let count = (self.types.len() - first) / (1 + owned.len());
+            let count = (self.types.len() - first) / (1 + kept.len());
             let head = [first - start, count, ring_of_corner.turning].map(|word| word as u32);
             self.types[start + HEAD_WORDS * k..][..HEAD_WORDS].copy_from_slice(&head);
         }
