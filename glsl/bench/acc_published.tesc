@@ -10,18 +10,18 @@
 #include "control.glsl"
 #include "frames.glsl"
 
-layout(location = 6) patch out vec4 cosines;
+layout(location = 11) patch out vec4 cosines;
 
 void main() {
     uint k = uint(gl_InvocationID);
-    owned[gl_InvocationID][0] = in_limit[k].xyz;
-    owned[gl_InvocationID][1] = in_inner[k][3];
-    owned[gl_InvocationID][2] = in_inner[k][4];
-    owned[gl_InvocationID][3] = in_inner[k][0];
-    owned[gl_InvocationID][4] = 3.0 * in_plus[k];
-    owned[gl_InvocationID][5] = 3.0 * in_minus[k];
+    OWNED_BY(k)[0] = in_limit(k);
+    OWNED_BY(k)[1] = in_inner(k, 3);
+    OWNED_BY(k)[2] = in_inner(k, 4);
+    OWNED_BY(k)[3] = in_inner(k, 0);
+    OWNED_BY(k)[4] = 3.0 * in_plus(k);
+    OWNED_BY(k)[5] = 3.0 * in_minus(k);
     if (gl_InvocationID == 0) {
-        cosines = vec4(in_limit[0].w, in_limit[1].w, in_limit[2].w, in_limit[3].w);
+        cosines = vec4(in_cosine(0), in_cosine(1), in_cosine(2), in_cosine(3));
     }
     finish_framed_corner(k);
     barrier();

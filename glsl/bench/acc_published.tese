@@ -6,7 +6,7 @@
 #include "evaluation.glsl"
 #include "acc.glsl"
 
-layout(location = 6) patch in vec4 cosines;
+layout(location = 11) patch in vec4 cosines;
 
 #define x_plus(k) across(k, edge_plus(k), edge_minus((k + 1) & 3), t_plus(k), (k + 1) & 3)
 #define x_minus(k) across(k, edge_minus(k), edge_plus((k + 3) & 3), t_minus(k), (k + 3) & 3)

@@ -11,10 +11,10 @@ layout(vertices = 4) out;
 #endif
 
 layout(location = 0) in vec3 corner[];
-layout(location = 0) out vec3 owned[][1];
+layout(location = 0) out vec4 handed_on[][1];
 
 void main() {
-    owned[gl_InvocationID][0] = corner[gl_InvocationID];
+    handed_on[gl_InvocationID][0] = vec4(corner[gl_InvocationID], 0.0);
     if (gl_InvocationID == 0) {
         float factor = draw_factor();
         gl_TessLevelOuter[0] = factor;

@@ -31,14 +31,14 @@ const uint CORNERS = 4u;
 #define OWNED 4
 #endif
 
-// What the two stages hand on, by corner.
-vec3 in_centre[CORNERS];
-vec4 in_limit[CORNERS];
-vec3 in_plus[CORNERS];
-vec3 in_minus[CORNERS];
-#ifdef INNER
-vec3 in_inner[CORNERS][INNER];
-#endif
+// What the vertex shader would hand on: see frames.glsl.
+Corner corners[CORNERS];
+#define in_centre(k) corners[k].centre
+#define in_limit(k) corners[k].limit.xyz
+#define in_cosine(k) corners[k].limit.w
+#define in_plus(k) corners[k].plus
+#define in_minus(k) corners[k].minus
+#define in_inner(k, i) corners[k].inner[i]
 vec3 owned[CORNERS][OWNED];
 #define OWNED_BY(k) owned[k]
 
@@ -63,17 +63,10 @@ void main() {
     }
     uint first = invocations.first_corner + index * CORNERS;
     for (uint k = 0u; k < CORNERS; ++k) {
-        Corner corner = corner_of_patch(first + k);
-        in_centre[k] = corner.centre;
-        in_limit[k] = corner.limit;
-        in_plus[k] = corner.plus;
-        in_minus[k] = corner.minus;
-#ifdef INNER
-        in_inner[k] = corner.inner;
-#endif
+        corners[k] = corner_of_patch(first + k);
 #ifdef SHARED
         for (uint i = 0u; i < SHARED_VECTORS; ++i) {
-            keep_vector(first + k, OWNED + i, corner.with[i]);
+            keep_vector(first + k, OWNED + i, corners[k].with[i]);
         }
         keep_number(first + k, 3u * (OWNED + SHARED_VECTORS), corner_bits(first + k) != 0u ? 1.0 : 0.0);
 #endif

@@ -43,7 +43,7 @@ bool can_be_seen(uint patch_number) {
     }
     float smallest = MAX_FACTOR;
     for (uint k = 0u; k < CORNERS; ++k) {
-        Examined examined = examine(k);
+        Examined examined = examine(owned[k]);
         outside[k] = examined.outside;
         pixel_box[k] = examined.pixel_box;
         smallest = min(smallest, within_limits(plus_factor(patch_number, k)));

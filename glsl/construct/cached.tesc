@@ -26,15 +26,14 @@
 #include "corner_lod.glsl"
 #endif
 
-layout(location = 4) in uint in_patch_number[];
+layout(location = 0) in uint in_patch_number[];
 
 void main() {
     uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
     vec4 texels[KEPT_TEXELS] = kept_texels(corner);
     for (int i = 0; i < OWNED; ++i) {
-        owned[gl_InvocationID][i] = kept_vector(texels, i);
+        own[i] = kept_vector(texels, i);
     }
-    finish_corner(in_patch_number[0]);
 #ifdef SHARED
     vec3 with[SHARED_VECTORS];
     for (int i = 0; i < SHARED_VECTORS; ++i) {
@@ -44,8 +43,9 @@ void main() {
 #ifdef DISPLACED
     lod = corner_lod(corner, corner_speaker(corner, framed_ring(patch_corner(corner).x)));
 #endif
-    write_shared(corner, with, kept_bits(texels), lod);
+    write_shared(corner, with, kept_bits(texels) != 0u ? 1.0 : 0.0, lod);
 #endif
+    finish_corner(in_patch_number[0]);
     barrier();
     finish_patch(in_patch_number[0]);
 }

@@ -5,7 +5,7 @@
 #include "draw.glsl"
 #include "visible.glsl"
 
-layout(location = 4) out uint patch_number;
+layout(location = 0) out uint patch_number;
 
 void main() {
     patch_number = patch_drawn(uint(gl_InstanceIndex) * draw.patches_per_instance + uint(gl_VertexIndex));

@@ -5,14 +5,15 @@
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 6
 #define INNER 3
+#define OWNED_IS_SHARED
 #include "control.glsl"
 #include "frames.glsl"
 
 // What each corner gives to the centre of the patch.
-layout(location = 10) patch out vec3 centre_share[CORNERS];
+layout(location = 14) patch out vec3 centre_share[CORNERS];
 #ifdef PENTAGON
 // The sum of b112 of sectors i - 1 and i.
-layout(location = 15) patch out vec3 b112_sum[CORNERS];
+layout(location = 19) patch out vec3 b112_sum[CORNERS];
 #endif
 
 #include "pm_points.glsl"

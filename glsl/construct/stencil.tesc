@@ -25,15 +25,10 @@
 #include "corner_lod.glsl"
 #endif
 
-layout(location = 4) in uint in_patch_number[];
+layout(location = 0) in uint in_patch_number[];
 
 void main() {
-    vec3 points[OWNED];
-    stencil_points(draw.first_patch + in_patch_number[0], uint(gl_InvocationID), CORNERS, points);
-    for (uint i = 0u; i < OWNED; ++i) {
-        owned[gl_InvocationID][i] = points[i];
-    }
-    finish_corner(in_patch_number[0]);
+    stencil_points(draw.first_patch + in_patch_number[0], uint(gl_InvocationID), CORNERS, own);
 #ifdef SHARED
     uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
     uvec2 place = patch_corner(corner);
@@ -44,8 +39,9 @@ void main() {
     lod = corner_lod(corner, speaker);
 #endif
     SharedEdge plus = shared_edge(own, place.y), minus = shared_edge(own, edge_after(own.ring, place.y));
-    write_shared(corner, share_corner(corner, own, speaker, plus, minus), corner_bits(corner), lod);
+    write_shared(corner, share_corner(corner, own, speaker, plus, minus), corner_bits(corner) != 0u ? 1.0 : 0.0, lod);
 #endif
+    finish_corner(in_patch_number[0]);
     barrier();
     finish_patch(in_patch_number[0]);
 }

@@ -1,6 +1,5 @@
 // First stage of the two-stage construction: a control vertex and its one-ring become what a corner of a patch takes from
-// them (Loop et al. 2009, section 4): its limit point, the vectors from there to its edge points and, by scheme, what its
-// inner points need. One invocation for each corner of each patch.
+// them (Loop et al. 2009, section 4): see corner_numbers.glsl. One invocation for each corner of each patch.
 // variants: GREGORY, ACC, PM, SHARED, DISPLACED, GREGORY+SHARED, GREGORY+DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -9,27 +8,15 @@
 #endif
 #include "draw.glsl"
 #include "corner.glsl"
+#include "corner_numbers.glsl"
 #ifdef DISPLACED
 #include "corner_lod.glsl"
 #endif
 
 layout(constant_id = 0) const uint CORNERS = 4u;
 
-layout(location = 0) out vec3 centre;
-layout(location = 1) out vec4 limit;  // w: the ring's cosine
-layout(location = 2) out vec3 plus;
-layout(location = 3) out vec3 minus;
-layout(location = 4) out uint patch_number;
-#ifdef INNER
-layout(location = 5) out vec3 inner[INNER];
-#endif
-#ifdef SHARED
-layout(location = 8) out vec3 shared_with[SHARED_VECTORS];
-layout(location = 14) out uint shared_bits;
-#ifdef DISPLACED
-layout(location = 15) out float shared_lod;
-#endif
-#endif
+layout(location = 0) out uint patch_number;
+layout(location = 1) out vec4 of_corner[RING_ROWS];
 
 void main() {
     // Not gl_PrimitiveID: lavapipe restarts it (bug B).
@@ -38,18 +25,28 @@ void main() {
     patch_number = first + vertex / CORNERS;
     uint number = draw.first_corner + first * CORNERS + vertex;
     Corner corner = corner_of_patch(number);
-    centre = corner.centre;
-    limit = corner.limit;
-    plus = corner.plus;
-    minus = corner.minus;
+    float numbers[4 * RING_ROWS];
+    PUT_VECTOR(numbers, RING_LIMIT, corner.limit);
+    PUT_VECTOR(numbers, RING_PLUS, corner.plus);
+    PUT_VECTOR(numbers, RING_MINUS, corner.minus);
 #ifdef INNER
-    inner = corner.inner;
+    numbers[RING_COSINE] = corner.limit.w;
+    for (int i = 0; i < INNER; ++i) {
+        PUT_VECTOR(numbers, RING_INNER + 3 * i, corner.inner[i]);
+    }
+#else
+    PUT_VECTOR(numbers, RING_CENTRE, corner.centre);
 #endif
 #ifdef SHARED
-    shared_with = corner.with;
-    shared_bits = corner_bits(number);
+    for (int i = 0; i < SHARED_VECTORS; ++i) {
+        PUT_VECTOR(numbers, RING_SHARED + 3 * i, corner.with[i]);
+    }
+    numbers[RING_SHARP] = corner_bits(number) != 0u ? 1.0 : 0.0;
 #ifdef DISPLACED
-    shared_lod = corner_lod(number, corner.speaker);
+    numbers[RING_LOD] = corner_lod(number, corner.speaker);
 #endif
 #endif
+    for (int i = 0; i < RING_ROWS; ++i) {
+        of_corner[i] = ROW_OF(numbers, i);
+    }
 }

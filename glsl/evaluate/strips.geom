@@ -40,7 +40,7 @@ const uint TILE_VERTICES = 64u;
 layout(points) in;
 layout(triangle_strip, max_vertices = 64) out;
 
-layout(location = 4) in uint tile_number[];  // among those of all patches of the draw
+layout(location = 0) in uint tile_number[];  // among those of all patches of the draw
 
 out gl_PerVertex {
     invariant vec4 gl_Position;

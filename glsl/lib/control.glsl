@@ -27,20 +27,32 @@ const uint CORNERS = 4u;
 layout(vertices = 4) out;
 #endif
 
-layout(location = 0) out vec3 owned[][OWNED];
-// To write to: of the corner of this invocation.
+#include "handed_on.glsl"
+// Outputs of a vertex end at location 13: every Vulkan device has 16.
+layout(location = 0) out vec4 handed_on[][HANDED_ROWS];
+// What is to be handed on of the corner of this invocation.
+float numbers[4 * HANDED_ROWS];
+
+#ifndef OWNED_IS_SHARED
+// The control points of the corner of this invocation, to write to; then, those of all corners.
+vec3 own[OWNED];
+#define OWNED_BY(k) own
+vec3 owned[CORNERS][OWNED];
+#else
+// Invocations make their control points out of those of each other.
+layout(location = 5) out vec3 owned[][OWNED];
 #define OWNED_BY(k) owned[gl_InvocationID]
+#endif
 #ifdef TEXCOORD
 layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
-layout(location = 8) out vec2 texcoord[];
 #endif
 #ifdef CAPTURE
-layout(location = 9) patch out uint captured_patch;
+layout(location = 11) patch out uint captured_patch;
 #endif
 
 // For the first invocation to put together.
-layout(location = 28) out uint outside[];
-layout(location = 29) out vec4 pixel_box[];
+layout(location = 12) out uint outside[];
+layout(location = 13) out vec4 pixel_box[];
 #include "culling.glsl"
 #include "edge_factors.glsl"
 
@@ -49,6 +61,13 @@ void finish_patch(uint patch_number) {
     if (gl_InvocationID != 0) {
         return;
     }
+#ifndef OWNED_IS_SHARED
+    for (uint k = 0u; k < CORNERS; ++k) {
+        for (int i = 0; i < OWNED; ++i) {
+            owned[k][i] = PACKED_VECTOR(handed_on[k], 3 * i);
+        }
+    }
+#endif
     float asked[CORNERS], outer[CORNERS];
     float largest = 1.0, smallest = MAX_FACTOR;
     for (uint k = 0u; k < CORNERS; ++k) {
@@ -95,21 +114,29 @@ void finish_patch(uint patch_number) {
 #endif
 }
 
-// What is left to do when the corner's control points are written; `patch_number` counts within the draw. A barrier and
-// `finish_patch` have to follow.
+// What is left to do when the corner's control points are written, and `write_shared` was called; `patch_number` counts within the
+// draw. A barrier and `finish_patch` have to follow.
 void finish_corner(uint patch_number) {
+    vec3 points[OWNED] = OWNED_BY(gl_InvocationID);
+    for (int i = 0; i < OWNED; ++i) {
+        PUT_VECTOR(numbers, 3 * i, points[i]);
+    }
 #ifdef TEXCOORD
-    texcoord[gl_InvocationID] = texcoords[draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID)];
+    vec2 texcoord = texcoords[draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID)];
+    PUT_PAIR(numbers, HANDED_TEXCOORD, texcoord);
 #endif
+    for (int i = 0; i < HANDED_ROWS; ++i) {
+        handed_on[gl_InvocationID][i] = ROW_OF(numbers, i);
+    }
     if ((DRAW_FLAGS & CULL_FLAGS) != 0u) {
-        Examined examined = examine(uint(gl_InvocationID));
+        Examined examined = examine(points);
         outside[gl_InvocationID] = examined.outside;
         pixel_box[gl_InvocationID] = examined.pixel_box;
     }
 #ifdef CAPTURE_POINTS
     for (uint i = 0u; i < OWNED; ++i) {
         capture_point(draw.first_patch + patch_number, uint(gl_InvocationID) * OWNED + i,
-                      i == 0u ? owned[gl_InvocationID][0] : CONTROL_POINT(gl_InvocationID, i));
+                      i == 0u ? points[0] : POINT_OF(points, i));
     }
 #endif
 }

@@ -42,7 +42,8 @@ vec4 clip_row(int i) {
 }
 
 #if HULL > 0
-Examined examine(uint k) {
+// Of what a corner keeps of its control points.
+Examined examine(vec3 kept[OWNED]) {
     vec4 box = vec4(1e30, 1e30, -1e30, -1e30);
     if ((DRAW_FLAGS & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
         return Examined(0u, box);
@@ -51,7 +52,7 @@ Examined examine(uint k) {
     vec4 sides = vec4(-1e30);
     vec2 depths = vec2(-1e30);
     for (int i = 0; i < HULL; ++i) {
-        vec3 at = to_world(i == 0 ? owned[k][0] : CONTROL_POINT(k, i));
+        vec3 at = to_world(i == 0 ? kept[0] : POINT_OF(kept, i));
         vec4 clip = view.measured_view_projection * vec4(at, 1.0);
         sides = max(sides, clip.w + vec4(clip.xy, -clip.xy));
         depths = max(depths, vec2(clip.z, clip.w - clip.z));
@@ -230,7 +231,7 @@ bool is_culled(float step) {
     return culled;
 }
 #else
-Examined examine(uint k) {
+Examined examine(vec3 kept[OWNED]) {
     return Examined(0u, vec4(0.0));
 }
 

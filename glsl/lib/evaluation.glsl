@@ -21,26 +21,34 @@ layout(triangles, equal_spacing, cw) in;
 layout(quads, equal_spacing, cw) in;
 #endif
 
+#ifdef PENTAGON
+#define CORNERS 5
+#elif defined(TRIANGLE)
+#define CORNERS 3
+#else
+#define CORNERS 4
+#endif
+#include "handed_on.glsl"
+layout(location = 0) in vec4 handed_on[][HANDED_ROWS];
 // The control points that each corner owns.
-layout(location = 0) in vec3 owned[][OWNED];
+vec3 owned[CORNERS][OWNED];
 
 // The same bits in every pipeline: a pass for depth alone, and one that tests against it.
 invariant gl_Position;
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 #ifdef TEXCOORD
-layout(location = 8) in vec2 texcoord[];
+vec2 texcoord[CORNERS];
 layout(location = 2) out vec2 out_texcoord;
 #endif
 
 #ifdef SHARED
-#include "shared_bits.glsl"
 // What the corners of the patch share with others: see glsl/lib/shared.glsl.
-layout(location = 16) in vec3 shared_with[][SHARED_VECTORS];
-layout(location = 22) in uint shared_bits[];
+vec3 shared_with[CORNERS][SHARED_VECTORS];
+uint shared_bits[CORNERS];
 #ifdef DISPLACED
-layout(location = 23) in vec2 shared_texcoord[][3];
-layout(location = 26) in float shared_lod[];
+vec2 shared_texcoord[CORNERS][3];
+float shared_lod[CORNERS];
 #endif
 #include "edges.glsl"
 #endif
@@ -50,7 +58,7 @@ layout(location = 26) in float shared_lod[];
 
 #if defined(CAPTURE) || defined(CAPTURE_GRID)
 #include "capture.glsl"
-layout(location = 9) patch in uint captured_patch;
+layout(location = 11) patch in uint captured_patch;
 // For glsl/capture/triangles.geom.
 layout(location = 3) out vec3 out_coordinate;
 layout(location = 4) out uint out_patch;
@@ -58,8 +66,33 @@ uint capture_place;
 uint capture_places;
 #endif
 
-// Where to evaluate: (u, v) of a quad, (u, v, w) of a triangle.
+// Takes what was handed on of the patch.
+void read_patch() {
+    for (int k = 0; k < CORNERS; ++k) {
+        for (int i = 0; i < OWNED; ++i) {
+            owned[k][i] = PACKED_VECTOR(handed_on[k], 3 * i);
+        }
+#ifdef SHARED
+        for (int i = 0; i < SHARED_VECTORS; ++i) {
+            shared_with[k][i] = PACKED_VECTOR(handed_on[k], HANDED_SHARED + 3 * i);
+        }
+        shared_bits[k] = PACKED_NUMBER(handed_on[k], HANDED_SHARP) != 0.0 ? SHARP_EDGE_BIT : 0u;
+#endif
+#ifdef DISPLACED
+        for (int i = 0; i < 3; ++i) {
+            shared_texcoord[k][i] = PACKED_PAIR(handed_on[k], HANDED_MAP + 2 * i);
+        }
+        shared_lod[k] = PACKED_NUMBER(handed_on[k], HANDED_LOD);
+#endif
+#ifdef TEXCOORD
+        texcoord[k] = PACKED_PAIR(handed_on[k], HANDED_TEXCOORD);
+#endif
+    }
+}
+
+// Where to evaluate the patch, which is then there: (u, v) of a quad, (u, v, w) of a triangle.
 vec3 parameter() {
+    read_patch();
 #ifdef CAPTURE_GRID
     uint n = capture_grid;
     uint i = uint(round(gl_TessCoord.x * float(n - 1u)));

@@ -12,16 +12,16 @@ vec3 face_point(vec3 near, vec3 far, float cos_near, float cos_far, vec3 side) {
 void gregory_points(uint k) {
     uint next = k + 1u == CORNERS ? 0u : k + 1u;
     uint before = k == 0u ? CORNERS - 1u : k - 1u;
-    vec4 limit = in_limit[k], limit_next = in_limit[next], limit_before = in_limit[before];
-    vec3 plus = in_plus[k], minus = in_minus[k];
-    vec3 far_plus = (limit_next.xyz - limit.xyz) + in_minus[next];
-    vec3 far_minus = (limit_before.xyz - limit.xyz) + in_plus[before];
-    OWNED_BY(k)[0] = limit.xyz;
+    vec3 limit = in_limit(k), plus = in_plus(k), minus = in_minus(k);
+    vec3 far_plus = (in_limit(next) - limit) + in_minus(next);
+    vec3 far_minus = (in_limit(before) - limit) + in_plus(before);
+    float cosine = in_cosine(k);
+    OWNED_BY(k)[0] = limit;
     OWNED_BY(k)[1] = plus;
     OWNED_BY(k)[2] = minus;
-    vec3 f_plus = face_point(plus, far_plus, limit.w, limit_next.w, in_inner[k][0]);
+    vec3 f_plus = face_point(plus, far_plus, cosine, in_cosine(next), in_inner(k, 0));
     // The face lies on the right of its minus edge.
-    vec3 f_minus = face_point(minus, far_minus, limit.w, limit_before.w, -in_inner[k][1]);
+    vec3 f_minus = face_point(minus, far_minus, cosine, in_cosine(before), -in_inner(k, 1));
     OWNED_BY(k)[3] = CORNERS == 4u ? f_plus - (plus + minus) : f_plus;
     OWNED_BY(k)[4] = f_minus - f_plus;
 }

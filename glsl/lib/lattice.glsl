@@ -12,12 +12,13 @@
 
 // The parameter of vertex i along a side, with 16 bits after the point: from both ends of an edge the same vertices, for
 // `1 - t` is exact. As tessellators that follow Direct3D's have it, which step by a rounded 1 / n; they end at 64 segments.
+// (Of signed numbers, which processors turn into floating point faster.)
 float along_side(uint i, uint segments) {
-    uint near = min(i, segments - i);
-    precise float step_size = 65536.0 / float(segments);
+    int near = min(int(i), int(segments - i));
+    precise float step_size = 65536.0 / float(int(segments));
     precise float t = round(float(near) * (segments <= 64u ? round(step_size) : step_size)) / 65536.0;
-    t = 2u * near == segments ? 0.5 : t;
-    return i == near ? t : 1.0 - t;
+    t = 2 * near == int(segments) ? 0.5 : t;
+    return int(i) == near ? t : 1.0 - t;
 }
 
 // Whether edges have factors of their own.
@@ -77,7 +78,7 @@ vec3 lattice_parameter(uint i, uint segments, uint first_corner) {
 #else
     uint side = segments + 1u;
     // By floating point, which devices divide faster: right up to the 1024 segments that there may be.
-    uint row = uint((float(i) + 0.5) / float(side));
+    uint row = uint(int((float(int(i)) + 0.5) * (1.0 / float(int(side)))));
     return lattice_parameter(row, i - row * side, segments, first_corner);
 #endif
 }

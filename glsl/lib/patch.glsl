@@ -95,27 +95,28 @@ vec3 from_corner(vec3 p, vec3 vector) {
     return point;
 }
 
-// Control point i of those that corner k owns, other than the corner itself. Bicubic and Gregory patches, with 4 and 5, keep other
-// things, of which positions and normals are made with the fewest operations. Rust twin: `Scheme::kept` in src/patch/scheme.rs.
+// Control point i of those that a corner owns, other than the corner itself, out of all that is kept of them. Bicubic and Gregory
+// patches, with 4 and 5, keep other things, of which positions and normals are made with the fewest operations. Rust twin:
+// `Scheme::kept` in src/patch/scheme.rs.
 // - the points along the plus and the minus edge, as seen from the corner;
 // - of quads, the inner point as seen from where these two lead to one after the other; of triangles, as seen from the corner;
 // - of Gregory patches, the way from there (f+) to f-.
 #if defined(OWNED) && OWNED != 4 && OWNED != 5
-#define CONTROL_POINT(k, i) owned[k][i]
+#define POINT_OF(kept, i) kept[i]
 #else
 #ifdef TRIANGLE
-#define INNER_VECTOR(k) owned[k][3]
+#define INNER_OF(kept) kept[3]
 #else
-#define INNER_VECTOR(k) from_corner(owned[k][1] + owned[k][2], owned[k][3])
+#define INNER_OF(kept) from_corner(kept[1] + kept[2], kept[3])
 #endif
 #if OWNED == 5
-#define LAST_VECTOR(k) from_corner(INNER_VECTOR(k), owned[k][4])
+#define LAST_OF(kept) from_corner(INNER_OF(kept), kept[4])
 #else
-#define LAST_VECTOR(k) INNER_VECTOR(k)
+#define LAST_OF(kept) INNER_OF(kept)
 #endif
-#define CONTROL_POINT(k, i) \
-    from_corner(owned[k][0], (i) < 3 ? owned[k][i] : (i) == 3 ? INNER_VECTOR(k) : LAST_VECTOR(k))
+#define POINT_OF(kept, i) from_corner(kept[0], (i) < 3 ? kept[i] : (i) == 3 ? INNER_OF(kept) : LAST_OF(kept))
 #endif
+#define CONTROL_POINT(k, i) POINT_OF(owned[k], i)
 
 Sample sample_of(Surface surface) {
     return Sample(surface.position, unit_normal(surface.du, surface.dv, surface.facing));

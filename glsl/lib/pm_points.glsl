@@ -40,10 +40,10 @@ vec3 pm_b112_sum(uint i, vec3 q) {
 
 // The first step: all but what lies inside, and what the corner gives to the centre of the patch.
 void pm_outer_points(uint k) {
-    precise vec3 v = in_limit[k].xyz;
-    precise vec3 t_plus = v + in_plus[k];
-    precise vec3 t_minus = v + in_minus[k];
-    vec3 f = in_inner[k][0], e_plus = in_inner[k][1], e_minus = in_inner[k][2];
+    precise vec3 v = in_limit(k);
+    precise vec3 t_plus = v + in_plus(k);
+    precise vec3 t_minus = v + in_minus(k);
+    vec3 f = in_inner(k, 0), e_plus = in_inner(k, 1), e_minus = in_inner(k, 2);
     OWNED_BY(k)[0] = v;
     OWNED_BY(k)[1] = t_plus;
     OWNED_BY(k)[2] = t_minus;
@@ -55,10 +55,10 @@ void pm_outer_points(uint k) {
 void pm_points_beside(uint k) {
     uint next = k + 1u == CORNERS ? 0u : k + 1u;
     uint before = k == 0u ? CORNERS - 1u : k - 1u;
-    vec3 v = owned[k][0], f = in_inner[k][0], e_plus = in_inner[k][1], e_minus = in_inner[k][2];
-    float cosine = in_limit[k].w;
-    OWNED_BY(k)[3] = pm_beside(v, owned[k][1], owned[next][2], f - e_plus, cosine, in_limit[next].w);
-    OWNED_BY(k)[4] = pm_beside(v, owned[k][2], owned[before][1], f - e_minus, cosine, in_limit[before].w);
+    vec3 v = owned[k][0], f = in_inner(k, 0), e_plus = in_inner(k, 1), e_minus = in_inner(k, 2);
+    float cosine = in_cosine(k);
+    OWNED_BY(k)[3] = pm_beside(v, owned[k][1], owned[next][2], f - e_plus, cosine, in_cosine(next));
+    OWNED_BY(k)[4] = pm_beside(v, owned[k][2], owned[before][1], f - e_minus, cosine, in_cosine(before));
 }
 
 #ifdef PENTAGON

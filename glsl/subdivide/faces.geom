@@ -47,7 +47,7 @@ layout(points, invocations = 4) in;
 layout(triangle_strip, max_vertices = 40) out;
 #endif
 
-layout(location = 4) in uint patch_number[];
+layout(location = 0) in uint patch_number[];
 
 // Without what else is in there, which would count.
 out gl_PerVertex {

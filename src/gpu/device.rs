@@ -48,8 +48,6 @@ pub struct DeviceProperties {
     pub max_storage_buffer_range: u64,
     /// Storage buffers that a shader stage can have.
     pub max_stage_storage_buffers: u32,
-    /// Numbers of each vertex that a control shader can hand on and an evaluation shader can take.
-    pub max_control_components: u32,
     /// Vertex attributes of a pipeline.
     pub max_vertex_attributes: u32,
     /// The most elements of a texel buffer.
@@ -102,9 +100,6 @@ impl DeviceProperties {
             max_patch_size: limits.max_tessellation_patch_size,
             max_storage_buffer_range: limits.max_storage_buffer_range.into(),
             max_stage_storage_buffers: limits.max_per_stage_descriptor_storage_buffers,
-            max_control_components: limits
-                .max_tessellation_control_per_vertex_output_components
-                .min(limits.max_tessellation_evaluation_input_components),
             max_vertex_attributes: limits.max_vertex_input_attributes,
             max_texel_buffer_elements: limits.max_texel_buffer_elements.into(),
             reads_texels: limits.max_texel_buffer_elements >= 1 << 27,

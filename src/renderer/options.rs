@@ -1,7 +1,6 @@
 //! What the caller says once: where to draw, and how.
 
 use super::bindings::MODEL_BUFFERS;
-use super::pipelines::CONTROL_COMPONENTS;
 use super::stages::is_spirv;
 use super::visible::LIST_FEATURES;
 use super::{Error, Evaluation, Pass, Target, View};
@@ -288,18 +287,10 @@ pub(super) fn check_properties(
         let has: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
         missing.push(format!("{count} samples a pixel (it has {})", has.join(", ")));
     }
-    for (what, least, has) in [
-        // A list of patches besides; evaluation by compute has its vertices, too.
-        ("storage buffers a shader stage", MODEL_BUFFERS as u32 + 2, properties.max_stage_storage_buffers),
-        (
-            "numbers a vertex from the control to the evaluation shader",
-            CONTROL_COMPONENTS,
-            properties.max_control_components,
-        ),
-    ] {
-        if has < least {
-            missing.push(format!("{least} {what} (it has {has})"));
-        }
+    // A list of patches besides; evaluation by compute has its vertices, too.
+    let (least, has) = (MODEL_BUFFERS as u32 + 2, properties.max_stage_storage_buffers);
+    if has < least {
+        missing.push(format!("{least} storage buffers a shader stage (it has {has})"));
     }
     let width = options.styles.iter().map(|s| s.line_width).fold(0.0, f32::max);
     if width > 1.0 && width > properties.max_line_width {
@@ -316,16 +307,11 @@ mod tests {
     #[test]
     fn limits_that_are_too_low_are_named() {
         let headless = Headless::new(&HeadlessOptions::default()).unwrap();
-        let properties = DeviceProperties {
-            name: "small".into(),
-            max_stage_storage_buffers: 4,
-            max_control_components: 64,
-            ..headless.properties().clone()
-        };
+        let properties =
+            DeviceProperties { name: "small".into(), max_stage_storage_buffers: 4, ..headless.properties().clone() };
         let target = Target::dynamic(vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT, vk::SampleCountFlags::TYPE_1);
         let error = check_properties(&properties, properties.features, &target, &Options::default()).unwrap_err();
         let told = error.to_string();
         assert!(told.contains("15 storage buffers a shader stage (it has 4)"), "{told}");
-        assert!(told.contains("120 numbers a vertex from the control to the evaluation shader (it has 64)"), "{told}");
     }
 }

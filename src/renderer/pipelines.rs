@@ -118,9 +118,6 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
-/// Four for each location that the control shaders write to: the last is in `glsl/lib/control.glsl`.
-pub(super) const CONTROL_COMPONENTS: u32 = 4 * 30;
-
 impl Pipelines {
     pub(super) fn new(
         context: &Arc<DeviceContext>,
