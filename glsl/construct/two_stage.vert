@@ -9,6 +9,7 @@
 #endif
 #include "draw.glsl"
 #include "corner.glsl"
+#include "visible.glsl"
 #ifdef DISPLACED
 #include "corner_lod.glsl"
 #endif
@@ -34,9 +35,8 @@ layout(location = 15) out float shared_lod;
 void main() {
     // Not gl_PrimitiveID: lavapipe restarts it (bug B).
     uint vertex = uint(gl_VertexIndex);
-    uint first = uint(gl_InstanceIndex) * draw.patches_per_instance;
-    patch_number = first + vertex / CORNERS;
-    uint number = draw.first_corner + first * CORNERS + vertex;
+    patch_number = patch_drawn(uint(gl_InstanceIndex) * draw.patches_per_instance + vertex / CORNERS);
+    uint number = draw.first_corner + patch_number * CORNERS + vertex % CORNERS;
     Corner corner = corner_of_patch(number);
     centre = corner.centre;
     limit = corner.limit;
