@@ -341,6 +341,30 @@ fn lists_grow_with_what_is_drawn() {
     stage.finish();
 }
 
+/// What was copied in the same command buffer is there for the search, also where no model computes anything else.
+#[test]
+fn copies_come_before_the_search() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&options());
+    let mesh = shape("cube").expect("built in");
+    let model = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
+    let item = DrawItem { cull: BACK, ..DrawItem::new(model, 2.0) };
+    renderer.make_pipelines(model, item.factor, item.cull).expect("pipelines");
+    let [view, _] = views(&mesh);
+    for frame in [0, 1] {
+        renderer.set_positions(model, frame, &mesh.positions_f32()).expect("positions");
+        // SAFETY: outside rendering, and every submission is waited for.
+        let visible = stage.headless.try_submit(|cmd| unsafe {
+            renderer.cmd_prepare(cmd, frame)?;
+            renderer.cmd_cull(cmd, frame, &view, &[item])
+        });
+        let drawn = draw_in(&stage, &mut renderer, frame, &visible.expect("lists")).unwrap();
+        assert!(drawn == draw_all_in(&stage, &mut renderer, frame, &view, &[item]));
+    }
+    drop(renderer);
+    stage.finish();
+}
+
 #[test]
 fn wrong_use_is_told() {
     let stage = Stage::new();
