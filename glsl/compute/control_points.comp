@@ -10,51 +10,8 @@
 #define KEPT_FRAMES
 #define MAKES_POINTS
 #include "cached.glsl"
-#include "corner.glsl"
 #include "invocation.glsl"
-
-#ifdef TRIANGLE
-const uint CORNERS = 3u;
-#elif defined(PENTAGON)
-const uint CORNERS = 5u;
-#else
-const uint CORNERS = 4u;
-#endif
-
-#ifdef GREGORY
-#define OWNED 5
-#elif defined(ACC)
-#define OWNED 8
-#elif defined(PM)
-#define OWNED 6
-#else
-#define OWNED 4
-#endif
-
-// What the vertex shader would hand on: see frames.glsl.
-Corner corners[CORNERS];
-#define in_centre(k) corners[k].centre
-#define in_limit(k) corners[k].limit.xyz
-#define in_cosine(k) corners[k].limit.w
-#define in_plus(k) corners[k].plus
-#define in_minus(k) corners[k].minus
-#define in_inner(k, i) corners[k].inner[i]
-vec3 owned[CORNERS][OWNED];
-#define OWNED_BY(k) owned[k]
-
-#ifdef GREGORY
-#include "gregory_points.glsl"
-#elif defined(ACC)
-#include "acc_points.glsl"
-#elif defined(PM)
-vec3 centre_share[CORNERS];
-vec3 b112_sum[CORNERS];
-#include "pm_points.glsl"
-#else
-#include "bicubic_points.glsl"
-#endif
-
-#define EACH_CORNER(f) for (uint k = 0u; k < CORNERS; ++k) { f(k); }
+#include "two_stages.glsl"
 
 void main() {
     uint index = invocation_number();
@@ -71,20 +28,7 @@ void main() {
         keep_number(first + k, 3u * (OWNED + SHARED_VECTORS), corner_bits(first + k) != 0u ? 1.0 : 0.0);
 #endif
     }
-#ifdef GREGORY
-    EACH_CORNER(gregory_points)
-#elif defined(ACC)
-    EACH_CORNER(acc_points)
-#elif defined(PM)
-    EACH_CORNER(pm_outer_points)
-    EACH_CORNER(pm_points_beside)
-#ifdef PENTAGON
-    EACH_CORNER(pm_sum_inside)
-#endif
-    EACH_CORNER(pm_point_inside)
-#else
-    EACH_CORNER(bicubic_points)
-#endif
+    second_stage();
     for (uint k = 0u; k < CORNERS; ++k) {
         for (uint i = 0u; i < OWNED; ++i) {
             keep_vector(first + k, i, owned[k][i]);

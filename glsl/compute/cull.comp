@@ -1,24 +1,29 @@
-// Which patches of a draw can be seen: of cached control points, one invocation for each patch, by the rules of the control
-// shaders. Each workgroup lists those of its patches, in their order, and writes the indirect draws of them; for instances to have
-// what is kept of them as attributes, it also copies that, one after the other as on the list.
-// variants: OWNED=5, OWNED=5+TRIANGLE, OWNED=8
+// Which patches of a draw can be seen: one invocation for each patch, by the rules of the control shaders. Control points that are
+// cached are read; others are made, as in a draw of the two-stage or the stencil construction, for nothing but this. Each workgroup
+// lists those of its patches that can be seen, in their order, and writes the indirect draws of them; for instances to have what is
+// kept of them as attributes, it also copies that, one after the other as on the list.
+// variants: GREGORY, GREGORY+TRIANGLE, ACC
+// variants: TWO_STAGE, GREGORY+TWO_STAGE, GREGORY+TRIANGLE+TWO_STAGE, ACC+TWO_STAGE
+// variants: STENCIL, GREGORY+STENCIL, GREGORY+TRIANGLE+STENCIL, ACC+STENCIL
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#ifndef OWNED
-#define OWNED 4
-#endif
-#ifdef TRIANGLE
-#define CORNERS 3
-#else
-#define CORNERS 4
-#endif
 #define MAKES_LISTS
-#include "cached.glsl"
 #include "draw.glsl"
+#include "patch_kind.glsl"
 #include "visible.glsl"
+#ifdef TWO_STAGE
+#include "two_stages.glsl"
+#elif defined(STENCIL)
+#include "stencils.glsl"
+#else
+#define CACHED
+#include "cached.glsl"
+#endif
 
+#ifdef CACHED
 // Whether what is kept of patches is copied. Set in src/renderer/lists.rs.
 layout(constant_id = 11) const bool COPIES = false;
+#endif
 
 // Patches of a workgroup. Rust twin: `REGION` in src/renderer/lists.rs.
 const uint REGION = 128u;
@@ -28,19 +33,41 @@ layout(local_size_x = REGION) in;
 shared uint seen[REGION / 32u];
 shared uint listed[REGION];
 
-vec3 owned[CORNERS][OWNED];
 uint outside[CORNERS];
 vec4 pixel_box[CORNERS];
 #include "culling.glsl"
 #include "edge_factors.glsl"
 
-bool can_be_seen(uint patch_number) {
+// Not in a loop: Mesa (22.3) unrolls none that has another in it, and so has the arrays that it goes through in memory. That took
+// half as long again.
+#ifdef TRIANGLE
+#define CORNER_BY_CORNER(f) f(0u); f(1u); f(2u);
+#else
+#define CORNER_BY_CORNER(f) f(0u); f(1u); f(2u); f(3u);
+#endif
+
+// Has the control points of a patch in `owned`, by its number within the draw.
+void find_points(uint patch_number) {
+    uint first = draw.first_corner + patch_number * CORNERS;
+#ifdef TWO_STAGE
+#define BEGIN(k) corners[k] = corner_of_patch(first + k)
+    CORNER_BY_CORNER(BEGIN)
+    second_stage();
+#elif defined(STENCIL)
+#define MAKE(k) stencil_points(draw.first_patch + patch_number, k, CORNERS, owned[k])
+    CORNER_BY_CORNER(MAKE)
+#else
     for (uint k = 0u; k < CORNERS; ++k) {
-        vec4 texels[KEPT_TEXELS] = kept_texels(draw.first_corner + patch_number * CORNERS + k);
+        vec4 texels[KEPT_TEXELS] = kept_texels(first + k);
         for (int i = 0; i < OWNED; ++i) {
             owned[k][i] = kept_vector(texels, i);
         }
     }
+#endif
+}
+
+bool can_be_seen(uint patch_number) {
+    find_points(patch_number);
     float smallest = MAX_FACTOR;
     for (uint k = 0u; k < CORNERS; ++k) {
         Examined examined = examine(owned[k]);
@@ -96,6 +123,7 @@ void main() {
         visible.words[start + before] = patch_number;
         listed[before] = patch_number;
     }
+#ifdef CACHED
     if (!COPIES) {
         return;
     }
@@ -105,4 +133,5 @@ void main() {
         uvec4 texel = floatBitsToUint(kept_texel(draw.first_corner + listed[i / TEXELS] * CORNERS, i % TEXELS));
         write_words(draw.copies + 4u * (start * TEXELS + i), texel);
     }
+#endif
 }

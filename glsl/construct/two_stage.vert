@@ -9,6 +9,7 @@
 #include "draw.glsl"
 #include "corner.glsl"
 #include "corner_numbers.glsl"
+#include "visible.glsl"
 #ifdef DISPLACED
 #include "corner_lod.glsl"
 #endif
@@ -21,9 +22,8 @@ layout(location = 1) out vec4 of_corner[RING_ROWS];
 void main() {
     // Not gl_PrimitiveID: lavapipe restarts it (bug B).
     uint vertex = uint(gl_VertexIndex);
-    uint first = uint(gl_InstanceIndex) * draw.patches_per_instance;
-    patch_number = first + vertex / CORNERS;
-    uint number = draw.first_corner + first * CORNERS + vertex;
+    patch_number = patch_drawn(uint(gl_InstanceIndex) * draw.patches_per_instance + vertex / CORNERS);
+    uint number = draw.first_corner + patch_number * CORNERS + vertex % CORNERS;
     Corner corner = corner_of_patch(number);
     float numbers[4 * RING_ROWS];
     PUT_VECTOR(numbers, RING_LIMIT, corner.limit);

@@ -21,6 +21,7 @@ layout(push_constant, std430) uniform Draw {
     float factor;
     uint flags;
     uint first_corner;
+    uint first_patch;
     uint count;                 // of the patches
     uint vertices;              // of a patch in a draw: the points of its corners, or the indices of a lattice
     uint first_index;           // of a lattice

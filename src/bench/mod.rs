@@ -173,6 +173,36 @@ impl Normals {
     }
 }
 
+/// What leaves out the patches that are not seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CullBy {
+    /// The control shader, in each draw ([`Renderer::cmd_draw`](crate::Renderer::cmd_draw)).
+    Control,
+    /// A compute shader, before the draws of a view ([`Renderer::cmd_cull`](crate::Renderer::cmd_cull)).
+    Compute,
+}
+
+impl CullBy {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Control, Self::Compute];
+
+    /// As the program calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Control => "control",
+            Self::Compute => "compute",
+        }
+    }
+
+    /// What does if nothing is said: compute where control points are cached.
+    pub const fn usual(patches: Option<(Scheme, Construction)>) -> Self {
+        match patches {
+            Some((_, Construction::Cached)) => Self::Compute,
+            _ => Self::Control,
+        }
+    }
+}
+
 /// One of those that are raced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Contestant {
@@ -184,17 +214,20 @@ pub struct Contestant {
     pub normals: Normals,
     /// Patches that it leaves out.
     pub cull: Cull,
+    /// What leaves them out, if any. Of paths without tessellation stages, compute does in any case.
+    pub cull_by: CullBy,
 }
 
 impl Contestant {
-    /// With normals of each patch's own, without culling.
+    /// With normals of each patch's own, without culling; that would be [as usual](CullBy::usual).
     pub const fn new(path: Path, patches: Option<(Scheme, Construction)>) -> Self {
-        Self { path, patches, normals: Normals::Own, cull: Cull::NONE }
+        Self { path, patches, normals: Normals::Own, cull: Cull::NONE, cull_by: CullBy::usual(patches) }
     }
 
     /// The same with each of these normals and cullings that it can be combined with: patches are left out where
-    /// [`Evaluation::culls`], and normals shared where the scheme is watertight and [`Evaluation::shares`]. Floors stay as they are.
-    pub fn variants(self, normals: &[Normals], culls: &[Cull]) -> Vec<Self> {
+    /// [`Evaluation::culls`], by each of these that can (as it is if none are given), and normals shared where the scheme is
+    /// watertight and [`Evaluation::shares`]. Floors stay as they are.
+    pub fn variants(self, normals: &[Normals], culls: &[Cull], cull_by: &[CullBy]) -> Vec<Self> {
         if self.path.is_floor() {
             return vec![self];
         }
@@ -206,8 +239,18 @@ impl Contestant {
             _ => false,
         };
         let normals = normals.iter().filter(|&&normals| normals == Normals::Own || shares);
-        let culls = culls.iter().filter(|&&cull| cull == Cull::NONE || culls_any);
-        let with = |&normals| culls.clone().map(move |&cull| Self { normals, cull, ..self });
+        let own = [self.cull_by];
+        let cull_by = if cull_by.is_empty() { &own } else { cull_by };
+        let can = |by: &&CullBy| **by == CullBy::Compute || self.path.tessellates();
+        let culled = |&cull: &Cull| -> Vec<Self> {
+            match cull {
+                Cull::NONE => vec![Self { cull, ..self }],
+                _ if culls_any => cull_by.iter().filter(can).map(|&cull_by| Self { cull, cull_by, ..self }).collect(),
+                _ => Vec::new(),
+            }
+        };
+        let culled: Vec<Self> = culls.iter().flat_map(culled).collect();
+        let with = |&normals| culled.iter().map(move |&one| Self { normals, ..one });
         normals.flat_map(with).collect()
     }
 
@@ -227,10 +270,9 @@ impl Contestant {
         paths.iter().flat_map(of_path).collect()
     }
 
-    /// Whether compute looks for the patches to leave out ([`Renderer::cmd_cull`](crate::Renderer::cmd_cull)); otherwise the
-    /// control shader does.
+    /// Whether compute looks for the patches to leave out.
     pub(super) fn culls_by_compute(self) -> bool {
-        self.cull != Cull::NONE && matches!(self.patches, Some((_, Construction::Cached)))
+        self.cull != Cull::NONE && (self.cull_by == CullBy::Compute || !self.path.tessellates())
     }
 
     /// The scheme as the program calls it; `none` without patches.

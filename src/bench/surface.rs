@@ -183,7 +183,9 @@ impl Drawable for Surface {
         let drawn = of("indices") + of("lists");
         let tables = all.iter().map(|(_, bytes)| bytes).sum::<u64>() - points - frames - vertices - drawn;
         if points == 0 {
-            return [0, tables];
+            // Compute makes the control points of all patches, too, to look which can be seen.
+            let times = if self.culls_by_compute { 2 } else { 1 };
+            return [0, times * tables + drawn];
         }
         // Frames are written, and read again for the points.
         let makes_points = tables + 2 * frames + points;

@@ -1,6 +1,6 @@
 //! Values of options.
 
-use ash_subdiv::bench::{Camera, Motion, Normals, Path, Subset};
+use ash_subdiv::bench::{Camera, CullBy, Motion, Normals, Path, Subset};
 use ash_subdiv::renderer::Evaluation;
 use ash_subdiv::{Construction, Fallback, Scheme, Spacing};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -54,6 +54,11 @@ pub(super) fn path() -> impl TypedValueParser<Value = Path> {
 /// Where normals come from, by its name.
 pub(super) fn normals() -> impl TypedValueParser<Value = Normals> {
     named(Normals::ALL.map(|normals| (normals.name(), normals)))
+}
+
+/// What leaves out patches, by its name.
+pub(super) fn cull_by() -> impl TypedValueParser<Value = CullBy> {
+    named(CullBy::ALL.map(|by| (by.name(), by)))
 }
 
 /// A camera of the bench by its name.

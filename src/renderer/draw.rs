@@ -133,7 +133,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::NoSuchModel`]; failed Vulkan calls.
     pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
-        if self.options.visible_lists && cull != Cull::NONE && self.model(id)?.is_listed() {
+        if self.options.visible_lists && cull != Cull::NONE && self.model(id)?.evaluation.culls() {
             self.make_cuts(id, factor, cull, true)?;
         }
         self.make_cuts(id, factor, cull, false)

@@ -80,6 +80,7 @@ pub(super) struct ListConstants {
     pub factor: f32,
     pub flags: u32,
     pub first_corner: u32,
+    pub first_patch: u32,
     /// Of the patches.
     pub count: u32,
     /// Vertices of a patch in a draw: the points of its corners, or the indices of a lattice.
@@ -92,8 +93,8 @@ pub(super) struct ListConstants {
     pub copies: u32,
 }
 
-const _: () = assert!(std::mem::offset_of!(ListConstants, count) == 60);
-const _: () = assert!(size_of::<ListConstants>() == 80);
+const _: () = assert!(std::mem::offset_of!(ListConstants, count) == 64);
+const _: () = assert!(size_of::<ListConstants>() == 84);
 
 /// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
 pub(super) fn view_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::DescriptorSetLayout>, GpuError> {

@@ -8,8 +8,8 @@
 //! 2. [`Renderer::set_positions`] writes this frame's control vertices, if they move.
 //! 3. [`Renderer::cmd_prepare`], outside rendering, records the copies and barriers. Once a frame.
 //! 4. [`Renderer::cmd_draw`], inside rendering, records the draws of one view: for every model its regular patches,
-//!    irregular quads and triangles. As often as there are views. Or, to draw only what can be seen of models whose control points
-//!    are cached, [`Renderer::cmd_cull`] outside rendering and [`Renderer::cmd_draw_visible`] inside.
+//!    irregular quads and triangles. As often as there are views. Or, to draw only what can be seen,
+//!    [`Renderer::cmd_cull`] outside rendering and [`Renderer::cmd_draw_visible`] inside.
 //!
 //! Passes into other attachments, such as shadows, are draws in styles with a target of their own ([`Style::target`]), of the
 //! same models: what compute made of them is there for all. [`View::measured_from`] has a shadow be of the triangles that the eye
@@ -21,13 +21,13 @@
 //! | compute, cached | rings and their weights, positions | a frame for each ring, if the vertices moved |
 //! | compute, cached | those, patch corners, rings, positions | control points, and what corners share |
 //! | compute, evaluation | control points, what corners share | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
-//! | compute, culling | control points, the view, factors of edges | which patches can be seen: lists and indirect draws of them, and for instances copies of what is kept of them |
+//! | compute, culling | control points, or what the construction makes them of; the view, factors of edges | which patches can be seen: lists and indirect draws of them, and for instances copies of what is kept of them |
 //! | GS, two passes | vertices and weights of the patches, positions | control points of models that are [`Evaluation::GeometryTwoPass`], if the vertices moved |
 //! | VS, evaluated | vertices; the displacement map | position, normal, texture coordinate |
 //! | VS, instanced | lists of patches; control points, what corners share; the displacement map | position, normal, texture coordinate of models that are [`Evaluation::Instanced`] (or of two passes), which have only FS besides |
 //! | GS | vertices and weights of the patch, positions; or control points | strips of models that are [`Evaluation::Geometry`], which have only VS (the number of a tile) and FS besides |
-//! | VS, two-stage | patch corners, rings and their weights, positions | what a corner of a patch takes from its ring: limit point, edge vectors, transversals and the like, what it shares |
-//! | VS, stencil and cached | cached, lists of patches | the number of the patch, for each patch |
+//! | VS, two-stage | lists of patches, patch corners, rings and their weights, positions | what a corner of a patch takes from its ring: limit point, edge vectors, transversals and the like, what it shares |
+//! | VS, stencil and cached | lists of patches | the number of the patch, for each patch |
 //! | TCS, two-stage | what its corners took from their rings | control points, factors |
 //! | TCS, stencil | vertices and weights of the patch, positions | control points, factors |
 //! | TCS, cached | control points, what corners share; displaced, frames | those, levels of the map, factors |

@@ -251,11 +251,6 @@ impl Model {
         self.control_points.is_some() && self.evaluation != Evaluation::GeometryTwoPass
     }
 
-    /// Whether compute shaders can list the patches of it that can be seen.
-    pub(super) fn is_listed(&self) -> bool {
-        self.computes() && self.evaluation.culls()
-    }
-
     /// Has the control points computed anew in the next frame, even though nothing moved.
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(super) fn forget_points(&mut self) {

@@ -149,7 +149,7 @@ pub struct Options {
     /// it.
     pub evaluations: Vec<Evaluation>,
     /// Whether [`Renderer::cmd_cull`](super::Renderer::cmd_cull) will be called: [`requirements`] lists what the device must have
-    /// for it.
+    /// for it. The queue is then one that computes.
     pub visible_lists: bool,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,

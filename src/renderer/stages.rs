@@ -90,7 +90,7 @@ impl PatchStages {
         }
     }
 
-    /// What tells apart the pipelines that make cached control points: what is of no concern to them is as usual.
+    /// What tells apart the pipelines that make control points by compute: what is of no concern to them is as usual.
     pub(super) fn for_control_points(self) -> Self {
         let (evaluation, spacing) = (Evaluation::Tessellation, Spacing::Equal);
         Self { evaluation, spacing, edge_factors: false, attributes: false, ..self }
@@ -120,10 +120,16 @@ impl PatchStages {
 
     /// The name of the shader that makes control points for all draws of a frame.
     pub(super) fn control_points(self) -> String {
-        let [file, _] = files(self.scheme, self.kind);
-        let scheme = if file == "REGULAR" { String::new() } else { format!("_{file}") };
         let sharing = self.sharing.suffix(Capture::Off);
-        format!("COMPUTE_CONTROL_POINTS_COMP{scheme}{}{sharing}", self.domain_suffix())
+        format!("COMPUTE_CONTROL_POINTS_COMP{}{}{sharing}", self.scheme_suffix(), self.domain_suffix())
+    }
+
+    /// Of shaders that make control points and are not of regular patches.
+    fn scheme_suffix(self) -> String {
+        match files(self.scheme, self.kind) {
+            ["REGULAR", _] => String::new(),
+            [file, _] => format!("_{file}"),
+        }
     }
 
     /// Of shaders that are not of quads.
@@ -140,12 +146,7 @@ impl PatchStages {
         if self.construction != Construction::TwoStage {
             return "CONSTRUCT_PATCH_NUMBER_VERT".to_owned();
         }
-        let sharing = self.sharing.suffix(capture);
-        let inner = match files(self.scheme, self.kind)[0] {
-            "REGULAR" => String::new(),
-            scheme => format!("_{scheme}"),
-        };
-        format!("CONSTRUCT_TWO_STAGE_VERT{inner}{sharing}")
+        format!("CONSTRUCT_TWO_STAGE_VERT{}{}", self.scheme_suffix(), self.sharing.suffix(capture))
     }
 
     /// Whether its control points enclose it, so that they tell whether it can be seen. GLSL twin: `HULL` in
@@ -166,10 +167,12 @@ impl PatchStages {
 
     /// The name of the shader that lists which patches can be seen.
     pub(super) fn culling(self) -> String {
-        match self.scheme.owned(self.kind) {
-            4 => "COMPUTE_CULL_COMP".to_owned(),
-            owned => format!("COMPUTE_CULL_COMP_OWNED_{owned}{}", self.domain_suffix()),
-        }
+        let construction = match self.construction {
+            Construction::TwoStage => "_TWO_STAGE",
+            Construction::Stencil => "_STENCIL",
+            Construction::Cached => "",
+        };
+        format!("COMPUTE_CULL_COMP{}{}{construction}", self.scheme_suffix(), self.domain_suffix())
     }
 
     /// What the shaders of draws that are cut so are specialized to, but for those that evaluate and shade.

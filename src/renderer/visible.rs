@@ -1,8 +1,9 @@
 //! Views of which compute leaves out the patches that cannot be seen, before they are drawn.
 //!
 //! A control shader can leave out a patch only when most of the work is done: the vertex shader ran, the control points are
-//! there. Of cached control points a compute shader finds out before, with all lanes at work, and lists the patches that are
-//! left, in their order, for indirect draws.
+//! there. A compute shader finds out before, with all lanes at work, and lists the patches that are left, in their order, for
+//! indirect draws. Where control points are not cached it makes those of all patches, and the draws make those of the patches
+//! that are left again.
 
 use super::draw::Bound;
 use super::evaluated::Drawn;
@@ -90,6 +91,10 @@ impl List {
         (group.first_corner + self.first as usize * group.kind.corners()) as u32
     }
 
+    fn first_patch(self, group: &PatchGroup) -> u32 {
+        group.patches.start as u32 + self.first
+    }
+
     /// Of what makes it, where the item is drawn with these.
     fn constants(self, model: &Model, drawn: Drawn, of_draw: &DrawConstants) -> ListConstants {
         let (stages, group) = (model.stages[self.group], &model.tables.plan().groups()[self.group]);
@@ -102,6 +107,7 @@ impl List {
             factor: of_draw.factor(),
             flags: of_draw.flags,
             first_corner: self.first_corner(group),
+            first_patch: self.first_patch(group),
             count: self.count,
             vertices,
             first_index,
@@ -119,11 +125,11 @@ impl Renderer {
     /// Records the search for the patches of some items that can be seen in a view, by their
     /// [`DrawItem::cull`]: for [`Renderer::cmd_draw_visible`], as often as you like in this frame.
     ///
-    /// It is for models that are [`Construction::Cached`](super::Construction::Cached) and whose
-    /// [evaluation leaves out patches](Evaluation::culls). Others are drawn as by [`Renderer::cmd_draw`]. Takes memory, which is
-    /// kept for later frames: a little more than four bytes a patch, and for instances what they read of it, 256 bytes of a Gregory patch. Binds
-    /// compute pipelines, with sets 0 and 1, and counts as one of
-    /// [`Options::views_per_frame`](super::Options::views_per_frame).
+    /// It is for models whose [evaluation leaves out patches](Evaluation::culls), whatever their construction: control points that
+    /// are not [`Cached`](super::Construction::Cached) are made for this, and again where patches are drawn. Others are drawn as by
+    /// [`Renderer::cmd_draw`]. Takes memory, which is kept for later frames: a little more than four bytes a patch, and for
+    /// instances what they read of it, 256 bytes of a Gregory patch. Binds compute pipelines, with sets 0 and 1, and counts as one
+    /// of [`Options::views_per_frame`](super::Options::views_per_frame).
     ///
     /// # Errors
     /// As [`Renderer::cmd_draw`]; [`Error::NoVisibleLists`]; [`Error::ListsTooLarge`]. What was recorded until then does no harm.
@@ -214,7 +220,7 @@ impl Renderer {
     fn listed_groups(&self, item: &DrawItem) -> Result<impl Iterator<Item = (usize, PatchStages, &PatchGroup)>, Error> {
         let model = self.model(item.model)?;
         let surface = self.style(item)?.geometry == Geometry::Surface;
-        let any = surface && item.cull != Cull::NONE && model.is_listed();
+        let any = surface && item.cull != Cull::NONE && model.evaluation.culls();
         let groups = model.stages.iter().zip(model.tables.plan().groups()).enumerate();
         let groups = groups.map(|(number, (&stages, group))| (number, stages, group));
         Ok(groups.filter(move |(_, stages, _)| any && stages.has_hull()))
@@ -302,7 +308,7 @@ impl Renderer {
             for list in own.lists.iter().filter(|list| list.group == group) {
                 let constants = DrawConstants {
                     first_corner: list.first_corner(of_group),
-                    first_patch: of_group.patches.start as u32 + list.first,
+                    first_patch: list.first_patch(of_group),
                     patches_per_instance: list.patches_per_instance,
                     ..*of_draw
                 };

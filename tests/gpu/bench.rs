@@ -3,7 +3,7 @@
 
 use crate::common::headless;
 use ash_subdiv::bench::{
-    Bench, BenchOptions, Camera, Contestant, Crowd, Event, Motion, Normals, Path, Row, Subject, Subset,
+    Bench, BenchOptions, Camera, Contestant, Crowd, CullBy, Event, Motion, Normals, Path, Row, Subject, Subset,
 };
 use ash_subdiv::headless::Headless;
 use ash_subdiv::renderer::Cull;
@@ -233,7 +233,7 @@ fn cached_control_points_are_made_in_every_frame_in_which_vertices_move() {
 fn variants_are_of_what_can_be_combined() {
     let all = Contestant::all(&Path::ALL, &[Scheme::Gregory, Scheme::Acc], &[Construction::Cached]);
     let variants = |normals: &[Normals], culls: &[Cull]| -> Vec<Contestant> {
-        all.iter().flat_map(|contestant| contestant.variants(normals, culls)).collect()
+        all.iter().flat_map(|contestant| contestant.variants(normals, culls, &[])).collect()
     };
     assert_eq!(variants(&[Normals::Own], &[Cull::NONE]), all);
     let acc_published = [Path::AccPublished, Path::AccPublishedInstanced];
@@ -258,6 +258,15 @@ fn variants_are_of_what_can_be_combined() {
     // Floors are there in any case: what others cannot get below.
     let shared = variants(&[Normals::Shared], &[Cull::NONE]);
     assert!(shared.iter().all(|c| c.path.is_floor() || c.normals == Normals::Shared) && shared.len() == 6);
+    // Instances are culled by compute only; what is not culled is there once.
+    let way = |path, construction| Contestant::new(path, Some((Scheme::Gregory, construction)));
+    let ways = [way(Path::Tessellation, Construction::TwoStage), way(Path::Instanced, Construction::Cached)];
+    assert_eq!(ways.map(|way| way.cull_by), CullBy::ALL);
+    for (contestant, by) in ways.into_iter().zip([&CullBy::ALL[..], &[CullBy::Compute]]) {
+        let culled = by.iter().map(|&cull_by| Contestant { cull: Cull::ALL, cull_by, ..contestant });
+        let expected: Vec<_> = [contestant].into_iter().chain(culled).collect();
+        assert_eq!(contestant.variants(&[Normals::Own], &[Cull::NONE, Cull::ALL], &CullBy::ALL), expected);
+    }
 }
 
 #[test]
@@ -273,14 +282,20 @@ fn normals_and_culling_are_those_of_the_row() {
             with(Normals::Shared, Cull::NONE),
             with(Normals::Own, Cull { back: true, ..Cull::NONE }),
             with(Normals::Shared, Cull { back: true, ..Cull::NONE }),
+            Contestant { cull_by: CullBy::Compute, ..with(Normals::Own, Cull { back: true, ..Cull::NONE }) },
         ],
     );
     let bytes = |row: &Row| row.bytes.iter().map(|(_, bytes)| bytes).sum::<u64>();
-    for rows in rows.chunks(4) {
+    for rows in rows.chunks(5) {
         let triangles: Vec<u64> = rows.iter().map(|row| row.triangles.expect("lavapipe counts")).collect();
         assert!(triangles[0] == triangles[1] && triangles[2] == triangles[3]);
-        assert!(triangles[2] < triangles[0] * 19 / 20, "{triangles:?}");
+        assert!(triangles[2] < triangles[0] * 19 / 20 && triangles[4] == triangles[2], "{triangles:?}");
         assert!(bytes(&rows[1]) > bytes(&rows[0]) && bytes(&rows[2]) == bytes(&rows[0]));
+        // Lists; and compute reads the tables, too.
+        let [control, compute] = [&rows[2], &rows[4]];
+        let lists = bytes(compute) - bytes(control);
+        assert!(lists > 4 * compute.patches && compute.computed > Some(0) && control.computed == Some(0));
+        assert_eq!(compute.traffic.tables, 2 * control.traffic.tables + lists);
     }
     let bench = Bench::new(&headless, options()).unwrap();
     let subject = subject("creature");

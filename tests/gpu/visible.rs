@@ -19,8 +19,11 @@ fn options() -> Options {
 }
 
 fn cached(scheme: Scheme, evaluation: Evaluation) -> ModelOptions {
-    let construction = Construction::Cached;
-    ModelOptions { scheme, fallback: Fallback::Gregory, construction, evaluation, ..ModelOptions::default() }
+    ModelOptions { evaluation, ..tessellated(scheme, Construction::Cached) }
+}
+
+fn tessellated(scheme: Scheme, construction: Construction) -> ModelOptions {
+    ModelOptions { scheme, fallback: Fallback::Gregory, construction, ..ModelOptions::default() }
 }
 
 /// All of a mesh, and a part of it from near by.
@@ -98,31 +101,57 @@ fn moved(model: ModelId, factor: Factor) -> DrawItem {
 /// The control shader and the lists leave out the same patches, however edges get their factors.
 #[test]
 fn lists_leave_out_what_the_control_shader_does() {
-    let stage = Stage::new();
-    let mut renderer = stage.renderer(&options());
-    for (name, scheme) in [
+    let models = [
         ("creature-mixed", Scheme::Gregory),
         ("creature", Scheme::Acc),
         ("pentagons", Scheme::Pm),
         ("cloth", Scheme::Gregory),
-    ] {
+    ];
+    let all = FACTORS.into_iter().flat_map(|factor| CULLS.map(|cull| (factor, cull)));
+    leave_out_the_same(Construction::Cached, &models, &all.collect::<Vec<_>>());
+}
+
+/// Likewise where the lists are of control points that are made for nothing else.
+#[test]
+fn lists_leave_out_the_same_without_cached_points() {
+    let some: Vec<_> = FACTORS.into_iter().zip(CULLS.into_iter().cycle()).collect();
+    let models = [
+        ("creature-mixed", Scheme::Gregory),
+        ("creature", Scheme::Acc),
+        ("pentagons", Scheme::Pm),
+        ("machine-part", Scheme::GregoryFitted),
+    ];
+    leave_out_the_same(Construction::TwoStage, &models, &some);
+    let models = [("creature-mixed", Scheme::Gregory), ("cloth", Scheme::Acc)];
+    leave_out_the_same(Construction::Stencil, &models, &some);
+}
+
+const FACTORS: [Factor; 4] = [Factor::Uniform(6.0), Factor::Pixels(3.0), Factor::Curvature(0.3), Factor::Edges(1.0)];
+const CULLS: [Cull; 3] = [BACK, FRUSTUM, Cull::ALL];
+
+fn leave_out_the_same(construction: Construction, models: &[(&str, Scheme)], ways: &[(Factor, Cull)]) {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&options());
+    for &(name, scheme) in models {
         let mesh = if name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
-        let options = ModelOptions { edge_factors: true, ..cached(scheme, Evaluation::Tessellation) };
+        let options = ModelOptions { edge_factors: true, ..tessellated(scheme, construction) };
         let model = renderer.add_model(&mesh, &options).expect("a model");
         let edges = renderer.tables(model).unwrap().edges().expect("asked for").vertices.len();
         let factors: Vec<f32> = (0..edges).map(|edge| 2.0 + (edge % 5) as f32).collect();
         renderer.set_edge_factors(model, 0, &factors).expect("factors");
         let mut less = 0;
         for view in views(&mesh) {
-            for factor in [Factor::Uniform(6.0), Factor::Pixels(3.0), Factor::Curvature(0.3), Factor::Edges(1.0)] {
-                for cull in [BACK, FRUSTUM, Cull::ALL] {
-                    stage.prepare(&mut renderer, 0);
-                    let item = DrawItem { cull, ..moved(model, factor) };
-                    let [shader, lists] = [false, true].map(|lists| count(&stage, &mut renderer, &view, item, lists));
-                    let numbers = |s: &Statistics| (s.evaluation_invocations, s.clipping_invocations);
-                    assert_eq!(numbers(&lists), numbers(&shader), "{name}, {factor:?}, {cull:?}");
-                    less += shader.control_patches - lists.control_patches;
-                }
+            for &(factor, cull) in ways {
+                stage.prepare(&mut renderer, 0);
+                let item = DrawItem { cull, ..moved(model, factor) };
+                let [shader, lists] = [false, true].map(|lists| count(&stage, &mut renderer, &view, item, lists));
+                let numbers = |s: &Statistics| (s.evaluation_invocations, s.clipping_invocations);
+                assert_eq!(numbers(&lists), numbers(&shader), "{name}, {factor:?}, {cull:?}");
+                let fewer = shader.control_patches - lists.control_patches;
+                less += fewer;
+                // Nor do corners of patches that are left out reach the vertex shader.
+                let vertices = shader.input_vertices - lists.input_vertices;
+                assert!(vertices >= fewer && (fewer == 0) == (vertices == 0), "{name}: {vertices}, {fewer}");
             }
         }
         // Pm-patches stay, and there are no others.
@@ -139,14 +168,20 @@ fn pictures_stay_the_same() {
     use ash::vk::CullModeFlags as Faces;
     let styles = [Faces::BACK, Faces::FRONT].map(|cull| Style { cull, ..Style::default() });
     let mut renderer = stage.renderer(&Options { styles: styles.into(), ..options() });
-    for (name, scheme, shared_normals) in [
-        ("creature-mixed", Scheme::Gregory, true),
-        ("machine-part", Scheme::Gregory, false),
-        ("valences", Scheme::Pm, false),
+    use Construction::{Cached, Stencil, TwoStage};
+    for (name, scheme, shared_normals, constructions) in [
+        ("creature-mixed", Scheme::Gregory, true, &[Cached, TwoStage, Stencil][..]),
+        ("machine-part", Scheme::Gregory, false, &[Cached, Stencil]),
+        ("machine-part", Scheme::GregoryFitted, false, &[TwoStage]),
+        ("cloth", Scheme::Acc, false, &[TwoStage]),
+        ("valences", Scheme::Pm, false, &[Cached, TwoStage]),
     ] {
         let mesh = shape(name).expect("built in");
-        for evaluation in [Evaluation::Tessellation, Evaluation::Instanced] {
-            let options = ModelOptions { shared_normals, ..cached(scheme, evaluation) };
+        let tessellated = constructions.iter().map(|&construction| tessellated(scheme, construction));
+        let instanced = constructions.contains(&Cached).then(|| cached(scheme, Evaluation::Instanced));
+        for options in tessellated.chain(instanced) {
+            let ModelOptions { construction, evaluation, .. } = options;
+            let options = ModelOptions { shared_normals, ..options };
             let model = renderer.add_model(&mesh, &options).expect("a model");
             if evaluation.needs_segments() {
                 renderer.set_segments(model, 6).expect("segments");
@@ -156,7 +191,8 @@ fn pictures_stay_the_same() {
                 let item = DrawItem { cull: Cull::ALL, style, ..moved(model, 6.0.into()) };
                 let all = draw_all(&stage, &mut renderer, &view, &[DrawItem { cull: Cull::NONE, ..item }]);
                 let visible = cull(&stage, &mut renderer, &view, &[item]);
-                assert!(draw(&stage, &mut renderer, &visible).unwrap() == all, "{name}, {evaluation:?}, {style}");
+                let drawn = draw(&stage, &mut renderer, &visible).unwrap();
+                assert!(drawn == all, "{name}, {construction:?}, {evaluation:?}, {style}");
                 assert!(all.chunks(4).any(|pixel| pixel != [0; 4]));
             }
         }
@@ -167,17 +203,25 @@ fn pictures_stay_the_same() {
     // SAFETY: the texture outlives the renderer.
     let displacement = Some(unsafe { renderer.add_displacement((&texture).into()) });
     let mesh = shape("creature").expect("built in");
-    let model = ModelOptions { displacement, ..cached(Scheme::Gregory, Evaluation::Instanced) };
-    let model = renderer.add_model(&mesh, &model).expect("a model");
-    renderer.set_segments(model, 6).expect("segments");
-    for view in views(&mesh) {
-        stage.prepare(&mut renderer, 0);
-        let item = DrawItem { cull: Cull::ALL, displacement: [0.2, 0.0], ..moved(model, 6.0.into()) };
-        let all = draw_all(&stage, &mut renderer, &view, &[DrawItem { cull: Cull::NONE, ..item }]);
-        let visible = cull(&stage, &mut renderer, &view, &[item]);
-        assert!(draw(&stage, &mut renderer, &visible).unwrap() == all);
-        let [before, now] = [false, true].map(|lists| count(&stage, &mut renderer, &view, item, lists));
-        assert_eq!(before.clipping_invocations > now.clipping_invocations, view == views(&mesh)[1]);
+    let instanced = cached(Scheme::Gregory, Evaluation::Instanced);
+    let others = [TwoStage, Stencil].map(|construction| tessellated(Scheme::Gregory, construction));
+    for options in [instanced].into_iter().chain(others) {
+        let options = ModelOptions { displacement, ..options };
+        let model = renderer.add_model(&mesh, &options).expect("a model");
+        if options.evaluation.needs_segments() {
+            renderer.set_segments(model, 6).expect("segments");
+        }
+        for view in views(&mesh) {
+            stage.prepare(&mut renderer, 0);
+            let item = DrawItem { cull: Cull::ALL, displacement: [0.2, 0.0], ..moved(model, 6.0.into()) };
+            let not_culled = DrawItem { cull: Cull::NONE, ..item };
+            let all = draw_all(&stage, &mut renderer, &view, &[not_culled]);
+            let visible = cull(&stage, &mut renderer, &view, &[item]);
+            assert!(draw(&stage, &mut renderer, &visible).unwrap() == all, "{options:?}");
+            let before = count(&stage, &mut renderer, &view, not_culled, false);
+            let now = count(&stage, &mut renderer, &view, item, true);
+            assert_eq!(before.clipping_invocations > now.clipping_invocations, view == views(&mesh)[1]);
+        }
     }
     drop((renderer, texture));
     stage.finish();
@@ -234,11 +278,15 @@ fn lists_grow_with_what_is_drawn() {
     let mut renderer = stage.renderer(&Options { styles: vec![Style::default(), flat], ..options() });
     let [creature, torus] = ["creature", "torus"].map(|name| shape(name).expect("built in"));
     let small = renderer.add_model(&creature, &cached(Scheme::Gregory, Evaluation::Tessellation)).expect("a model");
-    let two_stage = renderer.add_model(&creature, &ModelOptions::default()).expect("a model");
+    let others = [ModelOptions::default(), cached(Scheme::Gregory, Evaluation::Compute)];
+    let [two_stage, computed] = others.map(|options| renderer.add_model(&creature, &options).expect("a model"));
+    renderer.set_segments(computed, 3).expect("segments");
     let options = ModelOptions { refine: 4, ..cached(Scheme::Gregory, Evaluation::Tessellation) };
     let large = renderer.add_model(&torus, &options).expect("a model");
     let instanced = ModelOptions { evaluation: Evaluation::Instanced, ..options };
     let instanced = renderer.add_model(&torus, &instanced).expect("a model");
+    let stencil = ModelOptions { refine: 4, ..tessellated(Scheme::Gregory, Construction::Stencil) };
+    let stencil = renderer.add_model(&torus, &stencil).expect("a model");
     renderer.set_segments(instanced, 1).expect("segments");
     // Instances have 192 bytes of each; a list takes a mebibyte at most.
     assert!(192 * renderer.tables(large).unwrap().plan().patches().len() > 2 << 20);
@@ -250,7 +298,14 @@ fn lists_grow_with_what_is_drawn() {
     };
     let scenes = [
         vec![item(small, 5.0, 0.0)],
-        vec![item(large, 1.0, 0.0), item(two_stage, 3.0, 0.4), item(small, 2.0, -0.3), item(instanced, 1.0, 0.2)],
+        vec![
+            item(large, 1.0, 0.0),
+            item(two_stage, 3.0, 0.4),
+            item(computed, 3.0, -0.6),
+            item(small, 2.0, -0.3),
+            item(instanced, 1.0, 0.2),
+            item(stencil, 1.0, -0.2),
+        ],
     ];
     let mut before = 0;
     for frame in [0, 1, 0] {
@@ -282,6 +337,30 @@ fn lists_grow_with_what_is_drawn() {
     let bytes = told.strip_prefix("lists of patches that can be seen take ").expect(&error);
     assert!(bytes.parse::<u64>().unwrap() > 400 * (4 + 192) * 32_768, "{error}");
     assert_eq!(renderer.memory_usage().lists, before);
+    drop(renderer);
+    stage.finish();
+}
+
+/// What was copied in the same command buffer is there for the search, also where no model computes anything else.
+#[test]
+fn copies_come_before_the_search() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&options());
+    let mesh = shape("cube").expect("built in");
+    let model = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
+    let item = DrawItem { cull: BACK, ..DrawItem::new(model, 2.0) };
+    renderer.make_pipelines(model, item.factor, item.cull).expect("pipelines");
+    let [view, _] = views(&mesh);
+    for frame in [0, 1] {
+        renderer.set_positions(model, frame, &mesh.positions_f32()).expect("positions");
+        // SAFETY: outside rendering, and every submission is waited for.
+        let visible = stage.headless.try_submit(|cmd| unsafe {
+            renderer.cmd_prepare(cmd, frame)?;
+            renderer.cmd_cull(cmd, frame, &view, &[item])
+        });
+        let drawn = draw_in(&stage, &mut renderer, frame, &visible.expect("lists")).unwrap();
+        assert!(drawn == draw_all_in(&stage, &mut renderer, frame, &view, &[item]));
+    }
     drop(renderer);
     stage.finish();
 }

@@ -7,7 +7,7 @@ use super::super::source::DeviceArgs;
 use super::facts::MeshOut;
 use super::presets::{self, Preset};
 use super::unique;
-use ash_subdiv::bench::{Camera, Contestant, Motion, Normals, Path, Subject, Subset};
+use ash_subdiv::bench::{Camera, Contestant, CullBy, Motion, Normals, Path, Subject, Subset};
 use ash_subdiv::mesh::{ReadOptions, read, replicate, shape};
 use ash_subdiv::renderer::Cull;
 use ash_subdiv::{Construction, ControlMesh, Scheme, Spacing};
@@ -41,6 +41,10 @@ pub(in super::super) struct BenchArgs {
     /// those that face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
     cull: Vec<CullArg>,
+    /// What leaves them out, with commas: the control shader of each draw, or compute before the draws. If not given, compute for
+    /// `cached`, the control shader for other constructions.
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', requires = "cull", value_parser = parse::cull_by())]
+    cull_by: Vec<CullBy>,
     /// Tessellation factors, with commas; 4,8,16,32 if not given.
     #[arg(long, value_name = "FACTOR", value_delimiter = ',', value_parser = parse::factor)]
     factors: Vec<f32>,
@@ -97,7 +101,7 @@ pub(in super::super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "cull", "factors", "patches", "instances", "passes", "motion", "view", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
+        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]
@@ -126,7 +130,7 @@ makes control points for `instanced`. They go with the construction `cached`, `g
 `acc-published` is ACC as first published: its evaluation shader makes the tangents, at every vertex, that `tessellation` makes
 once a patch. The same surface, with the scheme acc and the construction two-stage; `acc-published-instanced` likewise with
 `cached`, to be compared with `instanced`. --cull is for `tessellation` and `instanced`: with `cached`, compute shaders leave
-patches out before they are drawn, else the control shader does.
+patches out before they are drawn, else the control shader does. What --cull-by has otherwise is named, as `back by compute`.
 Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of several counts of passes,
 `compute wins from` says where its time and that of tessellating in every pass cross. Of copies of a mesh (--replicate),
 `grows` says by which power of patches. `more` is more than what was measured can tell.
@@ -178,14 +182,17 @@ impl BenchArgs {
         let normals = pick(&self.normals, None, &Normals::ALL);
         let mut culls = vec![Cull::NONE, cull(&self.cull)];
         culls.dedup();
-        all.into_iter().flat_map(|contestant| contestant.variants(&normals, &culls)).collect()
+        let cull_by = pick(&self.cull_by, Some(&[]), &CullBy::ALL);
+        all.into_iter().flat_map(|contestant| contestant.variants(&normals, &culls, &cull_by)).collect()
     }
 
     /// Notes on what is asked for and none of the contestants has.
     pub(super) fn in_vain(&self, contestants: &[Contestant]) -> Vec<String> {
         let mut notes = Vec::new();
         if !self.cull.is_empty() && contestants.iter().all(|contestant| contestant.cull == Cull::NONE) {
-            notes.push("--cull changes nothing here: it is for the paths tessellation and instanced".into());
+            notes.push(
+                "--cull changes nothing here: it is for the paths tessellation and, by compute, instanced".into(),
+            );
         }
         let shared = &Normals::Shared;
         if self.normals.contains(shared) && contestants.iter().all(|contestant| contestant.normals != *shared) {

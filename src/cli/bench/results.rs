@@ -8,8 +8,9 @@ use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line, left_o
 use super::findings::Findings;
 use super::presets::{Beside, PresetOut};
 use super::recorded::Recorded;
-use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Motion, Normals, Series, Subject};
+use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, CullBy, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
+use ash_subdiv::renderer::Cull;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -81,6 +82,7 @@ pub(super) struct Who {
     pub construction: String,
     pub path: String,
     pub normals: String,
+    /// And by what, if that is not what usually does.
     pub cull: String,
 }
 
@@ -197,12 +199,18 @@ impl Setting {
 
 impl Who {
     pub(super) fn new(contestant: Contestant) -> Self {
+        let Contestant { patches, cull, cull_by, .. } = contestant;
+        let by = match cull {
+            Cull::NONE => String::new(),
+            _ if cull_by == CullBy::usual(patches) => String::new(),
+            _ => format!(" by {}", cull_by.name()),
+        };
         Self {
             scheme: contestant.scheme_name().to_owned(),
             construction: contestant.construction_name().to_owned(),
             path: contestant.path.name().to_owned(),
             normals: contestant.normals.name().to_owned(),
-            cull: cull::name(contestant.cull),
+            cull: cull::name(cull) + &by,
         }
     }
 

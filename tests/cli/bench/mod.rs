@@ -118,7 +118,7 @@ fn bench_writes_tables_and_csv() {
 fn bench_measures_normals_culling_and_views_beside_each_other() {
     let results = json(&format!(
         "bench {SMALL} --shape creature --factors 2 --schemes gregory --constructions two-stage --paths \
-         tessellation,bilinear --normals own,shared --cull frustum,back --view fit,clipped"
+         tessellation,bilinear --normals own,shared --cull frustum,back --cull-by compute,control --view fit,clipped"
     ));
     let rows = results["rows"].as_array().unwrap();
     let named = |row: &Value| ["view", "path", "normals", "cull"].map(|key| row[key].as_str().unwrap().to_owned());
@@ -126,26 +126,29 @@ fn bench_measures_normals_culling_and_views_beside_each_other() {
         [
             ["tessellation", "own", "none"],
             ["tessellation", "own", "back+frustum"],
+            ["tessellation", "own", "back+frustum by compute"],
             ["tessellation", "shared", "none"],
             ["tessellation", "shared", "back+frustum"],
+            ["tessellation", "shared", "back+frustum by compute"],
             ["bilinear", "own", "none"],
         ]
         .map(|[path, normals, cull]| [view, path, normals, cull].map(str::to_owned))
     };
     let expected: Vec<_> = ["fit", "clipped"].into_iter().flat_map(of_view).collect();
     assert_eq!(rows.iter().map(named).collect::<Vec<_>>(), expected);
-    for rows in rows.chunks(5) {
+    for rows in rows.chunks(7) {
         assert_eq!(rows[0]["gpu_ratio"]["value"], 1.0);
+        assert_eq!(rows[1]["triangles"], rows[2]["triangles"]);
     }
     let views = results["views"].as_array().unwrap();
-    assert_eq!(views.iter().map(named).collect::<Vec<_>>(), expected[5..]);
+    assert_eq!(views.iter().map(named).collect::<Vec<_>>(), expected[7..]);
     let (view, of) = (&views[0], |row: &Value| row["visible_triangles"].as_f64().unwrap());
     let frames =
         |row: &Value| row["frames_ms"]["gpu"].as_array().unwrap().iter().map(|ms| ms.as_f64().unwrap()).collect();
-    let (near, far): (Vec<f64>, Vec<f64>) = (frames(&rows[5]), frames(&rows[0]));
+    let (near, far): (Vec<f64>, Vec<f64>) = (frames(&rows[7]), frames(&rows[0]));
     let mut ratios: Vec<f64> = near.iter().zip(&far).map(|(near, far)| near / far).collect();
     ratios.sort_unstable_by(f64::total_cmp);
-    let expected = (ratios[2] + ratios[3]) / 2.0 * of(&rows[0]) / of(&rows[5]);
+    let expected = (ratios[2] + ratios[3]) / 2.0 * of(&rows[0]) / of(&rows[7]);
     assert!((view["gpu"]["value"].as_f64().unwrap() - expected).abs() < 1e-9, "{view}");
 }
 
@@ -230,8 +233,12 @@ fn bench_says_what_is_left_out_once() {
     );
     // What is asked for in vain.
     assert_eq!(
+        told("--shape cube --paths instanced --constructions cached --cull back --cull-by control"),
+        told("--shape cube --paths bilinear --cull back")
+    );
+    assert_eq!(
         told("--shape cube --paths bilinear --cull back"),
-        "note: --cull changes nothing here: it is for the paths tessellation and instanced\n"
+        "note: --cull changes nothing here: it is for the paths tessellation and, by compute, instanced\n"
     );
     let shared = told("--shape cube --paths tessellation --schemes pm --normals own,shared");
     assert!(shared.starts_with("note: --normals shared changes nothing here: shared normals go with"), "{shared}");
