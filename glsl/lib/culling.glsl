@@ -26,6 +26,7 @@ const uint COUNTER_CLOCKWISE_FLAG = 2u;  // in draw.flags
 struct Examined {
     uint outside;    // a bit for each plane that all of them are beyond
     vec4 pixel_box;  // the least and the largest x and y
+    bool crosses;    // whether any may be beyond any plane
 };
 
 // How far displacement moves a point, at most, in world space.
@@ -46,16 +47,20 @@ vec4 clip_row(int i) {
 Examined examine(vec3 kept[OWNED]) {
     vec4 box = vec4(1e30, 1e30, -1e30, -1e30);
     if ((DRAW_FLAGS & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
-        return Examined(0u, box);
+        return Examined(0u, box, false);
     }
-    // How far before each plane the foremost point is, in clip space: w + x, w + y, w - x, w - y; z, w - z.
-    vec4 sides = vec4(-1e30);
-    vec2 depths = vec2(-1e30);
+    // How far before each plane the foremost point is, and the hindmost, in clip space: w + x, w + y, w - x, w - y; z, w - z.
+    vec4 sides = vec4(-1e30), hind_sides = vec4(1e30);
+    vec2 depths = vec2(-1e30), hind_depths = vec2(1e30);
     for (int i = 0; i < HULL; ++i) {
         vec3 at = to_world(i == 0 ? kept[0] : POINT_OF(kept, i));
         vec4 clip = view.measured_view_projection * vec4(at, 1.0);
-        sides = max(sides, clip.w + vec4(clip.xy, -clip.xy));
-        depths = max(depths, vec2(clip.z, clip.w - clip.z));
+        vec4 before_sides = clip.w + vec4(clip.xy, -clip.xy);
+        vec2 before_depths = vec2(clip.z, clip.w - clip.z);
+        sides = max(sides, before_sides);
+        depths = max(depths, before_depths);
+        hind_sides = min(hind_sides, before_sides);
+        hind_depths = min(hind_depths, before_depths);
         if ((DRAW_FLAGS & CULL_SMALL_FLAG) != 0u) {
             vec2 pixels = (0.5 + 0.5 * clip.xy / clip.w) * view.viewport.xy;
             box = vec4(min(box.xy, pixels), max(box.zw, pixels));
@@ -67,12 +72,14 @@ Examined examine(vec3 kept[OWNED]) {
     }
     vec3 x = clip_row(0).xyz, y = clip_row(1).xyz, z = clip_row(2).xyz, w = clip_row(3).xyz;
     float margin = reach();
-    bvec4 beyond_sides =
-        lessThan(sides + margin * vec4(length(w + x), length(w + y), length(w - x), length(w - y)), vec4(0.0));
-    bvec2 beyond_depths = lessThan(depths + margin * vec2(length(z), length(w - z)), vec2(0.0));
+    vec4 side_margins = margin * vec4(length(w + x), length(w + y), length(w - x), length(w - y));
+    vec2 depth_margins = margin * vec2(length(z), length(w - z));
+    bvec4 beyond_sides = lessThan(sides + side_margins, vec4(0.0));
+    bvec2 beyond_depths = lessThan(depths + depth_margins, vec2(0.0));
+    bool within = all(greaterThan(hind_sides, side_margins)) && all(greaterThan(hind_depths, depth_margins));
     uvec4 bits = uvec4(beyond_sides) << uvec4(0u, 1u, 2u, 3u);
     uvec2 more = uvec2(beyond_depths) << uvec2(4u, 5u);
-    return Examined(bits.x | bits.y | bits.z | bits.w | more.x | more.y, box);
+    return Examined(bits.x | bits.y | bits.z | bits.w | more.x | more.y, box, !within);
 }
 
 // Whether no pixel's centre lies within a box.
@@ -232,7 +239,7 @@ bool is_culled(float step) {
 }
 #else
 Examined examine(vec3 kept[OWNED]) {
-    return Examined(0u, vec4(0.0));
+    return Examined(0u, vec4(0.0), false);
 }
 
 bool is_culled(float step) {

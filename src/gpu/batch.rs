@@ -64,7 +64,9 @@ pub enum PatchBatch {
         max_vertices: u32,
         /// The most control points.
         max_control_points: u32,
-        /// Tessellation-evaluation vertices that are cheap even where patches are clipped by the frustum.
+        /// Tessellation-evaluation vertices that the processor keeps near while it is at an instance: more are slower.
+        near_vertices: u32,
+        /// Those up to which two patches go into an instance nevertheless: beyond, clipping by the frustum is slow.
         good_vertices: u32,
     },
 }
@@ -73,7 +75,8 @@ impl PatchBatch {
     /// **The workaround for lavapipe bugs A and B** (Mesa's llvmpipe driver, seen in 22.3.6): more than 65 536
     /// tessellation-evaluation vertices in an instance give a wrong picture without any error, an instance is cut every
     /// 4096 control points, and clipping costs the square of the patches in an instance.
-    pub const LAVAPIPE: Self = Self::Limited { max_vertices: 65_535, max_control_points: 4096, good_vertices: 600 };
+    pub const LAVAPIPE: Self =
+        Self::Limited { max_vertices: 65_535, max_control_points: 4096, near_vertices: 150, good_vertices: 600 };
 
     /// The rule for a driver.
     pub fn of_driver(driver: vk::DriverId) -> Self {
@@ -86,10 +89,14 @@ impl PatchBatch {
         let most = match self {
             // The number of vertices of a draw is a u32.
             Self::Unlimited => u32::MAX / control_points.max(1),
-            Self::Limited { max_vertices, max_control_points, good_vertices } => (good_vertices / vertices.max(1))
-                .max(1)
-                .min(max_vertices / vertices.max(1))
-                .min(max_control_points / control_points.max(1)),
+            Self::Limited { max_vertices, max_control_points, near_vertices, good_vertices } => {
+                let of = |all: u32| all / vertices.max(1);
+                of(near_vertices)
+                    .max(of(good_vertices).min(2))
+                    .max(1)
+                    .min(of(max_vertices))
+                    .min(max_control_points / control_points.max(1))
+            }
         };
         patches.min(most).max(1)
     }
@@ -155,10 +162,12 @@ mod tests {
             rule.patches_per_instance(10_000, points, vertices)
         };
         assert_eq!(k(64.0, 4), 1);
+        assert_eq!(k(24.0, 4), 1);
         assert_eq!(k(16.0, 4), 2);
-        assert_eq!(k(8.0, 4), 7);
-        assert_eq!(k(1.0, 4), 150);
-        assert_eq!(k(1.0, 32), 128);
+        assert_eq!(k(8.0, 4), 2);
+        assert_eq!(k(4.0, 4), 6);
+        assert_eq!(k(1.0, 4), 37);
+        assert_eq!(k(1.0, 128), 32);
         // Limits hold whatever is asked of them.
         for vertices in [1, 3, 4, 9, 289, 4225, 65_535] {
             for points in [1, 3, 4, 16, 32] {
