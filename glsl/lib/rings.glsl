@@ -98,7 +98,9 @@ void ring_frame(Ring ring, vec3 centre, out vec3 p_out, out vec3 a_out, out vec3
     p += weights.x * centre;
     a += weights.y * centre;
     b += weights.z * centre;
-    for (uint i = 1u; i < last; ++i) {
+    // Not below `last`: lanes of lavapipe (22.3.6) without a vertex read a ring of nothing from storage buffers, of which that is the
+    // largest number, and have all loops of the others end after 65 535 steps together.
+    for (uint i = 1u; i + 1u < ring.faces + ring.edges; ++i) {
         vec3 x = entry_position(ring_entry(ring.entries + i));
         weights = ring_type(first + i).xyz;
         p += weights.x * x;
