@@ -3,6 +3,7 @@
 #ifndef CACHED_GLSL
 #define CACHED_GLSL
 
+#include "packed.glsl"
 #include "positions.glsl"
 
 // Texels that a corner has room for: as many as the corners of any patch of the model need.
@@ -33,7 +34,7 @@ void keep_vector(uint corner, uint i, vec3 x) {
 #define KEPT (3 * OWNED)
 #endif
 #endif
-#define KEPT_TEXELS ((KEPT + 3) / 4)
+#define KEPT_TEXELS PACKED_ROWS(KEPT)
 
 layout(set = 1, binding = 12, std430) readonly buffer ControlPoints { vec4 control_points[]; };
 layout(set = 1, binding = 20) uniform samplerBuffer control_point_texels;
@@ -43,20 +44,9 @@ vec4 kept_texel(uint corner, uint i) {
     return READS_TEXELS ? texelFetch(control_point_texels, int(at)) : control_points[at];
 }
 
-// The i-th vector of those in some texels.
-vec3 kept_vector(vec4 texels[KEPT_TEXELS], int i) {
-    vec4 a = texels[3 * i / 4], b = texels[min(3 * i / 4 + 1, KEPT_TEXELS - 1)];
-    switch (i & 3) {
-    case 0:
-        return a.xyz;
-    case 1:
-        return vec3(a.w, b.xy);
-    case 2:
-        return vec3(a.zw, b.x);
-    default:
-        return a.yzw;
-    }
-}
+// The i-th vector of those in some texels, and the i-th number.
+#define kept_vector(texels, i) PACKED_VECTOR(texels, 3 * (i))
+#define kept_number(texels, i) PACKED_NUMBER(texels, i)
 
 #ifdef ATTRIBUTES
 // Of the patch that the instance is, corner by corner.
@@ -76,10 +66,6 @@ vec4[KEPT_TEXELS] texels_of_patch(uint first_corner, int k) {
 #else
 #define texels_of_patch(first_corner, k) kept_texels(first_corner + k)
 #endif
-
-float kept_number(vec4 texels[KEPT_TEXELS], int i) {
-    return texels[i / 4][i & 3];
-}
 
 #ifdef SHARED
 // As `corner_bits`.

@@ -22,8 +22,8 @@ impl Renderer {
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
     /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or, with
-    /// [`Options::visible_lists`](super::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). The device is done with what was recorded for
-    /// `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue, and every one is: uploads
+    /// [`Options::visible_lists`](super::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). The
+    /// device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue, and every one is: uploads
     /// and changes are recorded once, and later frames count on them. A frame that turns out to have nothing to draw into, such
     /// as when the swapchain is out of date, is submitted without draws.
     pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {

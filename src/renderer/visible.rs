@@ -1,9 +1,9 @@
 //! Views of which compute leaves out the patches that cannot be seen, before they are drawn.
 //!
 //! A control shader can leave out a patch only when most of the work is done: the vertex shader ran, the control points are
-//! there. A compute shader finds out before, with all lanes at work, and lists the patches that are left, in their order, for
-//! indirect draws. Where control points are not cached it makes those of all patches, and the draws make those of the patches
-//! that are left again.
+//! there. A compute shader finds out before, with all lanes at work, and lists the patches that are left for indirect draws: in
+//! their order, but of every 128 first those within the frustum, then those that cross it. Where control points are not cached it
+//! makes those of all patches, and the draws make those of the patches that are left again.
 
 use super::draw::Bound;
 use super::evaluated::Drawn;
@@ -73,7 +73,7 @@ impl ItemLists<'_> {
     }
 }
 
-/// Some of the patches of a group, in the order of the plan.
+/// Of some patches of a group, which follow each other in the plan.
 #[derive(Debug, Clone, Copy)]
 struct List {
     group: usize,
