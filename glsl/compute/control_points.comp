@@ -25,7 +25,7 @@ void main() {
         for (uint i = 0u; i < SHARED_VECTORS; ++i) {
             keep_vector(first + k, OWNED + i, corners[k].with[i]);
         }
-        keep_number(first + k, 3u * (OWNED + SHARED_VECTORS), corner_bits(first + k) != 0u ? 1.0 : 0.0);
+        keep_number(first + k, 3u * (OWNED + SHARED_VECTORS), corner_sharp(first + k));
 #endif
     }
     second_stage();

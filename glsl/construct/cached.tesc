@@ -43,7 +43,7 @@ void main() {
 #ifdef DISPLACED
     lod = corner_lod(corner, corner_speaker(corner, framed_ring(patch_corner(corner).x)));
 #endif
-    write_shared(corner, with, kept_bits(texels) != 0u ? 1.0 : 0.0, lod);
+    write_shared(corner, with, kept_number(texels, KEPT - 1), lod);
 #endif
     finish_corner(in_patch_number[0]);
     barrier();

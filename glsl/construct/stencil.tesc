@@ -39,7 +39,7 @@ void main() {
     lod = corner_lod(corner, speaker);
 #endif
     SharedEdge plus = shared_edge(own, place.y), minus = shared_edge(own, edge_after(own.ring, place.y));
-    write_shared(corner, share_corner(corner, own, speaker, plus, minus), corner_bits(corner) != 0u ? 1.0 : 0.0, lod);
+    write_shared(corner, share_corner(corner, own, speaker, plus, minus), corner_sharp(corner), lod);
 #endif
     finish_corner(in_patch_number[0]);
     barrier();

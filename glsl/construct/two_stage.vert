@@ -41,7 +41,7 @@ void main() {
     for (int i = 0; i < SHARED_VECTORS; ++i) {
         PUT_VECTOR(numbers, RING_SHARED + 3 * i, corner.with[i]);
     }
-    numbers[RING_SHARP] = corner_bits(number) != 0u ? 1.0 : 0.0;
+    numbers[RING_SHARP] = corner_sharp(number);
 #ifdef DISPLACED
     numbers[RING_LOD] = corner_lod(number, corner.speaker);
 #endif

@@ -68,7 +68,7 @@ vec4[KEPT_TEXELS] texels_of_patch(uint first_corner, int k) {
 #endif
 
 #ifdef SHARED
-// As `corner_bits`.
+// As in `shared_bits`.
 uint kept_bits(vec4 texels[KEPT_TEXELS]) {
     return kept_number(texels, KEPT - 1) != 0.0 ? SHARP_EDGE_BIT : 0u;
 }

@@ -22,6 +22,14 @@ vec3 edge_across(vec3 across0, vec3 transversal0, vec3 transversal1, vec3 across
 }
 
 #ifdef SHARED
+// What the corners of the patch share with others: see glsl/lib/shared.glsl.
+vec3 shared_with[CORNERS][SHARED_VECTORS];
+uint shared_bits[CORNERS];
+#ifdef DISPLACED
+vec2 shared_texcoord[CORNERS][3];
+float shared_lod[CORNERS];
+#endif
+
 // A point of the surface. Where it is displaced it goes along `direction`, which is that of all patches that meet there;
 // `normal` is, too, but at creases.
 struct SharedSample {
@@ -35,8 +43,7 @@ struct SharedSample {
 };
 
 // The surface with what is shared in the place of what the patch alone makes of it. Positions on edges are the same in any
-// case. Of the `shared_with`, `shared_bits` and, displaced, `shared_texcoord`, `shared_lod` and `texcoord` of the patch's corners
-// in whatever stage includes it.
+// case. Displaced, of the `texcoord` of the patch's corners in whatever stage includes it, too.
 SharedSample share(Surface own, vec3 at) {
     // On which edge, and how far from its corner on the way around the patch.
 #ifdef TRIANGLE

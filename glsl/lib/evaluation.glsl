@@ -43,13 +43,6 @@ layout(location = 2) out vec2 out_texcoord;
 #endif
 
 #ifdef SHARED
-// What the corners of the patch share with others: see glsl/lib/shared.glsl.
-vec3 shared_with[CORNERS][SHARED_VECTORS];
-uint shared_bits[CORNERS];
-#ifdef DISPLACED
-vec2 shared_texcoord[CORNERS][3];
-float shared_lod[CORNERS];
-#endif
 #include "edges.glsl"
 #endif
 #ifdef DISPLACED

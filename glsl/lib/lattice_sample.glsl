@@ -10,13 +10,6 @@ vec2 texcoord[CORNERS];
 #endif
 
 #ifdef SHARED
-#include "shared_bits.glsl"
-vec3 shared_with[CORNERS][SHARED_VECTORS];
-uint shared_bits[CORNERS];
-#ifdef DISPLACED
-vec2 shared_texcoord[CORNERS][3];
-float shared_lod[CORNERS];
-#endif
 #include "edges.glsl"
 
 // One name for the type of either.

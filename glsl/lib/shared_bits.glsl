@@ -17,9 +17,9 @@ layout(set = 1, binding = 9, std430) readonly buffer SharedCorners { uint shared
 const uint SHARED_WORDS = 5u;
 const uint EDGE_MASK = ~SHARP_EDGE_BIT;
 
-// Of a corner by its number among all.
-uint corner_bits(uint corner) {
-    return shared_corners[SHARED_WORDS * corner + 2u] & ~EDGE_MASK;
+// 1 where the plus edge of a corner is sharp, by its number among all; else 0.
+float corner_sharp(uint corner) {
+    return (shared_corners[SHARED_WORDS * corner + 2u] & SHARP_EDGE_BIT) != 0u ? 1.0 : 0.0;
 }
 
 #endif
