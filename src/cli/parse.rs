@@ -107,9 +107,19 @@ pub(super) fn spacing_name(spacing: Spacing) -> &'static str {
     SPACINGS.into_iter().find(|(_, s)| *s == spacing).map_or("equal", |(name, _)| name)
 }
 
+/// The largest tessellation factor that every device has.
+pub(super) const MAX_FACTOR: f32 = 64.0;
+
 /// A tessellation factor.
 pub(super) fn factor(text: &str) -> Result<f32, String> {
-    number(text).filter(|f| (1.0..=64.0).contains(f)).ok_or_else(|| "it must be a number from 1 to 64".into())
+    number(text).filter(|f| (1.0..=MAX_FACTOR).contains(f)).ok_or_else(|| "it must be a number from 1 to 64".into())
+}
+
+/// A tessellation factor, or how many segments edges are cut into without the tessellation stages.
+pub(super) fn segments(text: &str) -> Result<f32, String> {
+    number(text).filter(|f| (1.0..=1024.0).contains(f)).ok_or_else(|| {
+        "it must be a number from 1 to 64, or to 1024 without the tessellation stages (--evaluation)".into()
+    })
 }
 
 /// A full angle of view, in degrees.

@@ -11,11 +11,10 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "JSON: [{name, summary, vertices, faces}].\n\nExamples:\n  subdiv shapes\n  subdiv shapes machine-part --obj machine-part.obj"
+    after_help = "JSON: [{name, summary, vertices, faces}].\n\nExamples:\n  subdiv shapes\n  subdiv shapes torus\n  subdiv shapes machine-part --obj machine-part.obj"
 )]
 pub(super) struct ShapesArgs {
     /// Only this shape.
-    #[arg(requires = "obj")]
     name: Option<String>,
     /// Write it to a file, as OBJ with OpenSubdiv's tags.
     #[arg(long, value_name = "FILE", requires = "name")]
@@ -52,7 +51,9 @@ pub(super) fn run(args: &ShapesArgs, json: bool) -> Result<(), CliError> {
         };
     }
     let mut all = Vec::new();
-    for info in shapes() {
+    // What is asked for and is none is told here.
+    args.name.as_deref().map_or(Ok(()), |name| shape(name).map(drop))?;
+    for info in shapes().iter().filter(|info| args.name.as_deref().is_none_or(|name| info.name == name)) {
         let mesh = shape(info.name)?;
         let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
         all.push(ShapeOut { name: info.name, summary: info.summary, vertices, faces });

@@ -17,7 +17,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub(super) struct WatertightArgs {
     #[command(flatten)]
     source: SourceArgs,

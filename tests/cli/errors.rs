@@ -13,10 +13,14 @@ fn wrong_usage_is_said_in_one_line() {
     fails("info a.obj --shape cube", 2, "both a mesh (a.obj) and --shape cube are given: leave one out");
     fails("rendr", 2, "unrecognized subcommand 'rendr' tip: a similar subcommand exists: 'render'");
     fails("render --shape cube", 2, "the following required arguments were not provided: --output <FILE>");
-    for bad in ["0", "65", "nan", "x"] {
-        let message = format!("invalid value '{bad}' for '--factor <FACTOR>': it must be a number from 1 to 64");
+    for bad in ["0", "1025", "nan", "x"] {
+        let message = format!(
+            "invalid value '{bad}' for '--factor <FACTOR>': it must be a number from 1 to 64, or to 1024 without the tessellation stages (--evaluation)"
+        );
         fails(&format!("render --shape cube -o x.png --factor {bad}"), 2, &message);
     }
+    let too_large = "--factor 65: the tessellation stages take at most 64: choose another --evaluation for more";
+    fails("render --shape cube -o x.png --factor 65", 2, too_large);
     for bad in ["0x4", "4", "4xx"] {
         let message = format!("invalid value '{bad}' for '--size <WxH>': it must be WxH in pixels, such as 1024x768");
         fails(&format!("render --shape cube -o x.png --size {bad}"), 2, &message);

@@ -15,7 +15,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
-#[command(after_help = NOTES)]
+#[command(after_help = NOTES, allow_negative_numbers = true)]
 pub(in super::super) struct BenchArgs {
     /// Control meshes: files ending in .obj, .gltf or .glb.
     mesh: Vec<PathBuf>,
@@ -27,20 +27,20 @@ pub(in super::super) struct BenchArgs {
     drop_isolated: bool,
     /// Schemes, with commas; all if not given.
     #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::scheme())]
-    schemes: Vec<Scheme>,
+    pub(super) schemes: Vec<Scheme>,
     /// Constructions, with commas; all if not given.
     #[arg(long, value_name = "HOW", value_delimiter = ',', value_parser = parse::construction())]
-    constructions: Vec<Construction>,
+    pub(super) constructions: Vec<Construction>,
     /// Ways to draw, with commas; all if not given.
     #[arg(long, value_name = "PATH", value_delimiter = ',', value_parser = parse::path())]
     pub(super) paths: Vec<Path>,
     /// Where normals come from, with commas: those that patches share cost time. For watertight schemes.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::normals())]
-    normals: Vec<Normals>,
+    pub(super) normals: Vec<Normals>,
     /// Measure each row of the tessellation stages and of instances again with patches left out that are not seen: `back`
     /// those that face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
-    cull: Vec<CullArg>,
+    pub(super) cull: Vec<CullArg>,
     /// What leaves them out, with commas: the control shader of each draw, or compute before the draws. If not given, compute for
     /// `cached`, the control shader for other constructions.
     #[arg(long, value_name = "WHAT", value_delimiter = ',', requires = "cull", value_parser = parse::cull_by())]
@@ -108,44 +108,58 @@ pub(in super::super) struct BenchArgs {
     pub(super) device: DeviceArgs,
 }
 
-/// What shared normals go with.
-pub(super) const SHARED_NORMALS: &str = "shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass";
-
 const NOTES: &str = "\
-gpu:          milliseconds of a frame on the device, with pixels: median, and median distance from it.
+gpu:          milliseconds of a frame on the device, with pixels: median, and median distance
+              from it.
 geometry:     the same without rasterization.
-x base:       the median of ratios to the first row, frame by frame, with the interval that holds it at 95 %.
-construction: control points alone: factor 1 less the bilinear floor at factor 1, without rasterization; of paths with the
-              tessellation stages, as the floor.
+x base:       the median of ratios to the first row, frame by frame, with the interval that holds
+              it at 95 %.
+construction: control points alone: factor 1 less the bilinear floor at factor 1, without
+              rasterization; of paths with the tessellation stages, as the floor.
 set-up:       tables and upload, without pipelines; the median of several.
-triangles:    before clipping; of lattices drawn as strips (on lavapipe, of quads from 14 segments on) with those that join rows, of no area.
-sure:         of --compare: that the frames of both runs differ, whatever made them. It does not know that machines drift
-              between runs; floors, which do not draw the surface, tell by how much: `faster` and `slower` are rows whose
-              interval is wholly outside of what the intervals of all floors reach (floors themselves: not around 1).
-              Measure them along, at several factors: few floors reach less far than the machine may drift.
+triangles:    before clipping; of lattices drawn as strips (on lavapipe, of quads from 14 segments
+              on) with those that join rows, of no area.
+sure:         of --compare: that the frames of both runs differ, whatever made them. It does not
+              know that machines drift between runs; floors, which do not draw the surface, tell
+              by how much: `faster` and `slower` are rows whose interval is wholly outside of what
+              the intervals of all floors reach (floors themselves: not around 1); those that
+              differ by no more are `as the machine`. Measure floors along, at several factors:
+              few reach less far than the machine may drift.
+Patches, triangles and times are of a frame: of all its instances and passes.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
-`compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one lattice for all patches, an
-instance for each, which the vertex shader evaluates; in `geometry` the geometry shader evaluates, in `geometry-two-pass` it
-makes control points for `instanced`. They go with the construction `cached`, `geometry` also with `stencil`.
-`acc-published` is ACC as first published: its evaluation shader makes the tangents, at every vertex, that `tessellation` makes
-once a patch. The same surface, with the scheme acc and the construction two-stage; `acc-published-instanced` likewise with
-`cached`, to be compared with `instanced`. --cull is for `tessellation` and `instanced`: with `cached`, compute shaders leave
-patches out before they are drawn, else the control shader does. What --cull-by has otherwise is named, as `back by compute`.
-Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of several counts of passes,
-`compute wins from` says where its time and that of tessellating in every pass cross. Of copies of a mesh (--replicate),
-`grows` says by which power of patches. `more` is more than what was measured can tell.
-`subdivision` refines faces in a geometry shader, at factors 1, 2, 4 and 8: levels 0 to 3.
-Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was evaluated before.
 
-JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period, processors}, options{size,
-instances, passes[], frames, warm_up, patches, refine}, meshes[{name, of, copies, vertices, faces, patches{kind}}],
-left_out[{setting, who, factor, why}], rows[{setting, who, factor, patches, tes_invocations, compute_invocations, triangles,
-visible_triangles, gpu_ms{median, min, max, mad}, geometry_ms{..}, setup_ms, bytes{name}, gpu_ratio{value, low, high},
-geometry_ratio{..}, construction_ms{..}, tables_ms, upload_ms, pipelines_ms, first_frame_ms, traffic_bytes{name},
-fence_ms{gpu{..}, geometry{..}}, frames_ms{gpu[], geometry[]}}], growth[{setting, who, factor, geometry{value, low, high},
-gpu{..}, bytes}], break_even[{..}], views[{..}], preset{name, title, note}, published[], changes[{setting, who, factor,
-what, old_ms, new_ms, ratio{value, low, high}, confidence, machine{low, high}}], recording[{mesh, who, crowd, models,
-prepare_ms{median, min, max, mad}, draw_ms{..}, frame_ms{..}}];
+`compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one
+lattice for all patches, an instance for each, which the vertex shader evaluates; in `geometry` the
+geometry shader evaluates, in `geometry-two-pass` it makes control points for `instanced`. They go
+with the construction `cached`, `geometry` also with `stencil`.
+`acc-published` is ACC as first published: its evaluation shader makes the tangents, at every
+vertex, that `tessellation` makes once a patch. The same surface, with the scheme acc and the
+construction two-stage; `acc-published-instanced` likewise with `cached`, to be compared with
+`instanced`.
+`subdivision` refines faces in a geometry shader, at factors 1, 2, 4 and 8: levels 0 to 3.
+Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was
+evaluated before.
+--cull is for `tessellation` and `instanced`: with `cached`, compute shaders leave patches out
+before they are drawn, else the control shader does. What --cull-by has otherwise is named, as
+`back by compute`.
+Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of
+several counts of passes, `compute wins from so many passes on` says where its time and that of
+tessellating in every pass cross. Of copies of a mesh (--replicate), `time grows as` says by which
+power of patches. `more` is more than what was measured can tell.
+Of ni2008-table5 the published figures are not at hand: it measures without them.
+
+JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period,
+processors}, options{size, instances, passes[], frames, warm_up, patches, refine}, meshes[{name,
+of, copies, vertices, faces, patches{kind}}], left_out[{setting, who, factor, why}],
+rows[{setting, who, factor, patches, tes_invocations, compute_invocations, triangles,
+visible_triangles, gpu_ms{median, min, max, mad}, geometry_ms{..}, setup_ms, bytes{name},
+gpu_ratio{value, low, high}, geometry_ratio{..}, construction_ms{..}, tables_ms, upload_ms,
+pipelines_ms, first_frame_ms, traffic_bytes{name}, fence_ms{gpu{..}, geometry{..}},
+frames_ms{gpu[], geometry[]}}], growth[{setting, who, factor, geometry{value, low, high}, gpu{..},
+bytes}], break_even[{.., geometry{value, low, high, least}, ..}], views[{..}], preset{name, title,
+note}, published[], changes[{setting, who, factor, what, old_ms, new_ms, ratio{value, low, high},
+confidence, machine{low, high}}], recording[{mesh, who, crowd, models, prepare_ms{median, min,
+max, mad}, draw_ms{..}, frame_ms{..}}];
 setting: mesh, spacing, motion, view, passes; who: scheme, construction, path, normals, cull.
 
 Examples:
@@ -186,21 +200,6 @@ impl BenchArgs {
         all.into_iter().flat_map(|contestant| contestant.variants(&normals, &culls, &cull_by)).collect()
     }
 
-    /// Notes on what is asked for and none of the contestants has.
-    pub(super) fn in_vain(&self, contestants: &[Contestant]) -> Vec<String> {
-        let mut notes = Vec::new();
-        if !self.cull.is_empty() && contestants.iter().all(|contestant| contestant.cull == Cull::NONE) {
-            notes.push(
-                "--cull changes nothing here: it is for the paths tessellation and, by compute, instanced".into(),
-            );
-        }
-        let shared = &Normals::Shared;
-        if self.normals.contains(shared) && contestants.iter().all(|contestant| contestant.normals != *shared) {
-            notes.push(format!("--normals shared changes nothing here: {SHARED_NORMALS}"));
-        }
-        notes
-    }
-
     pub(super) fn factors(&self) -> Vec<f32> {
         let given = if self.factors.is_empty() {
             self.preset.map_or(&[4.0, 8.0, 16.0, 32.0][..], |p| p.factors)
@@ -213,35 +212,49 @@ impl BenchArgs {
         factors
     }
 
-    /// What is drawn, and what is told of it.
-    pub(super) fn subjects(&self, patches: Subset) -> Result<(Vec<Subject>, Vec<MeshOut>), CliError> {
+    /// What is drawn.
+    pub(super) fn meshes(&self, patches: Subset) -> Result<Meshes, CliError> {
         let options = ReadOptions { drop_isolated: self.drop_isolated, ..ReadOptions::default() };
-        let mut meshes: Vec<(String, ControlMesh)> = Vec::new();
-        for path in &self.mesh {
+        let mut originals: Vec<(String, ControlMesh)> = Vec::new();
+        for path in unique(&self.mesh, |path| path) {
             // Without its folder, where that is enough.
             let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
-            let alone = self.mesh.iter().filter(|other| name(other) == name(path)).count() == 1;
+            let alone = self.mesh.iter().all(|other| other == path || name(other) != name(path));
             let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
-            meshes.push((name, read(path, &options)?));
+            originals.push((name, read(path, &options)?));
         }
         let creature = ["creature".to_owned()];
-        for name in if self.mesh.is_empty() && self.shape.is_empty() { &creature } else { &self.shape[..] } {
-            meshes.push((name.clone(), shape(name)?));
+        let shapes = if self.mesh.is_empty() && self.shape.is_empty() { &creature } else { &self.shape[..] };
+        for name in unique(shapes, |name| name) {
+            originals.push((name.clone(), shape(name)?));
         }
-        let (mut subjects, mut told) = (Vec::new(), Vec::new());
-        for (of, mesh) in meshes {
+        let mut subjects = Vec::new();
+        for (of, mesh) in &originals {
             for copies in unique(&self.replicate, |&copies| copies) {
                 let (name, mesh) = match copies {
                     1 => (of.clone(), mesh.clone()),
-                    _ => (format!("{of} x{copies}"), replicate(&mesh, lattice(copies), 1.25)?),
+                    _ => {
+                        let name = format!("{of} x{copies}");
+                        let copied = replicate(mesh, lattice(copies), 1.25);
+                        let copied = copied.map_err(|error| CliError::Work(format!("{name}: {error}")))?;
+                        (name, copied)
+                    }
                 };
                 let subject = Subject::new(&name, mesh, self.refine, patches)?;
-                told.push(MeshOut::new(&subject, &of, copies));
-                subjects.push(subject);
+                let told = MeshOut::new(&subject, of, copies);
+                subjects.push((subject, told));
             }
         }
-        Ok((subjects, told))
+        Ok(Meshes { originals, subjects })
     }
+}
+
+/// The meshes that are drawn.
+pub(super) struct Meshes {
+    /// By name, before any copies are made.
+    pub originals: Vec<(String, ControlMesh)>,
+    /// With what is told of each.
+    pub subjects: Vec<(Subject, MeshOut)>,
 }
 
 /// So many copies as a block that is as near to a cube as the count allows.

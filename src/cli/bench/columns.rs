@@ -2,7 +2,7 @@
 
 use super::super::error::CliError;
 use super::recorded::Recorded;
-use super::results::{Interval, Results, Row};
+use super::results::{GPU, Interval, Results, Row};
 use std::io::Write;
 
 type Columns<T> = [(&'static str, fn(&T) -> String)];
@@ -27,14 +27,23 @@ const OF_ROWS: &Columns<Row> = &[
     ("gpu_ms_median", |row| row.gpu_ms.median.to_string()),
     ("gpu_ms_min", |row| row.gpu_ms.min.to_string()),
     ("gpu_ms_max", |row| row.gpu_ms.max.to_string()),
+    ("gpu_ms_mad", |row| row.gpu_ms.mad.to_string()),
     ("geometry_ms_median", |row| row.geometry_ms.median.to_string()),
     ("geometry_ms_min", |row| row.geometry_ms.min.to_string()),
     ("geometry_ms_max", |row| row.geometry_ms.max.to_string()),
+    ("geometry_ms_mad", |row| row.geometry_ms.mad.to_string()),
     ("setup_ms", |row| row.setup_ms.to_string()),
     ("bytes", |row| row.total_bytes().to_string()),
-    ("gpu_ratio", |row| value(row.gpu_ratio)),
-    ("geometry_ratio", |row| value(row.geometry_ratio)),
-    ("construction_ms", |row| value(row.construction_ms)),
+    ("gpu_ratio", |row| of(row.gpu_ratio, |i| i.value)),
+    ("gpu_ratio_low", |row| of(row.gpu_ratio, |i| i.low)),
+    ("gpu_ratio_high", |row| of(row.gpu_ratio, |i| i.high)),
+    ("geometry_ratio", |row| of(row.geometry_ratio, |i| i.value)),
+    ("geometry_ratio_low", |row| of(row.geometry_ratio, |i| i.low)),
+    ("geometry_ratio_high", |row| of(row.geometry_ratio, |i| i.high)),
+    ("construction_ms", |row| of(row.construction_ms, |i| i.value)),
+    ("fence_ms_median", |row| row.fence_ms.get(GPU).map_or_else(String::new, |times| times.median.to_string())),
+    ("tables_ms", |row| row.tables_ms.to_string()),
+    ("upload_ms", |row| row.upload_ms.to_string()),
     ("first_use_ms", |row| row.first_use_ms().to_string()),
     ("traffic_bytes", |row| row.traffic_total().to_string()),
 ];
@@ -59,8 +68,8 @@ fn count(count: Option<u64>) -> String {
     count.map(|n| n.to_string()).unwrap_or_default()
 }
 
-fn value(interval: Option<Interval>) -> String {
-    interval.map(|i| i.value.to_string()).unwrap_or_default()
+fn of(interval: Option<Interval>, number: fn(Interval) -> f64) -> String {
+    interval.map(|interval| number(interval).to_string()).unwrap_or_default()
 }
 
 /// A line for each row, or for each recording if that was measured.

@@ -47,13 +47,14 @@ impl Range {
 }
 
 impl Change {
-    /// Faster or slower, if that is sure enough and more than the machine did.
+    /// Faster or slower, if that is sure enough and more than the machine did; that it is no more, if it is sure that there is a
+    /// difference.
     pub(super) fn verdict(&self) -> &'static str {
         match self.ratio {
             _ if self.confidence < CONFIDENCE => "the same",
             Interval { high, .. } if high < self.machine.low => "faster",
             Interval { low, .. } if low > self.machine.high => "slower",
-            _ => "the same",
+            _ => "as the machine",
         }
     }
 }
@@ -90,6 +91,12 @@ pub(super) fn check(old: &Results, options: &OptionsOut, meshes: &[MeshOut]) -> 
     Ok(())
 }
 
+pub(super) fn nothing_in_common() -> CliError {
+    let what =
+        "the results to compare with have no row in common with these: measure the same meshes, paths and factors";
+    CliError::Work(what.into())
+}
+
 /// The rows that both have.
 ///
 /// Results that were measured otherwise are an error; on another device, or without floors, there is a note.
@@ -107,8 +114,7 @@ pub(super) fn changes(old: &Results, new: &Results) -> Result<Vec<Change>, CliEr
         );
     }
     if changes.is_empty() {
-        let what = "the results to compare with have no row in common with these: measure the same meshes and factors";
-        return Err(CliError::Work(what.into()));
+        return Err(nothing_in_common());
     }
     if !changes.iter().any(|change| change.who.is_floor()) {
         note(

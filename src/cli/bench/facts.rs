@@ -4,6 +4,7 @@ use super::results::{Setting, Who};
 use super::unique;
 use ash_subdiv::bench::{BenchError, BenchOptions, Contestant, Subject, Subset};
 use ash_subdiv::gpu::{DeviceProperties, version_text};
+use ash_subdiv::renderer::Error;
 use ash_subdiv::topology::PatchKind;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -135,8 +136,27 @@ impl LeftOut {
             setting: Setting::new(subject, options, options.cameras[0]),
             who: Who::new(contestant),
             factor,
-            why: why.to_string(),
+            why: reason(why),
         }
+    }
+}
+
+/// In the program's words, where they are not the library's.
+fn reason(why: &BenchError) -> String {
+    match why {
+        BenchError::Renderer(Error::NotEvaluatedBy { what, .. }) => {
+            format!("it does not go with {what}: do without, or choose the path tessellation")
+        }
+        BenchError::Renderer(Error::NoSuchLevel { .. }) => {
+            "subdivision has the factors 1, 2, 4 and 8, for levels 0 to 3".into()
+        }
+        BenchError::Renderer(Error::TableTooLarge { table, bytes, max, .. }) => {
+            let table = table.replace('_', " ");
+            format!(
+                "{table} take {bytes} bytes, but a shader can see {max} at once on this device: draw a smaller mesh"
+            )
+        }
+        _ => why.to_string(),
     }
 }
 

@@ -44,18 +44,25 @@ pub(super) struct Bounds {
     pub value: Option<f64>,
     pub low: Option<f64>,
     pub high: Option<f64>,
+    /// The least that what was measured can tell, if it is not the least there is: a number that is no more may be less.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least: Option<f64>,
 }
 
 impl fmt::Display for Bounds {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = |x: Option<f64>| x.map_or("more".to_owned(), |x| format!("{x:.2}"));
+        let number = |x: Option<f64>| match x {
+            None => "more".to_owned(),
+            Some(x) if self.least.is_some_and(|least| x <= least) => format!("{x} or fewer"),
+            Some(x) => format!("{x:.2}"),
+        };
         write!(f, "{} ({} to {})", number(self.value), number(self.low), number(self.high))
     }
 }
 
 impl From<Interval> for Bounds {
     fn from(Interval { value, low, high }: Interval) -> Self {
-        Self { value: Some(value), low: Some(low), high: Some(high) }
+        Self { value: Some(value), low: Some(low), high: Some(high), least: None }
     }
 }
 
@@ -157,7 +164,8 @@ fn break_even(setting: &Setting, rows: &[&Row], all: &[Row]) -> Option<Finding> 
             Some((f64::from(row.setting.passes), more))
         };
         let [value, low, high] = below_zero_from(&pairs.iter().map(point).collect::<Option<Vec<_>>>()?);
-        Some(Bounds { value, low, high })
+        let fewest = f64::from(pairs.first()?.0.setting.passes);
+        Some(Bounds { value, low, high, least: Some(fewest).filter(|&fewest| fewest > 1.0) })
     };
     // One count says nothing of others.
     pairs.get(1)?;

@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args` | what is asked for |
+//! | `args`, `together` | what is asked for, and what of it goes together |
 //! | `results`, `facts` | what was measured, and on what, as it is written and read |
 //! | `columns` | the same as comma-separated values |
 //! | `findings` | what rows say together |
@@ -22,36 +22,37 @@ mod recorded;
 mod report;
 mod results;
 mod text;
+mod together;
 
 use super::error::CliError;
 use super::output::{self, Progress, note};
 use super::parse;
 pub(super) use args::BenchArgs;
-use args::SHARED_NORMALS;
-use ash_subdiv::bench::{Bench, BenchError, BenchOptions, Contestant, Event, Path, Subject};
+use args::Meshes;
+use ash_subdiv::bench::{Bench, BenchError, BenchOptions, Contestant, Event, Subject};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::measure::{ErrorOptions, surface_errors};
-use ash_subdiv::{Scheme, Spacing};
+use ash_subdiv::{ControlMesh, Scheme, Spacing};
 use facts::{DeviceOut, LeftOut, OptionsOut};
 use findings::Findings;
-use results::{Results, Row};
+use results::{Results, Row, Who};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 pub(super) fn run(args: &BenchArgs, json: bool) -> Result<(), CliError> {
     let old = args.compare.as_deref().map(Results::read).transpose()?;
-    args.report.as_deref().map_or(Ok(()), report::prepare)?;
     let mut results = match &args.results {
         Some(path) => Results::read(path)?,
         None => args.measure(old.as_ref(), !json && !args.csv)?,
     };
     if let Some(preset) = args.preset {
-        results.published = preset.beside(&results.rows);
+        results.published = preset.beside(&results);
         results.preset = Some(preset.about(&results.published));
     }
     results.findings = Findings::of(&results.rows, &results.meshes);
     results.changes = old.map(|old| compare::changes(&old, &results)).transpose()?;
     if let Some(folder) = &args.report {
-        report::write(folder, &results)?;
+        args.prepare_report(folder)?.write(&results)?;
     }
     if json {
         return output::json_pretty(&results);
@@ -71,14 +72,18 @@ pub(super) fn run(args: &BenchArgs, json: bool) -> Result<(), CliError> {
 impl BenchArgs {
     /// Measures what can be set beside `old`; prints tables as they come if `show`.
     fn measure(&self, old: Option<&Results>, show: bool) -> Result<Results, CliError> {
-        let progress = Progress::new("reading meshes");
-        let patches = self.patches.or(self.preset.map(|p| p.patches)).unwrap_or_default();
-        let (subjects, meshes) = self.subjects(patches)?;
-        drop(progress);
         let contestants = self.contestants();
         if contestants.is_empty() {
             return Err(self.no_contestants());
         }
+        if self.recording.is_some() && !contestants.iter().any(|contestant| contestant.path.is_recorded()) {
+            return Err(CliError::Usage(recorded::none()));
+        }
+        let progress = Progress::new("reading meshes");
+        let patches = self.patches.or(self.preset.map(|p| p.patches)).unwrap_or_default();
+        let Meshes { originals, subjects } = self.meshes(patches)?;
+        drop(progress);
+        let (subjects, meshes): (Vec<_>, Vec<_>) = subjects.into_iter().unzip();
         self.in_vain(&contestants).iter().for_each(note);
         let options = BenchOptions {
             factors: self.factors(),
@@ -90,18 +95,36 @@ impl BenchArgs {
             ..BenchOptions::default()
         };
         let about = OptionsOut::new(&options, unique(&self.passes, |&passes| passes), patches, self.refine);
-        old.map_or(Ok(()), |old| compare::check(old, &about, &meshes))?;
+        let races = self.races(&options);
+        if let Some(old) = old {
+            compare::check(old, &about, &meshes)?;
+            let is_raced = |row: &Row| {
+                meshes.iter().any(|mesh| mesh.name == row.setting.mesh)
+                    && races.iter().any(|race| row.setting.is_of(race))
+                    && options.factors.contains(&row.factor)
+                    && contestants.iter().any(|&contestant| row.who == Who::new(contestant))
+            };
+            if !old.rows.iter().any(is_raced) {
+                return Err(compare::nothing_in_common());
+            }
+        }
+        let report = self.report.as_deref();
+        report.map_or(Ok(()), |folder| self.prepare_report(folder).map(drop))?;
         let mut results = self.device.run(|headless| {
             let mut results = Results::new(DeviceOut::new(headless.properties()), about, meshes);
-            if self.report.is_some() {
+            if report.is_some() {
                 for (subject, mesh) in subjects.iter().zip(&mut results.meshes) {
                     mesh.thumbnail = Some(report::thumbnail(headless, subject)?);
-                    mesh.normal_error = normal_errors(subject)?;
                 }
             }
             match self.recording {
                 Some(models) => recorded::record(headless, &subjects, &contestants, &options, models, &mut results)?,
-                None => self.race(headless, &subjects, &contestants, &options, show, &mut results)?,
+                None => {
+                    if report.is_some() {
+                        self.find_normal_errors(&originals, &contestants, &mut results)?;
+                    }
+                    self.race(headless, &subjects, &contestants, &races, show, &mut results)?;
+                }
             }
             Ok(results)
         })?;
@@ -112,18 +135,39 @@ impl BenchArgs {
         Ok(results)
     }
 
-    /// That what is asked for does not go together, and what does.
-    fn no_contestants(&self) -> CliError {
-        let rule = |path: &Path| {
-            let schemes = Some(path.schemes()).filter(|&schemes| schemes != Scheme::ALL).unwrap_or_default();
-            let constructions = path.constructions().iter().map(|construction| construction.name());
-            let names: Vec<_> = schemes.iter().map(|scheme| scheme.name()).chain(constructions).collect();
-            (!names.is_empty()).then(|| format!("{} goes with {}", path.name(), names.join(" and ")))
-        };
-        let mut rules: Vec<String> = self.paths.iter().filter_map(rule).collect();
-        rules.push(SHARED_NORMALS.into());
-        let message = "none of --paths, --constructions, --schemes and --normals go together";
-        CliError::Usage(format!("{message}: {}", rules.join("; ")))
+    /// Makes sure that the report can be written, and that it takes the place of nothing else.
+    fn prepare_report<'f>(&self, folder: &'f Path) -> Result<report::Folder<'f>, CliError> {
+        report::Folder::prepare(folder, self.compare.as_deref())
+    }
+
+    /// How far the normals of the schemes that are raced are from the limit surface's. Copies of a mesh are as far.
+    fn find_normal_errors(
+        &self,
+        originals: &[(String, ControlMesh)],
+        contestants: &[Contestant],
+        results: &mut Results,
+    ) -> Result<(), CliError> {
+        let schemes = unique(contestants, |contestant| contestant.patches.map(|(scheme, _)| scheme));
+        let schemes: Vec<Scheme> = schemes.into_iter().flatten().collect();
+        let _progress = Progress::new("comparing with the limit surface");
+        for (of, mesh) in originals {
+            let errors = normal_errors(mesh, &schemes, self.refine)?;
+            results.meshes.iter_mut().filter(|mesh| mesh.of == *of).for_each(|mesh| mesh.normal_error = errors.clone());
+        }
+        Ok(())
+    }
+
+    /// In what contestants are raced, one after the other.
+    fn races(&self, options: &BenchOptions) -> Vec<BenchOptions> {
+        let spacings: Vec<Spacing> = parse::spacings().filter(|spacing| self.spacing.contains(spacing)).collect();
+        let mut races = Vec::new();
+        for motion in unique(&self.motion, |&motion| motion) {
+            for passes in unique(&self.passes, |&passes| passes) {
+                let race = |&spacing| BenchOptions { motion, passes, spacing, ..options.clone() };
+                races.extend(spacings.iter().map(race));
+            }
+        }
+        races
     }
 
     fn race(
@@ -131,23 +175,15 @@ impl BenchArgs {
         headless: &Headless,
         subjects: &[Subject],
         contestants: &[Contestant],
-        options: &BenchOptions,
+        races: &[BenchOptions],
         show: bool,
         results: &mut Results,
     ) -> Result<(), CliError> {
-        let spacings: Vec<Spacing> = parse::spacings().filter(|spacing| self.spacing.contains(spacing)).collect();
-        let options_of = |motion, passes, spacing| BenchOptions { motion, passes, spacing, ..options.clone() };
-        let mut races: Vec<BenchOptions> = Vec::new();
-        for motion in unique(&self.motion, |&motion| motion) {
-            for passes in unique(&self.passes, |&passes| passes) {
-                races.extend(spacings.iter().map(|&spacing| options_of(motion, passes, spacing)));
-            }
-        }
         let frames = races.iter().map(|options| Ok(Bench::new(headless, options.clone())?.frames(contestants.len())));
         let frames = frames.sum::<Result<u64, BenchError>>()?;
         let progress = Progress::bar("drawing", frames * subjects.len() as u64);
         for subject in subjects {
-            for options in &races {
+            for options in races {
                 let (mut printed, mut told) = (Ok(()), results.left_out.len());
                 Bench::new(headless, options.clone())?.race(subject, contestants, |event| match event {
                     Event::Frames(frames) => progress.advance(frames),
@@ -183,9 +219,9 @@ fn unique<'a, A, T: PartialEq>(all: &'a [A], of: impl Fn(&'a A) -> T) -> Vec<T> 
 }
 
 /// How far the normals of each scheme are from the limit surface's, where it has patches.
-fn normal_errors(subject: &Subject) -> Result<BTreeMap<String, f64>, CliError> {
-    let options = ErrorOptions { refine: subject.refine, samples: 9, nearest: 0, ..ErrorOptions::default() };
-    let report = surface_errors(&subject.mesh, &Scheme::ALL, &options)?;
+fn normal_errors(mesh: &ControlMesh, schemes: &[Scheme], refine: u32) -> Result<BTreeMap<String, f64>, CliError> {
+    let options = ErrorOptions { refine, samples: 9, nearest: 0, ..ErrorOptions::default() };
+    let report = surface_errors(mesh, schemes, &options)?;
     let measured = report.schemes.into_iter().filter_map(|(scheme, errors)| Some((scheme, errors.ok()?)));
     Ok(measured.map(|(scheme, errors)| (scheme.name().to_owned(), errors.all.normal.rms)).collect())
 }

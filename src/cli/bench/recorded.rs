@@ -4,7 +4,7 @@ use super::super::error::CliError;
 use super::super::output::Progress;
 use super::facts::LeftOut;
 use super::results::{Results, Times, Who};
-use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Recording, Subject};
+use ash_subdiv::bench::{Bench, BenchOptions, Contestant, Path, Recording, Subject};
 use ash_subdiv::headless::Headless;
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +37,12 @@ impl Recorded {
             frame_ms: Times::of(&frame)?,
         })
     }
+}
+
+/// That nothing of what is asked for can be recorded.
+pub(super) fn none() -> String {
+    let paths: Vec<_> = Path::ALL.into_iter().filter(|path| path.is_recorded()).map(Path::name).collect();
+    format!("none of --paths is recorded by the renderer alone: name one of {}", paths.join(", "))
 }
 
 /// Records every contestant that the renderer records alone.

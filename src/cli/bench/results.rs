@@ -148,8 +148,43 @@ impl Results {
     /// Reads what was written as JSON.
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
         let named = |message: String| CliError::Work(format!("{}: {message}", path.display()));
-        let text = std::fs::read_to_string(path).map_err(|e| named(e.to_string()))?;
-        serde_json::from_str(&text).map_err(|e| named(format!("not what `subdiv bench --json` writes: {e}")))
+        let text = std::fs::read_to_string(path).map_err(|e| named(unread(&e)))?;
+        let not_ours = |why: String| named(format!("not what `subdiv bench --json` writes: {why}"));
+        let results: Self = serde_json::from_str(&text).map_err(|e| not_ours(e.to_string()))?;
+        results.check().map_err(not_ours)?;
+        Ok(results)
+    }
+
+    /// That there is something, and that times are such.
+    fn check(&self) -> Result<(), String> {
+        if self.rows.is_empty() && self.recording.is_empty() {
+            return Err("it has no rows".into());
+        }
+        let is_time = |ms: &f64| *ms > 0.0 && ms.is_finite();
+        for (number, row) in self.rows.iter().enumerate() {
+            let wrong = |what: &str| Err(format!("row {} ({}): {what}", number + 1, row.who.label()));
+            if !(row.factor >= 1.0 && row.factor.is_finite()) {
+                return wrong("its factor is not from 1 up");
+            }
+            let times = [row.gpu_ms, row.geometry_ms].into_iter().flat_map(|t| [t.median, t.min, t.max]);
+            let frames = || [GPU, GEOMETRY].into_iter().map(|what| row.frames(what));
+            if frames().any(<[f64]>::is_empty) {
+                return wrong("it has no frames");
+            }
+            if !times.chain(frames().flatten().copied()).all(|ms| is_time(&ms)) {
+                return wrong("a time of it is not above 0");
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why a file could not be read.
+fn unread(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".into(),
+        std::io::ErrorKind::IsADirectory => "this is a folder: name a file".into(),
+        _ => error.to_string(),
     }
 }
 
@@ -167,6 +202,19 @@ impl Setting {
             view: camera.name().to_owned(),
             passes: options.passes,
         }
+    }
+
+    /// Whether this is one of the settings of such a race.
+    pub(super) fn is_of(&self, race: &BenchOptions) -> bool {
+        self.spacing == parse::spacing_name(race.spacing)
+            && self.motion == race.motion.name()
+            && race.cameras.iter().any(|camera| self.view == camera.name())
+            && self.passes == race.passes
+    }
+
+    /// Whether it is what a user gets who asks for nothing else: what does not depend on the mesh and the spacing.
+    pub(super) fn is_usual(&self) -> bool {
+        self.motion == Motion::Moving.name() && self.view == Camera::Fit.name() && self.passes == 1
     }
 
     /// The spacing, and what is not as always.

@@ -8,7 +8,7 @@ use super::super::evaluation::EvaluationArgs;
 use super::super::parse::{self, Colour};
 use super::super::shading::Shading;
 use super::super::source::{DeviceArgs, MeshArgs};
-use ash_subdiv::renderer::{Cull, Factor};
+use ash_subdiv::renderer::{Cull, Evaluation, Factor};
 use ash_subdiv::{Construction, Spacing};
 use clap::Args;
 use std::path::PathBuf;
@@ -16,8 +16,8 @@ use std::path::PathBuf;
 /// How finely patches are cut, and which are left out.
 #[derive(Debug, Args)]
 pub(super) struct FactorArgs {
-    /// The tessellation factor of every patch, from 1 to 64.
-    #[arg(long, default_value_t = 8.0, value_parser = parse::factor)]
+    /// The tessellation factor of every patch, from 1 to 64; without the tessellation stages (--evaluation) to 1024.
+    #[arg(long, default_value_t = 8.0, value_parser = parse::segments)]
     pub(super) factor: f32,
     /// Factors such that segments are about this many pixels long, instead of one for all.
     #[arg(long, value_parser = parse::positive, conflicts_with_all = ["factor", "bend"])]
@@ -57,7 +57,7 @@ impl FactorArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub(in super::super) struct RenderArgs {
     #[command(flatten)]
     pub(super) mesh: MeshArgs,
@@ -114,6 +114,13 @@ Examples:
 impl RenderArgs {
     /// How control points are made; an error if the evaluation does not go with what was asked for.
     pub(super) fn construction(&self) -> Result<Construction, CliError> {
+        let factor = self.factor.factor;
+        if factor > parse::MAX_FACTOR && self.evaluation.evaluation == Evaluation::Tessellation {
+            return Err(CliError::Usage(format!(
+                "--factor {factor}: the tessellation stages take at most {}: choose another --evaluation for more",
+                parse::MAX_FACTOR
+            )));
+        }
         let tessellated = [
             ("--pixels", self.factor.pixels.is_some()),
             ("--bend", self.factor.bend.is_some()),

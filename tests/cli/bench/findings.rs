@@ -54,6 +54,12 @@ fn bench_finds_from_how_many_passes_on_compute_wins() {
     assert!(found.iter().all(|f| f["passes"] == 0) && text.contains("\ncube, equal spacing  "), "{text}");
     assert!(text.contains("\ncompute wins from so many passes on ") && text.contains("more (more to more)"), "{text}");
     assert_eq!(results["options"]["passes"], json!([1, 2, 4]));
+    // The first count is not the first pass: it may be fewer.
+    let later = few.replace("1,2,4", "2,4");
+    let (results, text) = self::found("bench-later-passes", &format!("{later} tessellation,compute"), times);
+    let always = &results["break_even"].as_array().unwrap().iter().find(|f| f["factor"] == 4.0).unwrap()["geometry"];
+    assert_eq!(*always, json!({ "value": 2.0, "low": 2.0, "high": 2.0, "least": 2.0 }));
+    assert!(text.contains("  2 or fewer (2 or fewer to 2 or fewer)"), "{text}");
     // One count says nothing of others.
     let one = json(&format!("bench {SMALL} --shape cube --factors 1 --schemes gregory --paths tessellation,compute"));
     assert_eq!(one.get("break_even"), None);
@@ -119,12 +125,12 @@ fn bench_tells_what_changed_by_more_than_the_machine_did() {
     };
     let twice = |verdicts: [&str; 3]| verdicts.map(|verdict| format!("{verdict}, {verdict}")).join(", ");
     // The machine became slower, and so is all; but only what is above or below all floors has changed.
-    assert_eq!(verdict(all(1.5, 1.6, 1.4)), twice(["the same", "slower", "slower"]));
+    assert_eq!(verdict(all(1.5, 1.6, 1.4)), twice(["as the machine", "slower", "slower"]));
     assert_eq!(verdict(all(1.5, 1.3, 1.2)), twice(["slower"; 3]));
-    assert_eq!(verdict(all(0.8, 0.7, 1.3)), twice(["the same", "faster", "slower"]));
+    assert_eq!(verdict(all(0.8, 0.7, 1.3)), twice(["as the machine", "faster", "slower"]));
     assert_eq!(verdict(all(0.5, 0.7, 1.3)), twice(["faster", "faster", "slower"]));
     // One is always among what the machine may have done.
-    assert_eq!(verdict(all(1.02, 1.1, 1.1)), twice(["the same", "slower", "slower"]));
+    assert_eq!(verdict(all(1.02, 1.1, 1.1)), twice(["as the machine", "slower", "slower"]));
     assert_eq!(verdict(all(0.9, 1.1, 1.1)), twice(["faster", "slower", "slower"]));
     assert_eq!(verdict(all(1.0, 1.0, 1.0)), twice(["the same"; 3]));
 
@@ -174,12 +180,17 @@ fn bench_compares_what_can_be_compared_and_says_so_before_it_measures() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.starts_with("note: the results to compare with are of another device: "), "{told}");
     assert!(told.contains(", not another, ") && output.status.success(), "{told}");
+    let nothing =
+        "the results to compare with have no row in common with these: measure the same meshes, paths and factors";
     let (other, _) = measured(&folder("bench-factors"), "--shape torus --factors 3 --paths bilinear");
-    fails(
-        &format!("bench --results {} --compare {}", other.display(), old.display()),
-        1,
-        "the results to compare with have no row in common with these: measure the same meshes and factors",
-    );
+    fails(&format!("bench --results {} --compare {}", other.display(), old.display()), 1, nothing);
+    for other in [
+        "--factors 3 --paths bilinear",
+        "--factors 2 --paths tessellation",
+        "--factors 2 --paths bilinear --view clipped",
+    ] {
+        fails(&format!("bench {SMALL} --shape torus {other} --compare {}", old.display()), 1, nothing);
+    }
 }
 
 #[test]
@@ -220,8 +231,19 @@ fn presets_set_published_figures_beside() {
     let text = run(&format!("{few} --factors 2 --report {}", report.display()));
     let text = String::from_utf8(text.stdout).unwrap();
     let page = fs::read_to_string(report.join("index.html")).unwrap();
-    let told = "Measured: geometry alone. None of the figures is of what was measured: they are of factors 10, 6, tessellation.";
+    let told = "Measured: geometry alone. None of the figures is of what was measured: they are of factors 10, 6, tessellation, irregular patches of one model, moving vertices, all in the picture, one pass.";
     for written in [text, page] {
         assert!(written.contains("Loop, Schaefer, Ni, Castaño 2009, table 1") && written.contains(told), "{written}");
     }
+    // Nor do they stand beside what was drawn otherwise.
+    for otherwise in ["--patches all", "--instances 2", "--passes 2", "--view clipped", "--motion still"] {
+        let results = json(&format!("{few} --factors 6 --schemes gregory {otherwise}"));
+        assert_eq!(results.get("published"), None, "{otherwise}");
+    }
+    // Of grids that were instanced.
+    let instanced = json(&format!(
+        "bench {SMALL} --shape cube --preset loop2009-table2 --paths instanced --factors 16 --schemes acc"
+    ));
+    let lines = instanced["published"].as_array().unwrap();
+    assert_eq!((lines.len(), &lines[0]["figure"], &lines[1]["figure"]), (2, &json!(365.0), &json!(348.0)));
 }

@@ -104,6 +104,10 @@ fn bench_writes_tables_and_csv() {
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
     assert_eq!((lines.len(), lines[0][..3].join(" ")), (9, "mesh scheme construction".into()));
     assert_eq!((lines[5][0], lines[5][11]), ("cube x4", "24"));
+    for name in ["gpu_ms_mad", "gpu_ratio_low", "geometry_ratio_high", "fence_ms_median", "upload_ms"] {
+        let column = lines[0].iter().position(|other| *other == name).unwrap();
+        assert!(lines[1..].iter().all(|line| line[column].parse::<f64>().is_ok()), "{name}: {csv}");
+    }
     let text = run(&format!("bench {SMALL} {few} --replicate 1,4 --motion moving,still"));
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(text.contains("\ncube x4: 24 patches, factor 2, equal spacing, still vertices\n"), "{text}");
@@ -231,6 +235,26 @@ fn bench_says_what_is_left_out_once() {
             "note: tetrahedron: acc stencil tessellation, acc cached tessellation, acc cached compute and 1 more are left out: {why}\n"
         )
     );
+    // What does not go together is told where it is asked for, and only there.
+    assert_eq!(
+        told(
+            "--shape cube --paths tessellation,compute,acc-published --constructions two-stage --schemes gregory,gregory"
+        ),
+        "note: compute goes with cached: it is left out\nnote: acc-published goes with acc and two-stage: it is left out\n"
+    );
+    assert_eq!(
+        told("--shape cube --paths acc-published --schemes acc,pm --constructions two-stage,stencil"),
+        "note: pm is left out: none of --paths goes with it\nnote: stencil is left out: none of --paths goes with it\n"
+    );
+    assert_eq!(
+        told("--shape cube --paths tessellation,instanced --schemes acc --cull back --cull-by control"),
+        "note: --cull changes nothing of instanced: it is for the paths tessellation and, by compute, instanced\n"
+    );
+    assert_eq!(told("--shape cube --constructions two-stage --schemes gregory"), "");
+    assert_eq!(
+        told("--shape cube --paths tessellation,instanced --schemes acc --spacing odd"),
+        "note: cube: acc cached instanced is left out: it does not go with fractional spacing: do without, or choose the path tessellation\n"
+    );
     // What is asked for in vain.
     assert_eq!(
         told("--shape cube --paths instanced --constructions cached --cull back --cull-by control"),
@@ -270,7 +294,7 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths compute,geometry --constructions two-stage",
         2,
-        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached; geometry goes with stencil and cached; shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass",
+        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached; geometry goes with stencil and cached",
     );
     fails(
         "bench --paths acc-published,subdivision --schemes gregory --normals shared",
@@ -279,12 +303,38 @@ fn bench_says_what_is_wrong() {
     );
     fails("bench --view far", 2, "invalid value 'far' for '--view <WHERE>' [possible values: fit, clipped]");
     fails("bench --passes 1,0", 2, "invalid value '0' for '--passes <N>': 0 is not in 1..=64");
-    fails("bench --compare no.json", 1, "no.json: No such file or directory (os error 2)");
+    fails("bench --compare no.json", 1, "no.json: there is no such file");
+    fails("bench --compare .", 1, ".: this is a folder: name a file");
+    fails("bench --factors -1", 2, "invalid value '-1' for '--factors <FACTOR>': it must be a number from 1 to 64");
+    fails(
+        "bench --recording 3 --paths bilinear",
+        2,
+        "none of --paths is recorded by the renderer alone: name one of tessellation, compute, instanced, geometry, geometry-two-pass, subdivision",
+    );
+    fails(
+        "bench --shape cube --replicate 1000000000",
+        2,
+        "invalid value '1000000000' for '--replicate <N>': 1000000000 is not in 1..=1000000",
+    );
     let results = folder("bench-bad").join("bad.json");
     fs::write(&results, "{}").unwrap();
     let name = results.display();
     let message = format!("{name}: not what `subdiv bench --json` writes: missing field `program` at line 1 column 2");
     fails(&format!("bench --results {name}"), 1, &message);
+    // Results with something wrong in them.
+    let (_, good) = measured(&folder("bench-good"), "--shape cube,cube --factors 2 --paths bilinear");
+    assert_eq!((length(&good["meshes"]), length(&good["rows"])), (1, 1));
+    let wrong = |change: fn(&mut Value), why: &str| {
+        let mut bad = good.clone();
+        change(&mut bad);
+        fs::write(&results, bad.to_string()).unwrap();
+        fails(&format!("bench --results {name}"), 1, &format!("{name}: not what `subdiv bench --json` writes: {why}"));
+    };
+    wrong(|bad| bad["rows"] = json!([]), "it has no rows");
+    wrong(|bad| bad["rows"][0]["gpu_ms"]["min"] = json!(0.0), "row 1 (bilinear): a time of it is not above 0");
+    wrong(|bad| bad["rows"][0]["frames_ms"]["gpu"][1] = json!(-1.0), "row 1 (bilinear): a time of it is not above 0");
+    wrong(|bad| bad["rows"][0]["frames_ms"] = json!({}), "row 1 (bilinear): it has no frames");
+    wrong(|bad| bad["rows"][0]["factor"] = json!(-2.0), "row 1 (bilinear): its factor is not from 1 up");
     let output = run("bench --shape tetrahedron --schemes acc --paths tessellation");
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(stderr.ends_with("error: nothing could be measured: face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as fallback\n"), "{stderr}");

@@ -78,7 +78,7 @@ fn reports_are_written_whole_or_not_at_all() {
     let output = run(&format!("{few} {}", file.display()));
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(output.stdout.is_empty() && !output.status.success());
-    assert!(told.starts_with(&format!("error: {}: ", file.join("results.json").display())), "{told}");
+    assert_eq!(told, format!("error: {}: this is no folder: name one for the report\n", file.display()));
     assert!(!page.exists());
     let taken = folder.join("taken");
     fs::create_dir_all(taken.join("index.html")).unwrap();
@@ -88,11 +88,24 @@ fn reports_are_written_whole_or_not_at_all() {
         &format!("{}: this is a folder: name a file", taken.join("index.html").display()),
     );
     assert_eq!(fs::read_dir(&taken).unwrap().count(), 1);
-    let made = folder.join("new").join("made");
+    // Nothing is left of what could not be measured, and no other page is lost, nor what is compared with.
+    let (new, made) = (folder.join("new"), folder.join("new").join("made"));
+    let refused = "bench --shape tetrahedron --schemes acc --paths tessellation --report";
+    assert!(!run(&format!("{refused} {}", made.display())).status.success() && !new.exists());
+    let other = folder.join("other");
+    fs::create_dir(&other).unwrap();
+    fs::write(other.join("index.html"), "mine").unwrap();
+    let why = "this is there already, and is not of a report: name another folder";
+    fails(&format!("{few} {}", other.display()), 1, &format!("{}: {why}", other.join("index.html").display()));
+    assert_eq!(fs::read(other.join("index.html")).unwrap(), b"mine");
     assert!(run(&format!("{few} {}", made.display())).status.success());
     let mut names: Vec<_> = fs::read_dir(&made).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     names.sort_unstable();
     assert_eq!(names, ["index.html", "results.csv", "results.json"]);
+    assert!(run(&format!("{few} {}", made.display())).status.success(), "a report takes the place of a report");
+    let old = made.join("results.json");
+    let why = "the report would take the place of what it is compared with: name another folder";
+    fails(&format!("{few} {} --compare {}", made.display(), old.display()), 1, &format!("{}: {why}", old.display()));
 }
 
 fn chromium() -> Option<PathBuf> {

@@ -36,7 +36,7 @@ fn lines<'r>(rows: &[&'r Row], point: impl Fn(&'r Row) -> Option<(f64, f64)>) ->
         let Some(at) = point(row) else { continue };
         match lines.iter_mut().find(|(who, _)| **who == row.who) {
             Some((_, line)) => line.points.push(at),
-            None => lines.push((&row.who, Line { style: style(&row.who), points: vec![at] })),
+            None => lines.push((&row.who, Line { label: row.who.label(), style: style(&row.who), points: vec![at] })),
         }
     }
     for (_, line) in &mut lines {

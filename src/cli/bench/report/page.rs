@@ -95,13 +95,18 @@ fn picture(mesh: &MeshOut) -> Markup {
     }
 }
 
-fn time(Times { median, min, max, .. }: Times) -> Markup {
-    html! { td title=(format!("{min:.3} to {max:.3}")) { (format!("{median:.2}")) } }
+fn time(times: Times) -> Markup {
+    spread(times, 1.0)
 }
 
-fn microseconds(Times { median, min, max, .. }: Times) -> Markup {
-    let [median, min, max] = [median, min, max].map(|ms| format!("{:.2}", 1e3 * ms));
-    html! { td title=(format!("{min} to {max}")) { (median) } }
+fn microseconds(times: Times) -> Markup {
+    spread(times, 1e3)
+}
+
+/// In so many of a millisecond.
+fn spread(Times { median, min, max, mad }: Times, scale: f64) -> Markup {
+    let [median, min, max, mad] = [median, min, max, mad].map(|ms| format!("{:.2}", scale * ms));
+    html! { td title=(format!("{min} to {max}")) { (median) " " small { "±" (mad) } } }
 }
 
 fn ratio(interval: Option<Interval>) -> Markup {
@@ -122,8 +127,7 @@ fn rows(results: &Results) -> Markup {
             div.wide { table {
                 thead { tr {
                     @for head in [
-                        "", "gpu ms", "× base", "geometry ms", "× base", "fence ms", "construction ms", "tables ms",
-                        "upload ms", "first use ms", "KiB", "traffic KiB", "patches", "evaluations", "compute", "triangles",
+                        "", "gpu ms", "× base", "geometry ms", "× base", "fence ms", "construction ms",
                     ] { th scope="col" { (head) } }
                 } }
                 tbody { @for row in group { tr {
@@ -132,11 +136,23 @@ fn rows(results: &Results) -> Markup {
                     (time(row.geometry_ms)) (ratio(row.geometry_ratio))
                     @if let Some(&fence) = row.fence_ms.get(GPU) { (time(fence)) } @else { td {} }
                     td { (row.construction_ms.map_or_else(String::new, |i| format!("{:.2}", i.value))) }
+                } } }
+            } }
+            div.wide { table {
+                thead { tr {
+                    @for head in [
+                        "", "tables ms", "upload ms", "first use ms", "KiB", "traffic KiB", "patches", "evaluations", "compute",
+                        "triangles", "visible",
+                    ] { th scope="col" { (head) } }
+                } }
+                tbody { @for row in group { tr {
+                    th scope="row" { (row.who.label()) }
                     (milliseconds(row.tables_ms)) (milliseconds(row.upload_ms)) (milliseconds(row.first_use_ms()))
                     td { (format!("{:.1}", row.total_bytes() as f64 / 1024.0)) }
                     td { (format!("{:.1}", row.traffic_total() as f64 / 1024.0)) }
                     td { (row.patches) }
                     (count(row.tes_invocations)) (count(row.compute_invocations)) (count(row.triangles))
+                    (count(row.visible_triangles))
                 } } }
             } }
         }
@@ -221,7 +237,8 @@ fn published(results: &Results) -> Markup {
 
 const METHOD: &str = "<ul>
 <li><b>gpu</b>: milliseconds of a frame on the device by its timestamps, from the first command to the last: clearing,
-control points, drawing with pixels. The median; the range is under the pointer.</li>
+control points, drawing with pixels, of all passes and instances. The median, with the median distance from it; the range is under the
+pointer.</li>
 <li><b>geometry</b>: the same with the rasterizer switched off.</li>
 <li><b>fence</b>: a frame with pixels on the host's clock: recording, submission, and the wait for the fence.</li>
 <li><b>× base</b>: the median of the ratios to the first row of the table, frame by frame, and the interval that holds it
@@ -234,8 +251,8 @@ use</b>: pipelines, and the first frame with them; drivers may find them compile
 <b>evaluations</b>, <b>compute</b>: invocations of evaluation and compute shaders in a frame.</li>
 <li><b>sure</b>: that the frames of both runs differ, whatever made them. It holds the noise within each run, not the drift
 of the machine between them; the floors, which no change of the program makes faster or slower, tell of that: <b>faster</b>
-and <b>slower</b> are rows whose interval is wholly outside of what the intervals of all floors reach. Few floors
-reach less far than a machine may drift: the more factors, the surer.</li>
+and <b>slower</b> are rows whose interval is wholly outside of what the intervals of all floors reach, <b>as the machine</b> those
+that differ by no more. Few floors reach less far than a machine may drift: the more factors, the surer.</li>
 <li><b>views</b>: of each, the time of a triangle that clipping leaves, over that in the first. <b>passes</b>: where the
 times of evaluating once by compute and of tessellating in every pass cross. <b>growth</b>: the power of patches, over copies of a
 mesh. Each with

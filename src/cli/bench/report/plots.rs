@@ -5,6 +5,7 @@ use crate::cli::canvas::{FONT, load_font};
 use crate::cli::output::short;
 use ash_subdiv::Construction;
 use ash_subdiv::bench::Path;
+use maud::html;
 use plotters::coord::ranged1d::DefaultFormatting;
 use plotters::prelude::*;
 use plotters::style::Color;
@@ -12,6 +13,8 @@ use std::ops::Range;
 
 /// What a plot shows of one contestant.
 pub(super) struct Line {
+    /// Told under the pointer, with the numbers of a point.
+    pub label: String,
     pub style: LineStyle,
     /// Both above zero: the axes are logarithmic.
     pub points: Vec<(f64, f64)>,
@@ -105,7 +108,7 @@ impl Plot<'_> {
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
             .x_label_area_size(40)
-            .y_label_area_size(56)
+            .y_label_area_size(74)
             .build_cartesian_2d(axis(range_x.clone(), marks), axis(range_y.clone(), &[]))
             .map_err(|e| failed(&e))?;
         let font = (FONT, 13).into_font();
@@ -125,7 +128,7 @@ impl Plot<'_> {
             let front = front(lines, &range_x, &range_y);
             chart.draw_series(LineSeries::new(front, BLACK.stroke_width(1))).map_err(|e| failed(&e))?;
         }
-        for Line { style: LineStyle { colour, dash, mark, width }, points } in lines {
+        for Line { style: LineStyle { colour, dash, mark, width }, points, .. } in lines {
             let stroke = colour.stroke_width(*width);
             let points = points.iter().copied();
             let drawn = match *dash {
@@ -147,7 +150,23 @@ impl Plot<'_> {
         area.present().map_err(|e| failed(&e))?;
         drop(chart);
         drop(area);
-        Ok(svg)
+        Ok(self.with_titles(&svg))
+    }
+
+    /// With a title for each mark, which are the only polygons.
+    fn with_titles(&self, svg: &str) -> String {
+        let title = |line: &Line, &(x, y): &(f64, f64)| {
+            let text = format!("{}: {} {}, {} {}", line.label, self.x, short(x), self.y, short(y));
+            html! { title { (text) } }.into_string()
+        };
+        let titles = self.lines.iter().flat_map(|line| line.points.iter().map(move |point| title(line, point)));
+        let mut marks = svg.split("<polygon");
+        let mut titled = marks.next().unwrap_or_default().to_owned();
+        for (mark, title) in marks.zip(titles) {
+            titled += "<polygon";
+            titled += &mark.replacen("/>", &format!(">{title}</polygon>"), 1);
+        }
+        titled
     }
 }
 
@@ -197,7 +216,7 @@ mod tests {
 
     fn line(mark: usize, points: &[(f64, f64)]) -> Line {
         let style = LineStyle { colour: COLOURS[0], dash: None, mark: MARKS[mark], width: 2 };
-        Line { style, points: points.to_vec() }
+        Line { label: format!("<{mark}>"), style, points: points.to_vec() }
     }
 
     #[test]
@@ -207,6 +226,8 @@ mod tests {
         let svg = of(&lines, false);
         assert_eq!(svg.matches("<polygon").count(), 3);
         assert!(svg.starts_with("<svg") && svg.contains("factor") && svg.trim_end().ends_with("</svg>"));
+        assert!(svg.contains("<title>&lt;0&gt;: factor 8, ms 3</title></polygon>"), "{svg}");
+        assert_eq!(svg.matches("</title></polygon>").count(), 3);
         assert_eq!(of(&lines, true).matches("#000000").count(), svg.matches("#000000").count() + 1);
         of(&[], true);
     }

@@ -1,0 +1,74 @@
+//! What goes together: what a user is told of what is asked for and cannot be measured.
+
+use super::super::error::CliError;
+use super::args::BenchArgs;
+use super::unique;
+use ash_subdiv::Scheme;
+use ash_subdiv::bench::{Contestant, Normals, Path};
+use ash_subdiv::renderer::{Cull, Evaluation};
+
+const SHARED_NORMALS: &str = "shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass";
+const CULLED: &str = "it is for the paths tessellation and, by compute, instanced";
+
+/// What a path goes with, if not with everything.
+fn rule(path: Path) -> Option<String> {
+    let schemes = Some(path.schemes()).filter(|&schemes| schemes != Scheme::ALL).unwrap_or_default();
+    let constructions = path.constructions().iter().map(|construction| construction.name());
+    let names: Vec<_> = schemes.iter().map(|scheme| scheme.name()).chain(constructions).collect();
+    (!names.is_empty()).then(|| format!("{} goes with {}", path.name(), names.join(" and ")))
+}
+
+impl BenchArgs {
+    /// Of the paths that are asked for; and of shared normals, if they are.
+    fn rules(&self) -> Vec<String> {
+        let mut rules: Vec<String> = unique(&self.paths, |&path| path).into_iter().filter_map(rule).collect();
+        if self.normals.contains(&Normals::Shared) {
+            rules.push(SHARED_NORMALS.into());
+        }
+        rules
+    }
+
+    /// That what is asked for does not go together, and what does.
+    pub(super) fn no_contestants(&self) -> CliError {
+        let message = "none of --paths, --constructions, --schemes and --normals go together";
+        CliError::Usage(format!("{message}: {}", self.rules().join("; ")))
+    }
+
+    /// Notes on what is asked for and none of the contestants has.
+    pub(super) fn in_vain(&self, contestants: &[Contestant]) -> Vec<String> {
+        let mut notes = Vec::new();
+        let drawn = |path| contestants.iter().any(|contestant| contestant.path == path);
+        for path in unique(&self.paths, |&path| path) {
+            if let Some(rule) = rule(path).filter(|_| !drawn(path)) {
+                notes.push(format!("{rule}: it is left out"));
+            }
+        }
+        let patches = || contestants.iter().filter_map(|contestant| contestant.patches);
+        let schemes = unique(&self.schemes, |&scheme| scheme);
+        let schemes =
+            schemes.into_iter().filter(|scheme| patches().all(|(other, _)| other != *scheme)).map(Scheme::name);
+        let constructions = unique(&self.constructions, |&construction| construction);
+        let constructions =
+            constructions.into_iter().filter(|one| patches().all(|(_, other)| other != *one)).map(|one| one.name());
+        for name in schemes.chain(constructions) {
+            notes.push(format!("{name} is left out: none of --paths goes with it"));
+        }
+        let culled = |path| contestants.iter().any(|one| one.path == path && one.cull != Cull::NONE);
+        if !self.cull.is_empty() {
+            if contestants.iter().all(|contestant| contestant.cull == Cull::NONE) {
+                notes.push(format!("--cull changes nothing here: {CULLED}"));
+            } else {
+                let could =
+                    |path: &Path| path.evaluation().is_some_and(Evaluation::culls) && drawn(*path) && !culled(*path);
+                for path in unique(&self.paths, |&path| path).iter().filter(|path| could(path)) {
+                    notes.push(format!("--cull changes nothing of {}: {CULLED}", path.name()));
+                }
+            }
+        }
+        let shared = Normals::Shared;
+        if self.normals.contains(&shared) && contestants.iter().all(|contestant| contestant.normals != shared) {
+            notes.push(format!("--normals shared changes nothing here: {SHARED_NORMALS}"));
+        }
+        notes
+    }
+}
