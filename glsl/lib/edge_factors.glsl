@@ -19,7 +19,7 @@ float plus_factor(uint patch_number, uint k) {
 
 // What is no number counts as 1.
 float within_limits(float factor) {
-    return min(max(1.0, factor), MAX_FACTOR);
+    return factor > 1.0 ? min(factor, MAX_FACTOR) : 1.0;
 }
 
 #endif

@@ -29,7 +29,8 @@ layout(set = 1, binding = 11, std430) readonly buffer CornerFactors { float corn
 // goes to the nearest of the edge's own, and so both its patches have those and no others.
 float along_edge(uint i, uint segments, uint corner) {
     // What is no number counts as 1.
-    uint own = uint(min(ceil(max(1.0, corner_factors[corner])), float(segments)));
+    float factor = corner_factors[corner];
+    uint own = uint(factor > 1.0 ? min(ceil(factor), float(segments)) : 1.0);
     return along_side((2u * i * own + segments) / (2u * segments), own);
 }
 

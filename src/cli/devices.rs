@@ -38,7 +38,7 @@ impl DeviceOut {
             samples: properties.sample_counts(),
             max_image_size: properties.max_image_size,
             max_storage_buffer_range: properties.max_storage_buffer_range,
-            max_line_width: properties.max_line_width,
+            max_line_width: properties.line_widths[1],
             features: properties.features.named().filter(|(_, has)| *has).map(|(name, _)| name).collect(),
             name: properties.name,
             driver: properties.driver_name,

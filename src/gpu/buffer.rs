@@ -35,13 +35,19 @@ impl Buffer {
     /// A new buffer, with memory.
     ///
     /// # Errors
-    /// No memory, or a size the device does not have.
+    /// No memory; a size the device does not have; no use.
     pub fn new(context: &Arc<DeviceContext>, desc: &BufferDesc<'_>) -> Result<Self, GpuError> {
         let BufferDesc { name, usage, location, .. } = *desc;
         let max = context.properties().max_buffer_size;
         if desc.size > max {
             let why = format!("{} bytes are asked for, and the largest buffer of the device has {max}", desc.size);
             return Err(GpuError::Unsupported { object: name.to_owned(), why });
+        }
+        if usage.is_empty() {
+            return Err(GpuError::Unsupported {
+                object: name.to_owned(),
+                why: "it is for no use: name at least one".into(),
+            });
         }
         let size = desc.size.max(4).next_multiple_of(4);
 

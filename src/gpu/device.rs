@@ -62,8 +62,8 @@ pub struct DeviceProperties {
     pub max_image_size: u32,
     /// The push constants of a pipeline layout, in bytes.
     pub max_push_constants: u32,
-    /// The widest line, in pixels.
-    pub max_line_width: f32,
+    /// The thinnest and the widest line, in pixels.
+    pub line_widths: [f32; 2],
     /// Nanoseconds a timestamp tick.
     pub timestamp_period: f32,
     /// The features that the device has, enabled or not.
@@ -107,7 +107,7 @@ impl DeviceProperties {
             max_buffer_size: if v13.max_buffer_size == 0 { u64::MAX } else { v13.max_buffer_size },
             max_image_size: limits.max_image_dimension2_d,
             max_push_constants: limits.max_push_constants_size,
-            max_line_width: limits.line_width_range[1],
+            line_widths: limits.line_width_range,
             timestamp_period: limits.timestamp_period,
             // SAFETY: as the caller promises.
             features: unsafe { Features::supported(instance, physical_device) },
@@ -136,6 +136,8 @@ pub struct ContextOptions {
 
 /// The device that all objects of the crate are made from; shared by them.
 pub struct DeviceContext {
+    instance: ash::Instance,
+    physical_device: vk::PhysicalDevice,
     device: ash::Device,
     properties: DeviceProperties,
     features: Features,
@@ -167,6 +169,8 @@ impl DeviceContext {
         let mut properties = unsafe { DeviceProperties::query(instance, physical_device) };
         properties.reads_texels &= !options.storage_tables;
         Arc::new(Self {
+            instance: instance.clone(),
+            physical_device,
             device: device.clone(),
             properties,
             features: options.features,
@@ -179,6 +183,14 @@ impl DeviceContext {
     /// The Vulkan device.
     pub fn device(&self) -> &ash::Device {
         &self.device
+    }
+
+    /// What images of this format and these uses the device has; `None` if it has none.
+    pub(super) fn images(&self, format: vk::Format, usage: vk::ImageUsageFlags) -> Option<vk::ImageFormatProperties> {
+        let (kind, tiling, none) = (vk::ImageType::TYPE_2D, vk::ImageTiling::OPTIMAL, vk::ImageCreateFlags::empty());
+        let (instance, device) = (&self.instance, self.physical_device);
+        // SAFETY: the device is of the instance, which lives, as the caller of `new` promised; there are uses.
+        unsafe { instance.get_physical_device_image_format_properties(device, format, kind, tiling, usage, none).ok() }
     }
 
     /// What the device is and can do.

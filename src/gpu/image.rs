@@ -49,7 +49,7 @@ impl Image {
     /// A new image, with memory, in the layout `UNDEFINED`.
     ///
     /// # Errors
-    /// No memory, or a size or sample count the device does not have.
+    /// No memory; a size, sample count, number of mip levels, format or use the device does not have.
     pub fn new(context: &Arc<DeviceContext>, desc: &ImageDesc<'_>) -> Result<Self, GpuError> {
         let ImageDesc { name, extent, format, usage, samples, mip_levels } = *desc;
         let properties = context.properties();
@@ -59,6 +59,13 @@ impl Image {
             return unsupported(format!(
                 "{width} x {height} pixels: the device has images of 1 to {max} pixels a side"
             ));
+        }
+        let most = width.max(height).ilog2() + 1;
+        if !(1..=most).contains(&mip_levels) {
+            return unsupported(format!("{mip_levels} mip levels: {width} x {height} pixels have 1 to {most}"));
+        }
+        if usage.is_empty() {
+            return unsupported("it is for no use: name at least one".into());
         }
         if !properties.sample_counts.contains(samples) {
             let (asked, known) = (samples.as_raw(), properties.sample_counts());
@@ -76,7 +83,19 @@ impl Image {
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage)
             .initial_layout(vk::ImageLayout::UNDEFINED);
-        // SAFETY: the description is valid, and the image is taken over by `Owned`.
+        let fits = |known: vk::ImageFormatProperties| {
+            known.max_mip_levels >= mip_levels
+                && known.sample_counts.contains(samples)
+                && known.max_extent.width >= width
+                && known.max_extent.height >= height
+        };
+        if !context.images(format, usage).is_some_and(fits) {
+            let (name, count) = (&properties.name, samples.as_raw());
+            return unsupported(format!(
+                "{name} has no such images of the format {format:?} for {usage:?}: {width} x {height} pixels, {count} samples, {mip_levels} mip levels"
+            ));
+        }
+        // SAFETY: the device has such images, and the image is taken over by `Owned`.
         let raw = unsafe {
             let raw = device.create_image(&info, None).of("vkCreateImage", name)?;
             Owned::new(context, raw, name)

@@ -257,9 +257,10 @@ impl<'a> GraphicsPipelineDesc<'a> {
         if self.polygon_mode != vk::PolygonMode::FILL && !features.fill_mode_non_solid {
             return unsupported("fillModeNonSolid is not enabled on the device".to_owned());
         }
-        if self.line_width != 1.0 && !(features.wide_lines && self.line_width <= properties.max_line_width) {
-            let (asked, max) = (self.line_width, if features.wide_lines { properties.max_line_width } else { 1.0 });
-            return unsupported(format!("lines of {asked} pixels: the device has at most {max} (wideLines)"));
+        let [thinnest, widest] = if features.wide_lines { properties.line_widths } else { [1.0; 2] };
+        if !(thinnest..=widest).contains(&self.line_width) {
+            let asked = self.line_width;
+            return unsupported(format!("lines of {asked} pixels: the device has {thinnest} to {widest} (wideLines)"));
         }
         Ok(())
     }

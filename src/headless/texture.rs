@@ -54,7 +54,7 @@ impl Texels {
     /// The least and the largest value of what is looked at.
     pub fn range(&self) -> [f32; 2] {
         let used = self.channels.min(3) as usize;
-        let values = self.values.chunks_exact(self.channels as usize).flat_map(|texel| &texel[..used]);
+        let values = self.values.chunks_exact(self.channels.max(1) as usize).flat_map(|texel| &texel[..used]);
         values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
     }
 
@@ -106,7 +106,7 @@ impl Texture {
     /// Makes the levels and copies them to the device.
     ///
     /// # Errors
-    /// No memory, sizes the device does not have, a device that does not filter 32-bit numbers.
+    /// No memory, sizes the device does not have, other numbers of values, a device that does not filter 32-bit numbers.
     pub fn new(headless: &Headless, name: &str, texels: &Texels) -> Result<Self, GpuError> {
         let unsupported = |why: String| GpuError::Unsupported { object: name.to_owned(), why };
         let format = match texels.channels {
@@ -114,6 +114,15 @@ impl Texture {
             4 => vk::Format::R32G32B32A32_SFLOAT,
             other => return Err(unsupported(format!("{other} numbers a texel: 1 or 4 are possible"))),
         };
+        let (width, height, max) = (texels.width, texels.height, headless.properties().max_image_size);
+        if width == 0 || height == 0 || width > max || height > max {
+            return Err(unsupported(format!("{width} x {height} texels: the device has images of 1 to {max} a side")));
+        }
+        let (given, needed) =
+            (texels.values.len() as u64, u64::from(width) * u64::from(height) * u64::from(texels.channels));
+        if given != needed {
+            return Err(unsupported(format!("{given} values are given, but its texels have {needed}")));
+        }
         // SAFETY: the physical device is of the instance.
         let known =
             unsafe { headless.instance().get_physical_device_format_properties(headless.physical_device(), format) };

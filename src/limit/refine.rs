@@ -6,7 +6,7 @@ use super::sharpness::{children, decrement, edge_weight, parent_weight};
 use super::stencils::{MIN_LEN, Stencils};
 use crate::mesh::{BoundaryRule, ControlMesh, Corner, Crease, MeshData, MeshError, SHARPNESS_INFINITE, TriangleRule};
 use crate::patch::{Blend, Row};
-use crate::topology::Topology;
+use crate::topology::{Topology, draws_face};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -49,7 +49,13 @@ pub fn refine(topology: &Topology) -> Result<Refined, MeshError> {
         normals: data.normals.as_ref().map(|n| refine_linearly(topology, n)),
         creases: step.child_creases(),
         corners: step.child_corners(),
-        holes: data.holes.iter().flat_map(|&f| mesh.face_corners(f)).map(|h| h as u32).collect(),
+        // Where faces at the boundary are not drawn, the refined mesh could not tell which those were.
+        holes: (0..)
+            .zip(draws_face(topology))
+            .filter(|(_, draws)| !draws)
+            .flat_map(|(face, _)| mesh.face_corners(face))
+            .map(|h| h as u32)
+            .collect(),
         boundary: data.boundary,
         crease_method: data.crease_method,
         // After one step there are no triangles.

@@ -33,6 +33,10 @@ pub enum Error {
     #[error("{max} views were already drawn or culled in frame {frame}: raise Options::views_per_frame")]
     TooManyViews { frame: u32, max: u32 },
     #[error(
+        "Options: frames_in_flight times views_per_frame take {bytes} bytes for views, {max} are possible: ask for fewer"
+    )]
+    ViewsTooLarge { bytes: u64, max: u64 },
+    #[error(
         "frame {frame}: what can be seen was found before it was prepared, for another frame or by another renderer: call cmd_cull after cmd_prepare, and draw in the same frame"
     )]
     OtherFrame { frame: u32 },

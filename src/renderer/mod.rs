@@ -183,12 +183,18 @@ impl Renderer {
         options::check_properties(context.properties(), context.features(), target, options)?;
         let pipelines = Pipelines::new(context, target, options, capture)?;
         let view_stride = (size_of::<ViewData>() as u64).next_multiple_of(MAX_OFFSET_ALIGNMENT);
-        let count = u64::from(options.frames_in_flight) * u64::from(options.views_per_frame);
+        let bytes = u64::from(options.frames_in_flight)
+            .saturating_mul(options.views_per_frame.into())
+            .saturating_mul(view_stride);
+        // Offsets are of 32 bits.
+        if bytes > u32::MAX.into() {
+            return Err(Error::ViewsTooLarge { bytes, max: u32::MAX.into() });
+        }
         let views = Buffer::new(
             context,
             &BufferDesc {
                 name: "subdiv views",
-                size: count * view_stride,
+                size: bytes,
                 usage: vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER,
                 location: MemoryLocation::Upload,
             },

@@ -202,6 +202,9 @@ fn targets<'t>(target: &'t Target, options: &'t Options) -> impl Iterator<Item =
 }
 
 /// What a device must be made with; ask before creating it.
+///
+/// `maintenance4` is not among it, but enable that as well, which every device with Vulkan 1.3 has: or validation layers warn of
+/// outputs that the next stage does not read, such as what invocations of a control shader tell each other.
 pub fn requirements(target: &Target, options: &Options) -> Requirements {
     let features = Features {
         tessellation: true,
@@ -292,9 +295,10 @@ pub(super) fn check_properties(
     if has < least {
         missing.push(format!("{least} storage buffers a shader stage (it has {has})"));
     }
-    let width = options.styles.iter().map(|s| s.line_width).fold(0.0, f32::max);
-    if width > 1.0 && width > properties.max_line_width {
-        missing.push(format!("lines {width} pixels wide (it has {})", properties.max_line_width));
+    let [thinnest, widest] = properties.line_widths;
+    let widths = options.styles.iter().map(|style| style.line_width);
+    for width in widths.filter(|width| *width != 1.0 && !(thinnest..=widest).contains(width)) {
+        missing.push(format!("lines {width} pixels wide (it has {thinnest} to {widest})"));
     }
     if missing.is_empty() { Ok(()) } else { Err(Error::Unsupported { device: properties.name.clone(), missing }) }
 }

@@ -44,7 +44,10 @@ impl Renderer {
         let none = vk::DependencyFlags::empty();
         let after_copies = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-            .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::INDEX_READ)];
+            // Computation writes control points and vertices again, too.
+            .dst_access_mask(
+                vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE | vk::AccessFlags::INDEX_READ,
+            )];
         let after_writes = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
             .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)];

@@ -25,6 +25,7 @@ pub struct ModelTables {
     fans: Option<SubdivisionTable>,
     /// Where normals are shared.
     shared: Option<SharedTable>,
+    sharing: Sharing,
     pub(super) texcoords: Option<Vec<[f32; 2]>>,
     edges: Option<Edges>,
     /// Pairs of control vertices: the edges of the caller's mesh.
@@ -103,10 +104,17 @@ impl ModelTables {
         let stencils = (options.construction == Construction::Stencil && !subdivides || converts)
             .then(|| StencilTable::new(&topology, &mut plan))
             .transpose()?;
-        let shared = match (options.displacement, options.shared_normals) {
-            (Some(_), _) => Some(SharedTable::with_texcoords(&topology, &plan).ok_or(TableError::NoTexcoords)?),
-            (None, true) => Some(SharedTable::new(&topology, &plan)),
-            (None, false) => None,
+        let sharing = match (options.displacement, options.shared_normals) {
+            (Some(_), _) => Sharing::Displacement,
+            (None, true) => Sharing::Normals,
+            (None, false) => Sharing::Positions,
+        };
+        let shared = match sharing {
+            Sharing::Displacement => {
+                Some(SharedTable::with_texcoords(&topology, &plan).ok_or(TableError::NoTexcoords)?)
+            }
+            Sharing::Normals => Some(SharedTable::new(&topology, &plan)),
+            Sharing::Positions => None,
         };
         if shared.is_some() && !scheme.is_watertight() {
             return Err(TableError::NothingShared { scheme });
@@ -124,6 +132,7 @@ impl ModelTables {
             stencils,
             fans,
             shared,
+            sharing,
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
@@ -206,11 +215,7 @@ impl ModelTables {
 
     /// What the evaluation takes from other patches.
     pub(super) fn sharing(&self) -> Sharing {
-        match &self.shared {
-            None => Sharing::Positions,
-            Some(shared) if shared.texcoords.is_empty() => Sharing::Normals,
-            Some(_) => Sharing::Displacement,
-        }
+        self.sharing
     }
 
     /// Bytes of what the cached construction keeps of corners, and of frames.

@@ -87,8 +87,11 @@ impl PatchPlan {
         let pieces = |patch: Patch| (0..patch.kind.pieces()).map(move |first| Patch { first, ..patch });
         let faces: Vec<Patch> = faces.into_iter().flatten().collect::<Result<_, _>>()?;
         let mut patches: Vec<Patch> = faces.into_iter().flat_map(pieces).collect();
-        let fallen = patches.iter().filter(|patch| patch.scheme != scheme).map(|patch| patch.face);
-        let fallback_rings = FallbackRings::new(topology, fallen);
+        // Around regular patches, too, ACC patches take the frame's points along the edges. They are the same, but so to the last
+        // bit: both sides of an edge ask for the same factor.
+        let is_beside =
+            |patch: &&Patch| patch.scheme != scheme || scheme == Scheme::Acc && patch.kind == PatchKind::Regular;
+        let fallback_rings = FallbackRings::new(topology, patches.iter().filter(is_beside).map(|patch| patch.face));
         patches.sort_by_key(|patch| patch.group());
         let mut groups = Vec::new();
         let (mut first, mut first_corner) = (0, 0);
@@ -137,7 +140,7 @@ impl PatchPlan {
         self.patches.iter().filter(|patch| patch.scheme != self.scheme)
     }
 
-    /// The rings around those.
+    /// The rings around those; with ACC also around regular patches.
     pub fn fallback_rings(&self) -> &FallbackRings {
         &self.fallback_rings
     }

@@ -7,6 +7,7 @@ use crate::patch::{Fallback, Scheme};
 use crate::table::{Patch, PatchPlan, TableError};
 use crate::topology::{PatchKind, SHARP_FROM, Topology};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Where a face of the prepared mesh comes from.
@@ -53,6 +54,13 @@ pub enum Notice {
         /// The scheme that draws them.
         fallback: Scheme,
     },
+    /// Sharp creases that end within the surface: around the end, patches do not have its limit.
+    Darts {
+        /// How many such ends there are.
+        count: usize,
+        /// The first of them, a vertex of the prepared mesh.
+        first: u32,
+    },
     /// Creases or corners of finite sharpness that patches cannot follow.
     SemiSharp {
         /// Those drawn infinitely sharp: from [`SHARP_FROM`] up.
@@ -80,6 +88,10 @@ impl fmt::Display for Notice {
                 "{faces} faces have no {} patches (the first is face {first}): they are drawn with {} patches",
                 scheme.name(),
                 fallback.name()
+            ),
+            Self::Darts { count, first } => write!(
+                f,
+                "{count} creases end within the surface (the first at vertex {first}): patches around these ends only come near it; refine the mesh first to come closer"
             ),
             Self::SemiSharp { sharp, smooth } => write!(
                 f,
@@ -145,7 +157,8 @@ impl<'m> Prepared<'m> {
         });
         let refined = self.refined_faces.clone();
         let rounded = semi_sharp(&self.mesh).filter(|_| self.rounds_sharpness);
-        refined.into_iter().chain(split).chain(fell_back).chain(rounded).collect()
+        let darts = darts(topology).filter(|_| self.rounds_sharpness);
+        refined.into_iter().chain(split).chain(fell_back).chain(darts).chain(rounded).collect()
     }
 }
 
@@ -234,6 +247,26 @@ fn refine_faces(
         prepared.mesh = Cow::Owned(refined.mesh);
     }
     Ok(prepared)
+}
+
+/// Vertices within the surface at which one edge is drawn sharp, and nothing else is.
+fn darts(topology: &Topology) -> Option<Notice> {
+    let data = topology.mesh().data();
+    let mut sharp_edges: BTreeMap<u32, u32> = BTreeMap::new();
+    for crease in data.creases.iter().filter(|crease| crease.sharpness >= SHARP_FROM) {
+        crease.vertices.iter().for_each(|&vertex| *sharp_edges.entry(vertex).or_default() += 1);
+    }
+    sharp_edges.retain(|_, edges| *edges == 1);
+    for corner in data.corners.iter().filter(|corner| corner.sharpness >= SHARP_FROM) {
+        sharp_edges.remove(&corner.vertex);
+    }
+    if !sharp_edges.is_empty() {
+        for h in (0..topology.mesh().corner_count() as u32).filter(|&h| topology.twin(h).is_none()) {
+            [h, topology.next(h)].iter().for_each(|&end| _ = sharp_edges.remove(&topology.mesh_vertex(end)));
+        }
+    }
+    let (&first, _) = sharp_edges.first_key_value()?;
+    Some(Notice::Darts { count: sharp_edges.len(), first })
 }
 
 fn semi_sharp(mesh: &ControlMesh) -> Option<Notice> {

@@ -181,6 +181,24 @@ fn vertices_where_fans_touch_are_split() {
     assert_eq!(prepare(&mesh, 0).unwrap().notices(&topology, &plan(&mesh)), [Notice::SplitVertices { count: 1 }]);
 }
 
+#[test]
+fn creases_that_end_within_the_surface_are_told() {
+    // Vertex 12 is the middle of 25.
+    let told = |creases: &[[u32; 2]], corners: &[u32], sharpness: f32| {
+        let creases = creases.iter().map(|&vertices| Crease { vertices, sharpness }).collect();
+        let corners = corners.iter().map(|&vertex| Corner { vertex, sharpness }).collect();
+        let mesh = ControlMesh::new(MeshData { creases, corners, ..grid(4, 4) }).unwrap();
+        let notices = prepare(&mesh, 0).unwrap().notices(&Topology::new(&mesh), &plan(&mesh));
+        notices.into_iter().find(|notice| matches!(notice, Notice::Darts { .. }))
+    };
+    assert_eq!(told(&[[10, 11], [11, 12]], &[], 10.0), Some(Notice::Darts { count: 1, first: 12 }));
+    assert_eq!(told(&[[11, 12], [12, 13]], &[], 2.0), Some(Notice::Darts { count: 2, first: 11 }));
+    // From boundary to boundary; to a corner; too little sharpness to be drawn.
+    assert_eq!(told(&[[10, 11], [11, 12], [12, 13], [13, 14]], &[], 10.0), None);
+    assert_eq!(told(&[[10, 11], [11, 12]], &[12], 10.0), None);
+    assert_eq!(told(&[[10, 11], [11, 12]], &[], 0.5), None);
+}
+
 fn plan(mesh: &ControlMesh) -> PatchPlan {
     PatchPlan::new(&Topology::new(mesh), Scheme::Gregory, Fallback::Refuse).unwrap()
 }
@@ -195,6 +213,14 @@ fn holes_and_faces_at_a_free_boundary_are_not_drawn() {
     assert_eq!(drawn(MeshData { boundary: BoundaryRule::None, ..grid(4, 3) }), [5, 6]);
     assert_eq!(drawn(MeshData { boundary: BoundaryRule::None, holes: vec![6], ..grid(4, 3) }), [5]);
     assert_eq!(drawn(MeshData { boundary: BoundaryRule::None, ..grid(2, 2) }), [0; 0]);
+    // The same faces where the mesh is refined.
+    let mesh = ControlMesh::new(MeshData { boundary: BoundaryRule::None, ..grid(4, 3) }).unwrap();
+    for (refine, children) in [(1, 4), (2, 16)] {
+        let prepared = prepare(&mesh, refine).unwrap();
+        let origins = prepared.origins(&plan(&prepared.mesh));
+        let of = |face| origins.iter().filter(|origin| origin.face == face).count();
+        assert_eq!((origins.len(), of(5), of(6)), (2 * children, children, children), "refined {refine} times");
+    }
     // A hole is no boundary: its neighbours are as regular as without it.
     let mesh = ControlMesh::new(MeshData { holes: vec![4], ..grid(3, 3) }).unwrap();
     assert_eq!(plan(&mesh).count(PatchKind::Regular), 8);

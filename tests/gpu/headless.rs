@@ -2,9 +2,9 @@
 
 use ash::vk;
 use ash_subdiv::gpu::{
-    Buffer, BufferDesc, ComputePipelineDesc, Domain, Features, GpuError, GraphicsPipelineDesc, MemoryLocation, Owned,
-    PatchDraw, Shader, Spacing, Specialization, VkResultExt, descriptor_set_layout, pipeline_layout,
-    tessellated_vertices,
+    Buffer, BufferDesc, ComputePipelineDesc, Domain, Features, GpuError, GraphicsPipelineDesc, Image, ImageDesc,
+    MemoryLocation, Owned, PatchDraw, Shader, Spacing, Specialization, VkResultExt, descriptor_set_layout,
+    pipeline_layout, tessellated_vertices,
 };
 use ash_subdiv::headless::{Headless, HeadlessError, HeadlessOptions, Offscreen, OffscreenDesc, Statistics, devices};
 
@@ -276,6 +276,24 @@ fn what_the_device_cannot_do_is_said() {
     let error = Offscreen::new(&headless, &huge).err().unwrap().to_string();
     assert!(error.starts_with("offscreen colour: 1048576 x 1 pixels: the device has images of 1 to "), "{error}");
 
+    let color = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+    let base = ImageDesc::new("picture", vk::Extent2D { width: 8, height: 3 }, vk::Format::R8G8B8A8_UNORM, color);
+    assert!(Image::new(context, &ImageDesc { mip_levels: 4, ..base }).is_ok());
+    let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+    for (desc, why) in [
+        (ImageDesc { mip_levels: 0, ..base }, "0 mip levels: 8 x 3 pixels have 1 to 4"),
+        (ImageDesc { mip_levels: 5, ..base }, "5 mip levels: 8 x 3 pixels have 1 to 4"),
+        (ImageDesc { usage: vk::ImageUsageFlags::empty(), ..base }, "it is for no use: name at least one"),
+        (ImageDesc { usage: depth, ..base }, "llvmpipe"),
+    ] {
+        let error = Image::new(context, &desc).map(drop).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("picture: {why}")), "{error}");
+    }
+    let no_use =
+        BufferDesc { name: "idle", size: 4, usage: vk::BufferUsageFlags::empty(), location: MemoryLocation::Upload };
+    let error = Buffer::new(context, &no_use).map(drop).unwrap_err().to_string();
+    assert_eq!(error, "idle: it is for no use: name at least one");
+
     let target = offscreen(&headless, 4, 4, vk::SampleCountFlags::TYPE_1);
     let shaders = [Shader::vertex(shaders::QUAD_PATCH_VERT), Shader::fragment(shaders::PATCH_COLOR_FRAG)];
     let range = |stages, offset| vk::PushConstantRange { stage_flags: stages, offset, size: 16 };
@@ -288,8 +306,10 @@ fn what_the_device_cannot_do_is_said() {
         let base = GraphicsPipelineDesc::new("lone patches", layout.raw(), target.target(), &shaders);
         let error = GraphicsPipelineDesc { patch_control_points: 4, ..base.clone() }.create(context).unwrap_err();
         assert!(error.to_string().starts_with("lone patches: a tessellating pipeline has a TCS, a TES"), "{error}");
-        let error = GraphicsPipelineDesc { line_width: 1e9, ..base }.create(context).unwrap_err();
-        assert!(error.to_string().starts_with("lone patches: lines of 1000000000 pixels"), "{error}");
+        for width in [1e9, 0.25, -1.0, f32::NAN] {
+            let error = GraphicsPipelineDesc { line_width: width, ..base.clone() }.create(context).unwrap_err();
+            assert!(error.to_string().starts_with(&format!("lone patches: lines of {width} pixels")), "{error}");
+        }
     }
     drop(target);
     headless.finish_silent();
