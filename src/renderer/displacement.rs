@@ -62,7 +62,8 @@ impl DisplacementId {
 
 /// The maps that a renderer knows, and one for models without: every descriptor has to be written (lavapipe bug C).
 pub(super) struct Displacements {
-    maps: Vec<DisplacementMap>,
+    /// In the places of those that were removed there is none.
+    maps: Vec<Option<DisplacementMap>>,
     nothing: DisplacementMap,
     _image: Image,
     _sampler: Owned<vk::Sampler>,
@@ -90,8 +91,14 @@ impl Displacements {
     }
 
     pub(super) fn add(&mut self, map: DisplacementMap) -> DisplacementId {
-        self.maps.push(map);
+        self.maps.push(Some(map));
         DisplacementId(self.maps.len() - 1)
+    }
+
+    /// Forgets a map.
+    pub(super) fn remove(&mut self, id: DisplacementId) -> Result<(), Error> {
+        let known = self.maps.get_mut(id.0).and_then(Option::take);
+        known.map(drop).ok_or(Error::NoSuchDisplacement { id })
     }
 
     /// Forgets all maps.
@@ -103,7 +110,7 @@ impl Displacements {
     pub(super) fn get(&self, id: Option<DisplacementId>) -> Result<DisplacementMap, Error> {
         match id {
             None => Ok(self.nothing),
-            Some(id) => self.maps.get(id.0).copied().ok_or(Error::NoSuchDisplacement { id }),
+            Some(id) => self.maps.get(id.0).copied().flatten().ok_or(Error::NoSuchDisplacement { id }),
         }
     }
 }

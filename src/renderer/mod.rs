@@ -257,11 +257,24 @@ impl Renderer {
     /// Makes a displacement map known, for [`ModelOptions::displacement`].
     ///
     /// # Safety
-    /// The view and the sampler are of the context's device and live as long as the renderer. Whenever a model that uses the
-    /// map is drawn, the image is in its layout and visible to the vertex, tessellation, geometry and fragment stages, as far as
+    /// The view and the sampler are of the context's device and live as long as the renderer, or until every frame was prepared
+    /// again after [`Renderer::remove_displacement`]. Whenever a model that uses the map is drawn, the image is in its layout and visible to the vertex, tessellation, geometry and fragment stages, as far as
     /// [`ModelOptions::evaluation`] has them.
     pub unsafe fn add_displacement(&mut self, map: DisplacementMap) -> DisplacementId {
         self.displacements.add(map)
+    }
+
+    /// Forgets a displacement map, which no model uses any more. When every frame has been prepared again, and its last use is done
+    /// on the device, the image and the sampler are yours to destroy.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchDisplacement`]; [`Error::DisplacementInUse`] if there is still a model with it.
+    pub fn remove_displacement(&mut self, id: DisplacementId) -> Result<(), Error> {
+        let uses = |(&number, model): (&ModelId, &Model)| (model.displacement == Some(id)).then_some(number);
+        match self.models.iter().filter_map(uses).min() {
+            Some(model) => Err(Error::DisplacementInUse { id, model }),
+            None => self.displacements.remove(id),
+        }
     }
 
     /// Removes a model. Its memory is freed when every frame has been prepared again.

@@ -8,7 +8,10 @@ use super::pipelines::Pipelines;
 use super::stages::{PatchStages, Sharing};
 use super::streamed::Streamed;
 use super::tables::TEXEL_BYTES;
-use super::{DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables, Options};
+use super::{
+    DisplacementId, DisplacementMap, Error, Evaluation, Geometry, MemoryUsage, ModelId, ModelOptions, ModelTables,
+    Options,
+};
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, MemoryLocation};
 use crate::table::PatchGroup;
 use ash::vk;
@@ -44,6 +47,7 @@ pub(super) struct Model {
     /// What was not copied to the device yet.
     uploads: Vec<(Buffer, vk::Buffer)>,
     map: DisplacementMap,
+    pub displacement: Option<DisplacementId>,
     pub prepared: bool,
 }
 
@@ -205,6 +209,7 @@ impl Model {
             control,
             uploads,
             map,
+            displacement: model_options.displacement,
             prepared: false,
         })
     }

@@ -409,7 +409,10 @@ fn wrong_displacement_is_told() {
     let displacement = Some(unsafe { first.add_displacement((&texture).into()) });
     let mesh = shape("creature").expect("built in");
     let error = second.add_model(&mesh, &ModelOptions { displacement, ..ModelOptions::default() }).unwrap_err();
-    assert_eq!(error.to_string(), "displacement map 0: this renderer was not told of it: call add_displacement first");
+    assert_eq!(
+        error.to_string(),
+        "displacement map 0: this renderer was not told of it, or to forget it: call add_displacement first"
+    );
     for (evaluation, construction, what) in [
         (Evaluation::GeometryTwoPass, Construction::Cached, "displacement"),
         (Evaluation::Geometry, Construction::Stencil, "displacement of Construction::Stencil"),
@@ -440,9 +443,20 @@ fn wrong_displacement_is_told() {
     let mut data = mesh.data().clone();
     data.holes = (0..mesh.face_count() as u32).collect();
     let nothing = ControlMesh::new(data).expect("a mesh");
-    first
-        .add_model(&nothing, &ModelOptions { displacement, ..ModelOptions::default() })
-        .expect("a model without patches");
+    let displaced = ModelOptions { displacement, ..ModelOptions::default() };
+    let model = first.add_model(&nothing, &displaced).expect("a model without patches");
+    // Maps are forgotten when no model uses them.
+    let map = displacement.expect("added");
+    assert!(
+        matches!(first.remove_displacement(map), Err(Error::DisplacementInUse { id, model: by }) if (id, by) == (map, model))
+    );
+    first.remove_model(model).expect("there is one");
+    first.remove_displacement(map).expect("no model uses it");
+    for error in [first.remove_displacement(map).unwrap_err(), first.add_model(&mesh, &displaced).unwrap_err()] {
+        assert!(matches!(error, Error::NoSuchDisplacement { id } if id == map), "{error}");
+    }
+    // SAFETY: the texture outlives the renderer.
+    assert_ne!(unsafe { first.add_displacement((&texture).into()) }, map);
     // Displacement shares normals, whether that is asked for or not.
     let [quiet, asked] =
         [false, true].map(|shared_normals| ModelOptions { displacement, shared_normals, ..plain.clone() });
