@@ -406,7 +406,8 @@ fn wrong_displacement_is_told() {
     let renderers = [(); 2].map(|()| unsafe { Renderer::new(headless.context(), &target, &options) });
     let [mut first, mut second] = renderers.map(|renderer| renderer.expect("a renderer"));
     // SAFETY: the texture outlives the renderer.
-    let displacement = Some(unsafe { first.add_displacement((&texture).into()) });
+    let map = unsafe { first.add_displacement((&texture).into()) };
+    let displacement = Some(map);
     let mesh = shape("creature").expect("built in");
     let error = second.add_model(&mesh, &ModelOptions { displacement, ..ModelOptions::default() }).unwrap_err();
     assert_eq!(
@@ -446,7 +447,6 @@ fn wrong_displacement_is_told() {
     let displaced = ModelOptions { displacement, ..ModelOptions::default() };
     let model = first.add_model(&nothing, &displaced).expect("a model without patches");
     // Maps are forgotten when no model uses them.
-    let map = displacement.expect("added");
     assert!(
         matches!(first.remove_displacement(map), Err(Error::DisplacementInUse { id, model: by }) if (id, by) == (map, model))
     );
