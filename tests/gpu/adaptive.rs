@@ -456,7 +456,9 @@ fn wrong_displacement_is_told() {
         assert!(matches!(error, Error::NoSuchDisplacement { id } if id == map), "{error}");
     }
     // SAFETY: the texture outlives the renderer.
-    assert_ne!(unsafe { first.add_displacement((&texture).into()) }, map);
+    let again = unsafe { first.add_displacement((&texture).into()) };
+    assert_ne!(again, map);
+    let displacement = Some(again);
     // Displacement shares normals, whether that is asked for or not.
     let [quiet, asked] =
         [false, true].map(|shared_normals| ModelOptions { displacement, shared_normals, ..plain.clone() });
