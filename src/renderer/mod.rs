@@ -258,8 +258,8 @@ impl Renderer {
     ///
     /// # Safety
     /// The view and the sampler are of the context's device and live as long as the renderer, or until every frame was prepared
-    /// again after [`Renderer::remove_displacement`]. Whenever a model that uses the map is drawn, the image is in its layout and visible to the vertex, tessellation, geometry and fragment stages, as far as
-    /// [`ModelOptions::evaluation`] has them.
+    /// again after [`Renderer::remove_displacement`]. Whenever a model that uses the map is drawn, the image is in its layout and
+    /// visible to the vertex, tessellation, geometry and fragment stages, as far as [`ModelOptions::evaluation`] has them.
     pub unsafe fn add_displacement(&mut self, map: DisplacementMap) -> DisplacementId {
         self.displacements.add(map)
     }
