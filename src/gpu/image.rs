@@ -64,8 +64,19 @@ impl Image {
         if !(1..=most).contains(&mip_levels) {
             return unsupported(format!("{mip_levels} mip levels: {width} x {height} pixels have 1 to {most}"));
         }
-        if usage.is_empty() {
-            return unsupported("it is for no use: name at least one".into());
+        use vk::ImageUsageFlags as Usage;
+        let attached = Usage::COLOR_ATTACHMENT | Usage::DEPTH_STENCIL_ATTACHMENT | Usage::INPUT_ATTACHMENT;
+        if !usage.intersects(attached | Usage::SAMPLED | Usage::STORAGE) {
+            return unsupported("it is for no use of a view: to be sampled, stored to or attached".into());
+        }
+        if usage.contains(Usage::TRANSIENT_ATTACHMENT) && !(attached | Usage::TRANSIENT_ATTACHMENT).contains(usage) {
+            return unsupported("a transient attachment can be attached only".into());
+        }
+        if samples.as_raw().count_ones() != 1 {
+            return unsupported(format!("samples are {samples:?}: give one number, such as TYPE_1"));
+        }
+        if samples != vk::SampleCountFlags::TYPE_1 && mip_levels > 1 {
+            return unsupported(format!("{mip_levels} mip levels with several samples a pixel: one is possible"));
         }
         if !properties.sample_counts.contains(samples) {
             let (asked, known) = (samples.as_raw(), properties.sample_counts());

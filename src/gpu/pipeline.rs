@@ -257,10 +257,14 @@ impl<'a> GraphicsPipelineDesc<'a> {
         if self.polygon_mode != vk::PolygonMode::FILL && !features.fill_mode_non_solid {
             return unsupported("fillModeNonSolid is not enabled on the device".to_owned());
         }
-        let [thinnest, widest] = if features.wide_lines { properties.line_widths } else { [1.0; 2] };
-        if !(thinnest..=widest).contains(&self.line_width) {
+        if self.line_width != 1.0 && !features.wide_lines {
             let asked = self.line_width;
-            return unsupported(format!("lines of {asked} pixels: the device has {thinnest} to {widest} (wideLines)"));
+            return unsupported(format!("lines of {asked} pixels: wideLines is not enabled on the device"));
+        }
+        let [thinnest, widest] = properties.line_widths;
+        if self.line_width != 1.0 && !(thinnest..=widest).contains(&self.line_width) {
+            let asked = self.line_width;
+            return unsupported(format!("lines of {asked} pixels: the device has {thinnest} to {widest}"));
         }
         Ok(())
     }

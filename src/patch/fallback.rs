@@ -23,7 +23,8 @@ impl Fallback {
     }
 }
 
-/// The one-rings with a face that falls back to Gregory patches. By default there are none.
+/// The one-rings around which all patches have Gregory's points along the edges: those with a face that falls back to Gregory
+/// patches, and with ACC those of regular patches, which have these anyway. By default there are none.
 ///
 /// The curve along an edge is a cubic whose points come from the one-rings at its two ends, two from each: the corner point
 /// and the edge point. In what a scheme makes of a ring, the schemes differ:

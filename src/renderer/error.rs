@@ -20,7 +20,7 @@ pub enum Error {
     Unsupported { device: String, missing: Vec<String> },
     #[error("model {}: there is no such model: it was removed, or is another renderer's", id.number)]
     NoSuchModel { id: ModelId },
-    #[error("displacement map {}: this renderer was not told of it, or to forget it: call add_displacement first", id.0)]
+    #[error("displacement map {}: this renderer does not know it, or was told to forget it: call add_displacement first", id.0)]
     NoSuchDisplacement { id: DisplacementId },
     #[error("displacement map {}: model {} uses it: remove that first", id.0, model.number)]
     DisplacementInUse { id: DisplacementId, model: ModelId },

@@ -159,7 +159,7 @@ impl Renderer {
     /// A renderer for targets like `target`, but for styles with one of their own ([`Style::target`]).
     ///
     /// # Errors
-    /// As [`check`], of what `context` was made with; failed Vulkan calls.
+    /// As [`check`], of what `context` was made with; [`Error::ViewsTooLarge`]; failed Vulkan calls.
     ///
     /// # Safety
     /// * The handles in `target` and `options` are of the context's device and live as long as the renderer, and the

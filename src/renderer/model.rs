@@ -167,7 +167,7 @@ impl Model {
         // Every descriptor has to be written; without factors of its own a model's edges never read any.
         parts.push(whole(edge_factors.as_ref().map_or(positions.buffer(), EdgeFactors::buffer)));
         parts.push(whole(control_points.as_ref().unwrap_or(positions.buffer())));
-        // SAFETY: the buffers live as long as the model, and the map as long as the renderer.
+        // SAFETY: the buffers live as long as the model, and the map longer.
         let set = unsafe { ModelSet::new(context, pipelines.model_layout.raw(), name, &parts, map)? };
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_texels(), tables.has_speakers());

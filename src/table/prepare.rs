@@ -7,7 +7,7 @@ use crate::patch::{Fallback, Scheme};
 use crate::table::{Patch, PatchPlan, TableError};
 use crate::topology::{PatchKind, SHARP_FROM, Topology};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// Where a face of the prepared mesh comes from.
@@ -91,7 +91,7 @@ impl fmt::Display for Notice {
             ),
             Self::Darts { count, first } => write!(
                 f,
-                "{count} creases end within the surface (the first at vertex {first}): patches around these ends only come near it; refine the mesh first to come closer"
+                "{count} ends of creases lie within the surface (the first at vertex {first}): patches around them only come near it; refine the mesh first to come closer"
             ),
             Self::SemiSharp { sharp, smooth } => write!(
                 f,
@@ -253,12 +253,19 @@ fn refine_faces(
 fn darts(topology: &Topology) -> Option<Notice> {
     let data = topology.mesh().data();
     let mut sharp_edges: BTreeMap<u32, u32> = BTreeMap::new();
-    for crease in data.creases.iter().filter(|crease| crease.sharpness >= SHARP_FROM) {
-        crease.vertices.iter().for_each(|&vertex| *sharp_edges.entry(vertex).or_default() += 1);
+    // An edge may be tagged more than once.
+    let sharp = data.creases.iter().filter(|crease| crease.sharpness >= SHARP_FROM);
+    let sharp: BTreeSet<_> = sharp.map(|crease| (crease.vertices.iter().min(), crease.vertices.iter().max())).collect();
+    for &vertex in sharp.iter().flat_map(|&(from, to)| [from, to]).flatten() {
+        *sharp_edges.entry(vertex).or_default() += 1;
     }
     sharp_edges.retain(|_, edges| *edges == 1);
     for corner in data.corners.iter().filter(|corner| corner.sharpness >= SHARP_FROM) {
         sharp_edges.remove(&corner.vertex);
+    }
+    // Where fans of faces touch, the vertex is a corner.
+    for split in topology.mesh().vertex_count()..topology.vertex_count() {
+        sharp_edges.remove(&topology.source(split as u32));
     }
     if !sharp_edges.is_empty() {
         for h in (0..topology.mesh().corner_count() as u32).filter(|&h| topology.twin(h).is_none()) {

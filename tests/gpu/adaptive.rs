@@ -412,7 +412,7 @@ fn wrong_displacement_is_told() {
     let error = second.add_model(&mesh, &ModelOptions { displacement, ..ModelOptions::default() }).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "displacement map 0: this renderer was not told of it, or to forget it: call add_displacement first"
+        "displacement map 0: this renderer does not know it, or was told to forget it: call add_displacement first"
     );
     for (evaluation, construction, what) in [
         (Evaluation::GeometryTwoPass, Construction::Cached, "displacement"),

@@ -280,11 +280,19 @@ fn what_the_device_cannot_do_is_said() {
     let base = ImageDesc::new("picture", vk::Extent2D { width: 8, height: 3 }, vk::Format::R8G8B8A8_UNORM, color);
     assert!(Image::new(context, &ImageDesc { mip_levels: 4, ..base }).is_ok());
     let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+    let transient = vk::ImageUsageFlags::TRANSIENT_ATTACHMENT;
     for (desc, why) in [
         (ImageDesc { mip_levels: 0, ..base }, "0 mip levels: 8 x 3 pixels have 1 to 4"),
         (ImageDesc { mip_levels: 5, ..base }, "5 mip levels: 8 x 3 pixels have 1 to 4"),
-        (ImageDesc { usage: vk::ImageUsageFlags::empty(), ..base }, "it is for no use: name at least one"),
-        (ImageDesc { usage: depth, ..base }, "llvmpipe"),
+        (ImageDesc { usage: vk::ImageUsageFlags::empty(), ..base }, "it is for no use of a view"),
+        (ImageDesc { usage: vk::ImageUsageFlags::TRANSFER_DST, ..base }, "it is for no use of a view"),
+        (ImageDesc { usage: color | transient | vk::ImageUsageFlags::SAMPLED, ..base }, "a transient attachment"),
+        (ImageDesc { samples: vk::SampleCountFlags::empty(), ..base }, "samples are "),
+        (
+            ImageDesc { samples: vk::SampleCountFlags::TYPE_4, mip_levels: 2, ..base },
+            "2 mip levels with several samples",
+        ),
+        (ImageDesc { usage: depth, ..base }, ""),
     ] {
         let error = Image::new(context, &desc).map(drop).unwrap_err().to_string();
         assert!(error.starts_with(&format!("picture: {why}")), "{error}");

@@ -54,7 +54,8 @@ impl Change {
             _ if self.confidence < CONFIDENCE => "the same",
             Interval { high, .. } if high < self.machine.low => "faster",
             Interval { low, .. } if low > self.machine.high => "slower",
-            _ => "as the machine",
+            _ if self.machine != Range::ONE => "as the machine",
+            _ => "the same",
         }
     }
 }

@@ -153,7 +153,7 @@ fn reason(why: &BenchError) -> String {
         BenchError::Renderer(Error::TableTooLarge { table, bytes, max, .. }) => {
             let table = table.replace('_', " ");
             format!(
-                "{table} take {bytes} bytes, but a shader can see {max} at once on this device: draw a smaller mesh"
+                "{table} take {bytes} bytes, but a shader can see {max} at once on this device: draw a smaller mesh, or at smaller factors"
             )
         }
         _ => why.to_string(),

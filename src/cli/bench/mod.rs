@@ -149,6 +149,9 @@ impl BenchArgs {
     ) -> Result<(), CliError> {
         let schemes = unique(contestants, |contestant| contestant.patches.map(|(scheme, _)| scheme));
         let schemes: Vec<Scheme> = schemes.into_iter().flatten().collect();
+        if schemes.is_empty() {
+            return Ok(());
+        }
         let _progress = Progress::new("comparing with the limit surface");
         for (of, mesh) in originals {
             let errors = normal_errors(mesh, &schemes, self.refine)?;

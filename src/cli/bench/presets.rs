@@ -234,12 +234,13 @@ impl Preset {
 
     /// Whether rows of these options are of what was published.
     fn is_of(&self, options: &OptionsOut) -> bool {
-        (options.instances, options.patches.as_str()) == (self.instances, self.patches.name())
+        (options.instances, options.patches.as_str(), options.refine) == (self.instances, self.patches.name(), 0)
     }
 
     /// Each figure with each mesh measured as was published; with the mesh of its name alone, where there is one.
     pub(super) fn beside(&self, results: &Results) -> Vec<Beside> {
-        let rows: Vec<&Row> = results.rows.iter().filter(|row| row.setting.is_usual()).collect();
+        let copied = |row: &Row| results.meshes.iter().any(|mesh| mesh.name == row.setting.mesh && mesh.copies > 1);
+        let rows: Vec<&Row> = results.rows.iter().filter(|row| row.setting.is_usual() && !copied(row)).collect();
         let mut lines = Vec::new();
         for figures in self.published.chunk_by(|a, b| a.0 == b.0).filter(|_| self.is_of(&results.options)) {
             for rows in rows.chunk_by(|a, b| a.setting.mesh == b.setting.mesh) {

@@ -8,6 +8,7 @@ use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line, left_o
 use super::findings::Findings;
 use super::presets::{Beside, PresetOut};
 use super::recorded::Recorded;
+use ash_subdiv::Spacing;
 use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, CullBy, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use ash_subdiv::renderer::Cull;
@@ -212,9 +213,12 @@ impl Setting {
             && self.passes == race.passes
     }
 
-    /// Whether it is what a user gets who asks for nothing else: what does not depend on the mesh and the spacing.
+    /// Whether it is what a user gets who asks for nothing else, whatever the mesh.
     pub(super) fn is_usual(&self) -> bool {
-        self.motion == Motion::Moving.name() && self.view == Camera::Fit.name() && self.passes == 1
+        self.spacing == parse::spacing_name(Spacing::Equal)
+            && self.motion == Motion::Moving.name()
+            && self.view == Camera::Fit.name()
+            && self.passes == 1
     }
 
     /// The spacing, and what is not as always.

@@ -236,7 +236,16 @@ fn presets_set_published_figures_beside() {
         assert!(written.contains("Loop, Schaefer, Ni, Castaño 2009, table 1") && written.contains(told), "{written}");
     }
     // Nor do they stand beside what was drawn otherwise.
-    for otherwise in ["--patches all", "--instances 2", "--passes 2", "--view clipped", "--motion still"] {
+    for otherwise in [
+        "--patches all",
+        "--instances 2",
+        "--passes 2",
+        "--view clipped",
+        "--motion still",
+        "--spacing odd",
+        "--refine 1",
+        "--replicate 2",
+    ] {
         let results = json(&format!("{few} --factors 6 --schemes gregory {otherwise}"));
         assert_eq!(results.get("published"), None, "{otherwise}");
     }

@@ -98,6 +98,11 @@ fn reports_are_written_whole_or_not_at_all() {
     let why = "this is there already, and is not of a report: name another folder";
     fails(&format!("{few} {}", other.display()), 1, &format!("{}: {why}", other.join("index.html").display()));
     assert_eq!(fs::read(other.join("index.html")).unwrap(), b"mine");
+    let (lone, results) = measured(&folder.join("other"), "--shape cube --factors 1 --paths bilinear");
+    fails(&format!("{few} {}", other.display()), 1, &format!("{}: {why}", lone.display()));
+    fs::remove_file(other.join("index.html")).unwrap();
+    fails(&format!("{few} {}", other.display()), 1, &format!("{}: {why}", lone.display()));
+    assert_eq!(fs::read_to_string(&lone).unwrap(), results.to_string());
     assert!(run(&format!("{few} {}", made.display())).status.success());
     let mut names: Vec<_> = fs::read_dir(&made).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     names.sort_unstable();

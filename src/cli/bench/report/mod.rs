@@ -21,23 +21,22 @@ pub(super) struct Folder<'f> {
 }
 
 impl<'f> Folder<'f> {
-    /// Makes sure, before anything is measured, that the report can be written, and that it takes the place of no other page
-    /// than a report's, and not of what it is compared with.
+    /// Makes sure, before anything is measured, that the report can be written, and that it takes the place of nothing but a
+    /// report, and not of what it is compared with.
     pub(super) fn prepare(folder: &'f Path, compared: Option<&Path>) -> Result<Self, CliError> {
         let failed = |path: &Path, why: &str| Err(CliError::Work(format!("{}: {why}", path.display())));
         if folder.exists() && !folder.is_dir() {
             return failed(folder, "this is no folder: name one for the report");
         }
-        let [results, _, page] = paths(folder);
-        if page.is_file() && !results.is_file() {
-            return failed(&page, "this is there already, and is not of a report: name another folder");
+        let files = paths(folder);
+        let [results, ..] = &files;
+        let is_report = || files.iter().all(|path| path.is_file()) && Results::read(results).is_ok();
+        if let Some(there) = files.iter().find(|path| path.is_file()).filter(|_| !is_report()) {
+            return failed(there, "this is there already, and is not of a report: name another folder");
         }
         let is_same = |other: &Path| Some(results.canonicalize().ok()? == other.canonicalize().ok()?);
         if compared.is_some_and(|compared| is_same(compared) == Some(true)) {
-            return failed(
-                &results,
-                "the report would take the place of what it is compared with: name another folder",
-            );
+            return failed(results, "the report would take the place of what it is compared with: name another folder");
         }
         let made = folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect();
         let prepared = Self { folder, made };
