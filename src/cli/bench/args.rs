@@ -181,18 +181,18 @@ fn frames(text: &str) -> Result<u32, String> {
 }
 
 impl BenchArgs {
-    /// What is asked for, else what the preset says, else everything.
-    pub(super) fn contestants(&self) -> Vec<Contestant> {
-        fn pick<T: Copy + PartialEq>(given: &[T], preset: Option<&[T]>, all: &[T]) -> Vec<T> {
-            let chosen = if given.is_empty() { preset.unwrap_or(all) } else { given };
-            // Each once, in the order of the registry: the first row is what the others are compared with.
-            all.iter().copied().filter(|one| chosen.contains(one)).collect()
-        }
-        let all = Contestant::all(
+    /// What is asked for, else what the preset says, else everything; without a choice of normals and culling.
+    pub(super) fn plain_contestants(&self) -> Vec<Contestant> {
+        Contestant::all(
             &pick(&self.paths, self.preset.map(|p| p.paths), &Path::ALL),
             &pick(&self.schemes, self.preset.map(|p| p.schemes), &Scheme::ALL),
             &pick(&self.constructions, self.preset.map(|p| p.constructions), &Construction::ALL),
-        );
+        )
+    }
+
+    /// The same with all normals and culling that are asked for.
+    pub(super) fn contestants(&self) -> Vec<Contestant> {
+        let all = self.plain_contestants();
         let normals = pick(&self.normals, None, &Normals::ALL);
         let mut culls = vec![Cull::NONE, cull(&self.cull)];
         culls.dedup();
@@ -247,6 +247,13 @@ impl BenchArgs {
         }
         Ok(Meshes { originals, subjects })
     }
+}
+
+/// What is given, else what the preset says, else all: each once, in the order of the registry, for the first row is what the
+/// others are compared with.
+fn pick<T: Copy + PartialEq>(given: &[T], preset: Option<&[T]>, all: &[T]) -> Vec<T> {
+    let chosen = if given.is_empty() { preset.unwrap_or(all) } else { given };
+    all.iter().copied().filter(|one| chosen.contains(one)).collect()
 }
 
 /// The meshes that are drawn.

@@ -218,6 +218,12 @@ pub(super) struct Beside {
 }
 
 impl Preset {
+    /// The schemes and constructions that it measures, if no others are given.
+    pub(super) fn about_patches(&self) -> String {
+        let schemes = self.schemes.iter().map(|scheme| scheme.name());
+        schemes.chain(self.constructions.iter().map(|how| how.name())).collect::<Vec<_>>().join(", ")
+    }
+
     /// What is told of it where these figures are set beside.
     pub(super) fn about(&self, beside: &[Beside]) -> PresetOut {
         let mut note = self.note.to_owned();

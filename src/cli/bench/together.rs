@@ -31,28 +31,37 @@ impl BenchArgs {
     /// That what is asked for does not go together, and what does.
     pub(super) fn no_contestants(&self) -> CliError {
         let message = "none of --paths, --constructions, --schemes and --normals go together";
-        CliError::Usage(format!("{message}: {}", self.rules().join("; ")))
+        let preset = self.preset.map(|preset| format!("the preset is of {}", preset.about_patches()));
+        CliError::Usage(format!("{message}: {}", self.rules().into_iter().chain(preset).collect::<Vec<_>>().join("; ")))
     }
 
     /// Notes on what is asked for and none of the contestants has.
     pub(super) fn in_vain(&self, contestants: &[Contestant]) -> Vec<String> {
         let mut notes = Vec::new();
-        let drawn = |path| contestants.iter().any(|contestant| contestant.path == path);
+        // Without shared normals there may be some that have it.
+        let plain = self.plain_contestants();
+        let has = |all: &[Contestant], is: &dyn Fn(&Contestant) -> bool| all.iter().any(is);
+        let mut left_out = |name: &str, rule: String, is: &dyn Fn(&Contestant) -> bool| match has(&plain, is) {
+            _ if has(contestants, is) => {}
+            true => notes.push(format!("{name} is left out: {SHARED_NORMALS}")),
+            false => notes.push(format!("{name} is left out: {rule}")),
+        };
         for path in unique(&self.paths, |&path| path) {
-            if let Some(rule) = rule(path).filter(|_| !drawn(path)) {
-                notes.push(format!("{rule}: it is left out"));
+            left_out(path.name(), rule(path).unwrap_or_default(), &|one| one.path == path);
+        }
+        let none = || "none of --paths goes with it".to_owned();
+        for scheme in unique(&self.schemes, |&scheme| scheme) {
+            left_out(scheme.name(), none(), &|one| one.patches.is_some_and(|(other, _)| other == scheme));
+        }
+        for how in unique(&self.constructions, |&how| how) {
+            left_out(how.name(), none(), &|one| one.patches.is_some_and(|(_, other)| other == how));
+        }
+        if self.recording.is_some() {
+            for path in unique(&self.paths, |&path| path).into_iter().filter(|path| !path.is_recorded()) {
+                notes.push(format!("{} is left out: the renderer alone does not record it", path.name()));
             }
         }
-        let patches = || contestants.iter().filter_map(|contestant| contestant.patches);
-        let schemes = unique(&self.schemes, |&scheme| scheme);
-        let schemes =
-            schemes.into_iter().filter(|scheme| patches().all(|(other, _)| other != *scheme)).map(Scheme::name);
-        let constructions = unique(&self.constructions, |&construction| construction);
-        let constructions =
-            constructions.into_iter().filter(|one| patches().all(|(_, other)| other != *one)).map(|one| one.name());
-        for name in schemes.chain(constructions) {
-            notes.push(format!("{name} is left out: none of --paths goes with it"));
-        }
+        let drawn = |path| has(contestants, &|one| one.path == path);
         let culled = |path| contestants.iter().any(|one| one.path == path && one.cull != Cull::NONE);
         if !self.cull.is_empty() {
             if contestants.iter().all(|contestant| contestant.cull == Cull::NONE) {

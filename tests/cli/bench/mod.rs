@@ -240,7 +240,7 @@ fn bench_says_what_is_left_out_once() {
         told(
             "--shape cube --paths tessellation,compute,acc-published --constructions two-stage --schemes gregory,gregory"
         ),
-        "note: compute goes with cached: it is left out\nnote: acc-published goes with acc and two-stage: it is left out\n"
+        "note: compute is left out: compute goes with cached\nnote: acc-published is left out: acc-published goes with acc and two-stage\n"
     );
     assert_eq!(
         told("--shape cube --paths acc-published --schemes acc,pm --constructions two-stage,stencil"),
@@ -251,6 +251,9 @@ fn bench_says_what_is_left_out_once() {
         "note: --cull changes nothing of instanced: it is for the paths tessellation and, by compute, instanced\n"
     );
     assert_eq!(told("--shape cube --constructions two-stage --schemes gregory"), "");
+    let shared =
+        told("--shape cube --paths tessellation --constructions two-stage --schemes acc,gregory --normals shared");
+    assert!(shared.starts_with("note: acc is left out: shared normals go with watertight schemes"), "{shared}");
     assert_eq!(
         told("--shape cube --paths tessellation,instanced --schemes acc --spacing odd"),
         "note: cube: acc cached instanced is left out: it does not go with fractional spacing: do without, or choose the path tessellation\n"
@@ -300,6 +303,11 @@ fn bench_says_what_is_wrong() {
         "bench --paths acc-published,subdivision --schemes gregory --normals shared",
         2,
         "none of --paths, --constructions, --schemes and --normals go together: acc-published goes with acc and two-stage; shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass",
+    );
+    fails(
+        "bench --preset loop2009-table1 --paths compute",
+        2,
+        "none of --paths, --constructions, --schemes and --normals go together: compute goes with cached; the preset is of gregory, acc, pm, two-stage, stencil",
     );
     fails("bench --view far", 2, "invalid value 'far' for '--view <WHERE>' [possible values: fit, clipped]");
     fails("bench --passes 1,0", 2, "invalid value '0' for '--passes <N>': 0 is not in 1..=64");
