@@ -4,6 +4,7 @@ use super::Error;
 use super::gpu_data::{REACH_SHIFT, VECTOR_FLAG, half_not_below};
 use crate::gpu::{DeviceContext, GpuError, Image, ImageDesc, Owned, VkResultExt};
 use ash::vk;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// An image that says how far, or whereto, a surface is moved. See `glsl/lib/displace.glsl`.
@@ -62,8 +63,8 @@ impl DisplacementId {
 
 /// The maps that a renderer knows, and one for models without: every descriptor has to be written (lavapipe bug C).
 pub(super) struct Displacements {
-    /// In the places of those that were removed there is none.
-    maps: Vec<Option<DisplacementMap>>,
+    maps: HashMap<DisplacementId, DisplacementMap>,
+    next: DisplacementId,
     nothing: DisplacementMap,
     _image: Image,
     _sampler: Owned<vk::Sampler>,
@@ -87,30 +88,32 @@ impl Displacements {
             vectors: false,
             range: [0.0; 2],
         };
-        Ok(Self { maps: Vec::new(), nothing, _image: image, _sampler: sampler })
+        Ok(Self { maps: HashMap::new(), next: DisplacementId::FIRST, nothing, _image: image, _sampler: sampler })
     }
 
     pub(super) fn add(&mut self, map: DisplacementMap) -> DisplacementId {
-        self.maps.push(Some(map));
-        DisplacementId(self.maps.len() - 1)
+        let id = self.next;
+        self.next.0 += 1;
+        self.maps.insert(id, map);
+        id
     }
 
     /// Forgets a map.
     pub(super) fn remove(&mut self, id: DisplacementId) -> Result<(), Error> {
-        let known = self.maps.get_mut(id.0).and_then(Option::take);
-        known.map(drop).ok_or(Error::NoSuchDisplacement { id })
+        self.maps.remove(&id).map(drop).ok_or(Error::NoSuchDisplacement { id })
     }
 
-    /// Forgets all maps.
+    /// Forgets all maps, and counts anew.
     #[cfg(feature = "headless")]
     pub(super) fn clear(&mut self) {
         self.maps.clear();
+        self.next = DisplacementId::FIRST;
     }
 
     pub(super) fn get(&self, id: Option<DisplacementId>) -> Result<DisplacementMap, Error> {
         match id {
             None => Ok(self.nothing),
-            Some(id) => self.maps.get(id.0).copied().flatten().ok_or(Error::NoSuchDisplacement { id }),
+            Some(id) => self.maps.get(&id).copied().ok_or(Error::NoSuchDisplacement { id }),
         }
     }
 }

@@ -3,6 +3,7 @@
 
 use crate::common;
 use crate::common::edges::edge_points;
+use crate::common::stage::Stage;
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors, CapturedVertex, Which};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
@@ -466,4 +467,40 @@ fn wrong_displacement_is_told() {
     first.add_tables(tables, &mesh.positions_f32(), &asked).expect("a model");
     drop((first, second, texture));
     headless.finish_silent();
+}
+
+/// A map and its image may go when every frame was prepared after.
+#[test]
+fn maps_go_while_others_are_drawn() {
+    let stage = Stage::new();
+    let mesh = shape("creature").expect("built in");
+    let texels = Texels { width: 2, height: 2, channels: 1, values: vec![0.0, 1.0, 1.0, 0.0] };
+    let mut renderer = stage.renderer(&Options { frames_in_flight: 2, ..Options::default() });
+    let plain = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
+    let before = {
+        stage.prepare(&mut renderer, 0);
+        stage.draw(&mut renderer, 0, &[DrawItem::new(plain, 3.0)]).expect("a picture")
+    };
+    for _ in 0..2 {
+        let texture = Texture::new(&stage.headless, "map", &texels).expect("a texture");
+        // SAFETY: the texture lives until every frame was prepared again.
+        let map = unsafe { renderer.add_displacement((&texture).into()) };
+        let options = ModelOptions { displacement: Some(map), ..ModelOptions::default() };
+        let model = renderer.add_model(&mesh, &options).expect("a model");
+        let item = DrawItem { displacement: [0.05, 0.0], ..DrawItem::new(model, 3.0) };
+        for frame in 0..2 {
+            stage.prepare(&mut renderer, frame);
+            let displaced = stage.draw(&mut renderer, frame, &[item]).expect("a picture");
+            assert_ne!(displaced, before);
+        }
+        renderer.remove_model(model).expect("there is one");
+        renderer.remove_displacement(map).expect("no model uses it");
+        (0..2).for_each(|frame| stage.prepare(&mut renderer, frame));
+        drop(texture);
+        for frame in 0..2 {
+            assert_eq!(stage.draw(&mut renderer, frame, &[DrawItem::new(plain, 3.0)]).expect("a picture"), before);
+        }
+    }
+    drop(renderer);
+    stage.finish();
 }
