@@ -68,8 +68,9 @@ impl Captured<'_> {
         let mut watcher = if self.shaders.is_empty() { kept.take(&watched, new)? } else { new()? };
         let Watcher { renderer, layout, target, idle } = &mut watcher;
         // SAFETY: as the caller of `displaced` promises. Only models look at maps, and this one goes before the map does.
-        let displacement = self.displacement.map(|map| unsafe { renderer.add_displacement(map) });
-        let model_options = ModelOptions { evaluation: self.evaluation(mode), displacement, ..self.options.clone() };
+        let map = self.displacement.map(|map| unsafe { renderer.add_displacement(map) });
+        let model_options =
+            ModelOptions { evaluation: self.evaluation(mode), displacement: map, ..self.options.clone() };
         let model = renderer.add_tables(self.tables.clone(), &self.positions, &model_options)?;
         if model_options.evaluation.needs_segments() {
             let most = match draw.factor {
@@ -123,7 +124,7 @@ impl Captured<'_> {
         }
         if self.shaders.is_empty() {
             renderer.remove_model(model)?;
-            renderer.forget_displacements();
+            map.map_or(Ok(()), |map| renderer.remove_displacement(map))?;
             // SAFETY: the command buffer is being recorded; the frame before was waited for. Frees the model.
             headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
             kept.put_back(watched, watcher);

@@ -282,7 +282,7 @@ pub fn leaked_pixels(
     // SAFETY: likewise.
     let pixels = target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, 0, &view, &[item]) })?;
     renderer.remove_model(model)?;
-    renderer.forget_displacements();
+    map.map_or(Ok(()), |map| renderer.remove_displacement(map))?;
     // SAFETY: outside rendering, and all frames before are done. Frees the model.
     headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
     kept.put_back(drawn, layers);

@@ -103,13 +103,6 @@ impl Displacements {
         self.maps.remove(&id).map(drop).ok_or(Error::NoSuchDisplacement { id })
     }
 
-    /// Forgets all maps, and counts anew.
-    #[cfg(feature = "headless")]
-    pub(super) fn clear(&mut self) {
-        self.maps.clear();
-        self.next = DisplacementId::FIRST;
-    }
-
     pub(super) fn get(&self, id: Option<DisplacementId>) -> Result<DisplacementMap, Error> {
         match id {
             None => Ok(self.nothing),

@@ -111,12 +111,6 @@ impl Renderer {
         }
     }
 
-    /// Forgets the displacement maps, which no model may look at any more.
-    #[cfg(feature = "headless")]
-    pub(crate) fn forget_displacements(&mut self) {
-        self.displacements.clear();
-    }
-
     /// Has a model's control points and vertices made anew in the next frame: the bench times them.
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(crate) fn forget_control_points(&mut self, id: super::ModelId) -> Result<(), super::Error> {

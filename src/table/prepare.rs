@@ -5,9 +5,8 @@ use crate::limit::{Stencils, refine};
 use crate::mesh::{ControlMesh, MAX_CORNERS, MeshError, SHARPNESS_INFINITE};
 use crate::patch::{Fallback, Scheme};
 use crate::table::{Patch, PatchPlan, TableError};
-use crate::topology::{PatchKind, SHARP_FROM, Topology};
+use crate::topology::{PatchKind, Ring, RingKind, SHARP_FROM, Topology};
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// Where a face of the prepared mesh comes from.
@@ -249,31 +248,12 @@ fn refine_faces(
     Ok(prepared)
 }
 
-/// Vertices within the surface at which one edge is drawn sharp, and nothing else is.
+/// Vertices around which all is smooth but one sharp edge, which ends there.
 fn darts(topology: &Topology) -> Option<Notice> {
-    let data = topology.mesh().data();
-    let mut sharp_edges: BTreeMap<u32, u32> = BTreeMap::new();
-    // An edge may be tagged more than once.
-    let sharp = data.creases.iter().filter(|crease| crease.sharpness >= SHARP_FROM);
-    let sharp: BTreeSet<_> = sharp.map(|crease| (crease.vertices.iter().min(), crease.vertices.iter().max())).collect();
-    for &vertex in sharp.iter().flat_map(|&(from, to)| [from, to]).flatten() {
-        *sharp_edges.entry(vertex).or_default() += 1;
-    }
-    sharp_edges.retain(|_, edges| *edges == 1);
-    for corner in data.corners.iter().filter(|corner| corner.sharpness >= SHARP_FROM) {
-        sharp_edges.remove(&corner.vertex);
-    }
-    // Where fans of faces touch, the vertex is a corner.
-    for split in topology.mesh().vertex_count()..topology.vertex_count() {
-        sharp_edges.remove(&topology.source(split as u32));
-    }
-    if !sharp_edges.is_empty() {
-        for h in (0..topology.mesh().corner_count() as u32).filter(|&h| topology.twin(h).is_none()) {
-            [h, topology.next(h)].iter().for_each(|&end| _ = sharp_edges.remove(&topology.mesh_vertex(end)));
-        }
-    }
-    let (&first, _) = sharp_edges.first_key_value()?;
-    Some(Notice::Darts { count: sharp_edges.len(), first })
+    let is_dart =
+        |ring: &&Ring| ring.kind == RingKind::Smooth && topology.ring_half_edges(ring).any(|h| topology.is_sharp(h));
+    let ends: Vec<u32> = topology.rings().iter().filter(is_dart).map(|ring| topology.mesh_vertex(ring.start)).collect();
+    Some(Notice::Darts { count: ends.len(), first: *ends.iter().min()? })
 }
 
 fn semi_sharp(mesh: &ControlMesh) -> Option<Notice> {

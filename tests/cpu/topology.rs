@@ -194,6 +194,8 @@ fn creases_that_end_within_the_surface_are_told() {
     assert_eq!(told(&[[10, 11], [11, 12]], &[], 10.0), Some(Notice::Darts { count: 1, first: 12 }));
     assert_eq!(told(&[[11, 12], [12, 13]], &[], 2.0), Some(Notice::Darts { count: 2, first: 11 }));
     assert_eq!(told(&[[10, 11], [11, 12], [12, 11]], &[], 10.0), Some(Notice::Darts { count: 1, first: 12 }));
+    let text = Notice::Darts { count: 2, first: 11 }.to_string();
+    assert!(text.starts_with("2 ends of creases lie within the surface (the first at vertex 11): "), "{text}");
     // From boundary to boundary; to a corner; too little sharpness to be drawn.
     assert_eq!(told(&[[10, 11], [11, 12], [12, 13], [13, 14]], &[], 10.0), None);
     assert_eq!(told(&[[10, 11], [11, 12]], &[12], 10.0), None);

@@ -448,9 +448,9 @@ fn wrong_displacement_is_told() {
     let displaced = ModelOptions { displacement, ..ModelOptions::default() };
     let model = first.add_model(&nothing, &displaced).expect("a model without patches");
     // Maps are forgotten when no model uses them.
-    assert!(
-        matches!(first.remove_displacement(map), Err(Error::DisplacementInUse { id, model: by }) if (id, by) == (map, model))
-    );
+    let error = first.remove_displacement(map).unwrap_err();
+    assert!(matches!(error, Error::DisplacementInUse { id, model: by } if (id, by) == (map, model)));
+    assert_eq!(error.to_string(), "displacement map 0: model 0 uses it: remove that first");
     first.remove_model(model).expect("there is one");
     first.remove_displacement(map).expect("no model uses it");
     for error in [first.remove_displacement(map).unwrap_err(), first.add_model(&mesh, &displaced).unwrap_err()] {

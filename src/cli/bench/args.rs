@@ -146,7 +146,6 @@ Of several views, the time of a triangle that clipping leaves is set beside that
 several counts of passes, `compute wins from so many passes on` says where its time and that of
 tessellating in every pass cross. Of copies of a mesh (--replicate), `time grows as` says by which
 power of patches. `more` is more than what was measured can tell.
-Of ni2008-table5 the published figures are not at hand: it measures without them.
 
 JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period,
 processors}, options{size, instances, passes[], frames, warm_up, patches, refine}, meshes[{name,

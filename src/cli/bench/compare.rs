@@ -8,6 +8,7 @@ use super::super::error::CliError;
 use super::super::output::note;
 use super::facts::{DeviceOut, MeshOut, OptionsOut};
 use super::results::{GEOMETRY, GPU, Interval, Results, Row, Setting, Who};
+use ash_subdiv::bench::{BenchOptions, Contestant};
 use ash_subdiv::measure::statistics::{CONFIDENCE, change};
 use serde::Serialize;
 
@@ -92,7 +93,22 @@ pub(super) fn check(old: &Results, options: &OptionsOut, meshes: &[MeshOut]) -> 
     Ok(())
 }
 
-pub(super) fn nothing_in_common() -> CliError {
+/// That there will be rows that both have, if these contestants are raced on these meshes.
+pub(super) fn check_rows(
+    old: &Results,
+    meshes: &[MeshOut],
+    races: &[BenchOptions],
+    contestants: &[Contestant],
+) -> Result<(), CliError> {
+    let is_raced = |row: &Row| {
+        meshes.iter().any(|mesh| mesh.name == row.setting.mesh)
+            && races.iter().any(|race| row.setting.is_of(race) && race.factors.contains(&row.factor))
+            && contestants.iter().any(|&contestant| row.who == Who::new(contestant))
+    };
+    if old.rows.iter().any(is_raced) { Ok(()) } else { Err(nothing_in_common()) }
+}
+
+fn nothing_in_common() -> CliError {
     let what =
         "the results to compare with have no row in common with these: measure the same meshes, paths and factors";
     CliError::Work(what.into())

@@ -133,7 +133,7 @@ impl LeftOut {
     ) -> Self {
         Self {
             // In this view as in the others.
-            setting: Setting::new(subject, options, options.cameras[0]),
+            setting: Setting::new(&subject.name, options, options.cameras[0]),
             who: Who::new(contestant),
             factor,
             why: reason(why),

@@ -35,7 +35,7 @@ use ash_subdiv::measure::{ErrorOptions, surface_errors};
 use ash_subdiv::{ControlMesh, Scheme, Spacing};
 use facts::{DeviceOut, LeftOut, OptionsOut};
 use findings::Findings;
-use results::{Results, Row, Who};
+use results::{Results, Row};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -98,15 +98,7 @@ impl BenchArgs {
         let races = self.races(&options);
         if let Some(old) = old {
             compare::check(old, &about, &meshes)?;
-            let is_raced = |row: &Row| {
-                meshes.iter().any(|mesh| mesh.name == row.setting.mesh)
-                    && races.iter().any(|race| row.setting.is_of(race))
-                    && options.factors.contains(&row.factor)
-                    && contestants.iter().any(|&contestant| row.who == Who::new(contestant))
-            };
-            if !old.rows.iter().any(is_raced) {
-                return Err(compare::nothing_in_common());
-            }
+            compare::check_rows(old, &meshes, &races, &contestants)?;
         }
         let report = self.report.as_deref();
         report.map_or(Ok(()), |folder| self.prepare_report(folder).map(drop))?;

@@ -55,12 +55,6 @@ impl Unit {
 #[derive(Debug)]
 struct Published(&'static str, Scheme, Construction, f32, f64);
 
-/// Where patches were measured.
-const PATCHES: &[Path] = &[Path::Tessellation, Path::Bilinear, Path::VertexBuffer];
-
-/// Where grids were instanced over patches.
-const INSTANCED: &[Path] = &[Path::Instanced, Path::Tessellation, Path::Bilinear, Path::VertexBuffer];
-
 /// Where patches were converted in one pass and evaluated in another.
 const CONVERTED: &[Path] = &[Path::GeometryTwoPass, Path::Tessellation, Path::Bilinear, Path::VertexBuffer];
 
@@ -74,7 +68,7 @@ static PRESETS: [Preset; 5] = [
         note: "Published: milliseconds in a simulator of Direct3D 11 hardware, N taken as the factor. Measured: geometry alone.",
         schemes: &[Gregory, Acc, Pm],
         constructions: &[TwoStage, Stencil],
-        paths: PATCHES,
+        paths: &[Path::Tessellation, Path::Bilinear, Path::VertexBuffer],
         factors: &[6.0, 10.0],
         patches: Subset::Irregular,
         instances: 1,
@@ -96,7 +90,7 @@ static PRESETS: [Preset; 5] = [
                Measured: the same (instanced), with pixels.",
         schemes: &[Gregory, Acc, Pm],
         constructions: &[Cached, TwoStage],
-        paths: INSTANCED,
+        paths: &[Path::Instanced, Path::Tessellation, Path::Bilinear, Path::VertexBuffer],
         factors: &[16.0, 24.0],
         patches: Subset::All,
         instances: 1,

@@ -8,7 +8,6 @@ use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line, left_o
 use super::findings::Findings;
 use super::presets::{Beside, PresetOut};
 use super::recorded::Recorded;
-use ash_subdiv::Spacing;
 use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, CullBy, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use ash_subdiv::renderer::Cull;
@@ -195,9 +194,9 @@ pub(super) const NONE: &str = "none";
 const TOTAL: &str = "total";
 
 impl Setting {
-    pub(super) fn new(subject: &Subject, options: &BenchOptions, camera: Camera) -> Self {
+    pub(super) fn new(mesh: &str, options: &BenchOptions, camera: Camera) -> Self {
         Self {
-            mesh: subject.name.clone(),
+            mesh: mesh.to_owned(),
             spacing: parse::spacing_name(options.spacing).to_owned(),
             motion: options.motion.name().to_owned(),
             view: camera.name().to_owned(),
@@ -207,18 +206,18 @@ impl Setting {
 
     /// Whether this is one of the settings of such a race.
     pub(super) fn is_of(&self, race: &BenchOptions) -> bool {
-        self.spacing == parse::spacing_name(race.spacing)
-            && self.motion == race.motion.name()
-            && race.cameras.iter().any(|camera| self.view == camera.name())
-            && self.passes == race.passes
+        race.cameras.iter().any(|&camera| *self == Self::new(&self.mesh, race, camera))
+    }
+
+    /// What it is where nothing else is asked for.
+    fn usual(&self) -> Self {
+        let usual = BenchOptions::default();
+        Self::new(&self.mesh, &usual, usual.cameras[0])
     }
 
     /// Whether it is what a user gets who asks for nothing else, whatever the mesh.
     pub(super) fn is_usual(&self) -> bool {
-        self.spacing == parse::spacing_name(Spacing::Equal)
-            && self.motion == Motion::Moving.name()
-            && self.view == Camera::Fit.name()
-            && self.passes == 1
+        *self == self.usual()
     }
 
     /// The spacing, and what is not as always.
@@ -237,8 +236,7 @@ impl Setting {
                 passes => Some(format!("{passes} passes")),
             },
         ];
-        let (motion, view) = (Motion::Moving.name().to_owned(), Camera::Fit.name().to_owned());
-        let usual = Self { motion, view, passes: 1, ..self.clone() };
+        let usual = self.usual();
         let told = |of: &fn(&Self) -> Option<String>| {
             let own = of(self);
             let is_told = own != of(&usual) || rows.iter().any(|row| of(&row.setting) != own);
@@ -311,7 +309,7 @@ impl Row {
         let fence = |series: &Series| Times::of(&series.host);
         let frames = |series: &Series| series.device.clone();
         Some(Self {
-            setting: Setting::new(subject, options, row.camera),
+            setting: Setting::new(&subject.name, options, row.camera),
             who: Who::new(row.contestant),
             factor: row.factor,
             patches: row.patches,

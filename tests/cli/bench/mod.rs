@@ -258,6 +258,15 @@ fn bench_says_what_is_left_out_once() {
         told("--shape cube --paths tessellation,instanced --schemes acc --spacing odd"),
         "note: cube: acc cached instanced is left out: it does not go with fractional spacing: do without, or choose the path tessellation\n"
     );
+    assert_eq!(
+        told("--shape cube --paths tessellation,subdivision --schemes gregory --constructions two-stage --factors 3"),
+        "note: cube: subdivision is left out at factor 3: subdivision has the factors 1, 2, 4 and 8, for levels 0 to 3\n"
+    );
+    let recorded = run("bench --shape cube --schemes gregory --paths tessellation,bilinear --recording 3 --frames 6");
+    assert_eq!(
+        String::from_utf8_lossy(&recorded.stderr),
+        "note: bilinear is left out: the renderer alone does not record it\n"
+    );
     // What is asked for in vain.
     assert_eq!(
         told("--shape cube --paths instanced --constructions cached --cull back --cull-by control"),
@@ -319,6 +328,10 @@ fn bench_says_what_is_wrong() {
         2,
         "none of --paths is recorded by the renderer alone: name one of tessellation, compute, instanced, geometry, geometry-two-pass, subdivision",
     );
+    let what = "the mesh has 5280000000 face corners";
+    let output = run("bench --shape creature --replicate 1000000");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(stderr.starts_with(&format!("error: creature x1000000: {what}")) && output.stdout.is_empty(), "{stderr}");
     fails(
         "bench --shape cube --replicate 1000000000",
         2,

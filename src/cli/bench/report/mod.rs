@@ -40,7 +40,7 @@ impl<'f> Folder<'f> {
         }
         let made = folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect();
         let prepared = Self { folder, made };
-        paths(folder).iter().try_for_each(|path| write_part(path, b"").map(drop))?;
+        files.iter().try_for_each(|path| write_part(path, b"").map(drop))?;
         Ok(prepared)
     }
 
