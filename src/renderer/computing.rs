@@ -4,7 +4,7 @@ use super::pipelines::ShaderCode;
 use crate::gpu::{ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout};
 use ash::vk;
 use bytemuck::Pod;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::hash::Hash;
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ pub(super) struct ComputePipelines<K, P> {
     context: Arc<DeviceContext>,
     layout: Owned<vk::PipelineLayout>,
     cache: vk::PipelineCache,
-    made: HashMap<K, Owned<vk::Pipeline>>,
+    made: FxHashMap<K, Owned<vk::Pipeline>>,
     _constants: PhantomData<P>,
 }
 
@@ -30,7 +30,7 @@ impl<K: Eq + Hash, P: Pod> ComputePipelines<K, P> {
         let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size }];
         // SAFETY: as the caller promises.
         let layout = unsafe { pipeline_layout(context, name, sets, &constants)? };
-        Ok(Self { context: context.clone(), layout, cache, made: HashMap::new(), _constants: PhantomData })
+        Ok(Self { context: context.clone(), layout, cache, made: FxHashMap::default(), _constants: PhantomData })
     }
 
     pub(super) fn context(&self) -> &Arc<DeviceContext> {

@@ -9,7 +9,7 @@ use crate::gpu::{
 use crate::table::PatchPlan;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 const NAME: &str = "subdiv conversion";
@@ -30,7 +30,7 @@ pub(super) struct Conversion {
     cache: vk::PipelineCache,
     pass: Owned<vk::RenderPass>,
     framebuffer: Owned<vk::Framebuffer>,
-    made: HashMap<[u32; 2], Owned<vk::Pipeline>>,
+    made: FxHashMap<[u32; 2], Owned<vk::Pipeline>>,
 }
 
 fn key(stages: PatchStages) -> [u32; 2] {
@@ -60,7 +60,7 @@ impl Conversion {
             let framebuffer = vk::FramebufferCreateInfo::default().render_pass(pass.raw()).width(1).height(1).layers(1);
             let framebuffer = device.create_framebuffer(&framebuffer, None).of("vkCreateFramebuffer", NAME)?;
             let framebuffer = Owned::new(context, framebuffer, NAME);
-            Ok(Self { context: context.clone(), layout, cache, pass, framebuffer, made: HashMap::new() })
+            Ok(Self { context: context.clone(), layout, cache, pass, framebuffer, made: FxHashMap::default() })
         }
     }
 

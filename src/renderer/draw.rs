@@ -3,6 +3,7 @@
 use super::evaluated::Drawn;
 use super::factor::{Cull, Cut, Factor};
 use super::gpu_data::{COUNTER_CLOCKWISE_FLAG, DrawConstants};
+use super::lattice::BoundLattice;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
 use super::stages::PatchStages;
@@ -71,6 +72,7 @@ impl DrawItem {
 pub(super) struct Bound {
     pipeline: vk::Pipeline,
     set: vk::DescriptorSet,
+    pub lattice: BoundLattice,
 }
 
 impl Renderer {
@@ -191,8 +193,10 @@ impl Renderer {
                 device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set.raw], &[]);
             }
             if style.geometry != Geometry::Surface {
+                bound.lattice = BoundLattice::default();
                 constants.colour = item.colors[0];
-                self.bind(cmd, PipelineKey { style: item.style, geometry: GeometryKey::Control }, bound);
+                let key = PipelineKey { style: item.style, geometry: GeometryKey::Control };
+                self.bind(cmd, self.pipelines.get(key), bound);
                 self.push(cmd, &constants);
                 if let Some(control) = &model.control {
                     let (first, count) = match style.geometry {
@@ -207,25 +211,37 @@ impl Renderer {
             let drawn = model.drawn(item.factor)?;
             lists.map_or(Ok(()), |lists| lists.check(drawn))?;
             match drawn {
-                Drawn::Patches => {}
                 Drawn::Lattice(lattice) => {
                     constants.set_factor(lattice.segments as f32);
-                    lattice.cmd_bind(device, cmd);
+                    lattice.cmd_bind(device, cmd, &mut bound.lattice);
                 }
                 Drawn::Tiles { segments } => constants.set_factor(segments as f32),
-                Drawn::Subdivided { .. } => {}
+                Drawn::Patches | Drawn::Subdivided { .. } => {}
             }
-            for (number, (&stages, group)) in model.stages.iter().zip(model.tables.plan().groups()).enumerate() {
-                constants.colour = item.colors[stages.kind as usize];
-                if let Some(lists) = lists.filter(|_| stages.has_hull()) {
-                    self.cmd_draw_lists(cmd, lists, (item, model, number), &constants, bound);
-                    continue;
-                }
+            if drawn.lattice_segments().is_none() {
+                bound.lattice = BoundLattice::default();
+            }
+            let groups = model.tables.plan().groups();
+            let pipeline = |number: usize| {
+                let stages: PatchStages = model.stages[number];
                 let geometry = match drawn {
                     Drawn::Subdivided { level } => GeometryKey::Subdivision(level),
+                    _ if lists.is_some() && stages.has_hull() => stages.geometry(Cut::listed(item.factor)),
                     _ => stages.geometry(cut),
                 };
-                self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
+                self.pipelines.get(PipelineKey { style: item.style, geometry })
+            };
+            // Of many models, every other one is drawn from the last kind of patch to the first: its pipeline is bound already.
+            let backwards = groups.len() > 1 && pipeline(groups.len() - 1) == Some(bound.pipeline);
+            for i in 0..groups.len() {
+                let number = if backwards { groups.len() - 1 - i } else { i };
+                let (stages, group) = (model.stages[number], &groups[number]);
+                constants.colour = item.colors[stages.kind as usize];
+                self.bind(cmd, pipeline(number), bound);
+                if let Some(lists) = lists.filter(|_| stages.has_hull()) {
+                    self.cmd_draw_lists(cmd, lists, (model, number), &constants);
+                    continue;
+                }
                 constants.first_corner = group.first_corner as u32;
                 constants.first_patch = group.patches.start as u32;
                 let patches = group.patches.len() as u32;
@@ -332,9 +348,9 @@ impl Renderer {
         Ok((model, most))
     }
 
-    pub(super) unsafe fn bind(&self, cmd: vk::CommandBuffer, key: PipelineKey, bound: &mut Bound) {
+    unsafe fn bind(&self, cmd: vk::CommandBuffer, pipeline: Option<vk::Pipeline>, bound: &mut Bound) {
         // Every pipeline of the model was made before.
-        if let Some(pipeline) = self.pipelines.get(key)
+        if let Some(pipeline) = pipeline
             && bound.pipeline != pipeline
         {
             bound.pipeline = pipeline;

@@ -75,6 +75,14 @@ pub(super) struct Lattice {
     staged: Option<Buffer>,
 }
 
+/// What lattices have bound in a command buffer since something else was.
+#[derive(Default)]
+pub(super) struct BoundLattice {
+    /// With the vertices that go with them, if they are evaluated.
+    indices: vk::Buffer,
+    topology: Option<vk::PrimitiveTopology>,
+}
+
 /// Evaluated vertices, group by group.
 pub(super) struct LatticeVertices {
     pub buffer: Buffer,
@@ -202,19 +210,23 @@ impl Lattice {
         (self.groups[group].indices, self.groups[group].first_index)
     }
 
-    /// Binds what all groups are drawn from.
+    /// Binds what all groups are drawn from, unless it is bound.
     ///
     /// # Safety
-    /// `cmd` is being recorded.
-    pub(super) unsafe fn cmd_bind(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
+    /// `cmd` is being recorded, and has this bound.
+    pub(super) unsafe fn cmd_bind(&self, device: &ash::Device, cmd: vk::CommandBuffer, bound: &mut BoundLattice) {
         // SAFETY: as the caller promises.
         unsafe {
-            device.cmd_bind_index_buffer(cmd, self.indices.raw(), 0, vk::IndexType::UINT32);
-            if let Some(vertices) = &self.vertices {
-                device.cmd_bind_vertex_buffers(cmd, 0, &[vertices.buffer.raw()], &[0]);
+            if bound.indices != self.indices.raw() {
+                bound.indices = self.indices.raw();
+                device.cmd_bind_index_buffer(cmd, self.indices.raw(), 0, vk::IndexType::UINT32);
+                if let Some(vertices) = &self.vertices {
+                    device.cmd_bind_vertex_buffers(cmd, 0, &[vertices.buffer.raw()], &[0]);
+                }
             }
             // If nothing is drawn, the pipeline that is bound may not have it dynamic.
-            if !self.groups.is_empty() {
+            if !self.groups.is_empty() && bound.topology != Some(self.topology) {
+                bound.topology = Some(self.topology);
                 device.cmd_set_primitive_topology(cmd, self.topology);
             }
         }

@@ -105,7 +105,7 @@ use lattice::Lattice;
 use lists::FrameLists;
 use model::{Model, Surroundings};
 use pipelines::Pipelines;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -142,7 +142,7 @@ pub struct Renderer {
     options: Options,
     pipelines: Pipelines,
     displacements: Displacements,
-    models: HashMap<ModelId, Model>,
+    models: FxHashMap<ModelId, Model>,
     next_id: ModelId,
     retired: Vec<Retired>,
     views: Buffer,
@@ -206,7 +206,7 @@ impl Renderer {
             options: options.clone(),
             pipelines,
             displacements: Displacements::new(context)?,
-            models: HashMap::new(),
+            models: FxHashMap::default(),
             next_id: ModelId { renderer: RENDERERS.fetch_add(1, Ordering::Relaxed), number: 0 },
             retired: Vec::new(),
             views,

@@ -13,6 +13,7 @@ use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Spacing, Specialization, pipeline_layout, shaders,
 };
 use ash::vk;
+use rustc_hash::FxHashMap;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -106,7 +107,7 @@ pub(super) struct Pipelines {
     pub lattice: LatticePipelines,
     /// For patches that are left out before draws.
     pub lists: ListPipelines,
-    made: HashMap<PipelineKey, Owned<vk::Pipeline>>,
+    made: FxHashMap<PipelineKey, Owned<vk::Pipeline>>,
 }
 
 /// The stages that read set 0, set 1 and the push constants.
@@ -152,7 +153,7 @@ impl Pipelines {
             conversion: None,
             lattice,
             lists,
-            made: HashMap::new(),
+            made: FxHashMap::default(),
         })
     }
 

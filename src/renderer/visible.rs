@@ -11,7 +11,6 @@ use super::factor::{Cull, Cut};
 use super::gpu_data::DrawConstants;
 use super::lists::{FrameLists, ListConstants, ListLayout, REGION};
 use super::model::Model;
-use super::pipelines::PipelineKey;
 use super::stages::PatchStages;
 use super::{DrawItem, Error, Evaluation, Geometry, Renderer, RetiredObject, View};
 use crate::gpu::Features;
@@ -290,21 +289,18 @@ impl Renderer {
     /// Records the draws of the lists of a group; `of_draw` are the constants of the whole item.
     ///
     /// # Safety
-    /// As [`Renderer::cmd_draw_visible`], with the model's set and buffers bound.
+    /// As [`Renderer::cmd_draw_visible`], with the pipeline and the model's set and buffers bound.
     pub(super) unsafe fn cmd_draw_lists(
         &self,
         cmd: vk::CommandBuffer,
         ItemLists { all: visible, own }: ItemLists,
-        (item, model, group): (&DrawItem, &Model, usize),
+        (model, group): (&Model, usize),
         of_draw: &DrawConstants,
-        bound: &mut Bound,
     ) {
         let device = self.context.device();
         let (stages, of_group) = (model.stages[group], &model.tables.plan().groups()[group]);
-        let geometry = stages.geometry(Cut::listed(item.factor));
         // SAFETY: as the caller promises.
         unsafe {
-            self.bind(cmd, PipelineKey { style: item.style, geometry }, bound);
             for list in own.lists.iter().filter(|list| list.group == group) {
                 let constants = DrawConstants {
                     first_corner: list.first_corner(of_group),
