@@ -29,8 +29,13 @@ impl Stage {
         self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("a frame");
     }
 
+    /// Of a cube from -1 to 1.
+    pub fn view() -> View {
+        View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [-0.6, 0.5, 1.0], 1.0)
+    }
+
     pub fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Vec<u8>, Error> {
-        let view = View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [-0.6, 0.5, 1.0], 1.0);
+        let view = Self::view();
         let record = |cmd| {
             // SAFETY: as above, inside rendering.
             unsafe { renderer.cmd_draw(cmd, frame, &view, items) }

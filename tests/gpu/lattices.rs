@@ -5,11 +5,11 @@ use crate::common::edges::{bits, edge_parameters, shared_edges};
 use crate::common::stage::{Stage, read_vertices};
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedVertex, Which};
-use ash_subdiv::renderer::{Evaluation, Factor, Fragment, ModelTables};
+use ash_subdiv::renderer::{Evaluation, Factor, Fragment, Geometry, ModelTables};
 use ash_subdiv::table::{Patch, grid_parameters};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Scheme, Style, shape};
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 use std::collections::{BTreeSet, HashMap};
 
 mod test_shaders {
@@ -326,6 +326,53 @@ fn triangles_are_those_of_the_tessellation_stages() {
             renderer.remove_model(model).unwrap();
         }
     }
+    drop(renderer);
+    stage.finish();
+}
+
+/// Whatever was drawn before an item, it is drawn as if nothing had been: what is bound is known.
+#[test]
+fn items_do_not_depend_on_those_before() {
+    let stage = Stage::new();
+    let mesh = shape("polygons").expect("built in");
+    let styles = vec![Style::default(), Style { geometry: Geometry::ControlEdges, ..Style::default() }];
+    let mut renderer = stage.renderer(&Options { styles, views_per_frame: 600, ..Options::default() });
+    let mut kinds = Vec::new();
+    for way in std::iter::once(ModelOptions::default()).chain(ways(Scheme::Gregory)) {
+        // As lists of triangles, and as strips on the CI device.
+        for segments in [2, 14] {
+            let model = renderer.add_model(&mesh, &way).expect("a model");
+            if way.evaluation.needs_segments() {
+                renderer.set_segments(model, segments).expect("segments");
+            }
+            kinds.push(DrawItem::new(model, segments as f32));
+        }
+    }
+    kinds.push(DrawItem { style: 1, ..kinds[0] });
+    let kind_count = kinds.len();
+    // Each after each, itself too, and again what was there before.
+    let order = (0..kind_count).flat_map(|step| (0..kind_count).map(move |i| (i, (i + step) % kind_count)));
+    let order: Vec<usize> = order.flat_map(|(first, second)| [first, second, first]).collect();
+    let side = (order.len() as f32).sqrt().ceil();
+    let items = order.iter().enumerate().map(|(place, &kind)| {
+        let at = [place as f32 % side, (place as f32 / side).floor()].map(|x| (2.0 * x + 1.0) / side - 1.0);
+        let scale = Mat4::from_scale(Vec3::splat(0.8 / side));
+        let transform = Mat4::from_translation(Vec3::new(at[0], at[1], 0.0)) * scale;
+        DrawItem { transform: transform.to_cols_array_2d(), ..kinds[kind] }
+    });
+    let items: Vec<DrawItem> = items.collect();
+    stage.prepare(&mut renderer, 0);
+    let together = stage.draw(&mut renderer, 0, &items).expect("a picture");
+    let view = Stage::view();
+    let record = |cmd| {
+        for item in &items {
+            // SAFETY: inside rendering, after the preparation of the frame.
+            unsafe { renderer.cmd_draw(cmd, 0, &view, &[*item]) }?;
+        }
+        Ok::<_, ash_subdiv::Error>(())
+    };
+    let one_by_one = stage.target.draw(&stage.headless, [0.0; 4], record).expect("a picture");
+    assert!(together == one_by_one, "pictures differ");
     drop(renderer);
     stage.finish();
 }
