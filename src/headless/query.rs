@@ -121,6 +121,8 @@ impl StatisticsQuery {
 /// Points in time on the device. lavapipe's are sound at the boundaries of render passes, and not within one.
 pub struct Timestamps {
     count: u32,
+    /// What of a timestamp the queue writes; it starts anew where that ends.
+    mask: u64,
     pool: Owned<vk::QueryPool>,
     context: Arc<DeviceContext>,
 }
@@ -129,11 +131,11 @@ impl Timestamps {
     /// Room for `count` points in time.
     ///
     /// # Errors
-    /// Failed Vulkan calls.
+    /// The queue writes no timestamps; failed Vulkan calls.
     pub fn new(headless: &Headless, count: u32) -> Result<Self, GpuError> {
         let info = vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(count);
-        let context = headless.context();
-        Ok(Self { count, pool: query_pool(context, &info, "timestamps")?, context: context.clone() })
+        let (context, mask) = (headless.context(), timestamp_mask(headless)?);
+        Ok(Self { count, mask, pool: query_pool(context, &info, "timestamps")?, context: context.clone() })
     }
 
     /// Forgets earlier points; before any is written.
@@ -157,7 +159,7 @@ impl Timestamps {
         unsafe { self.context.device().cmd_write_timestamp2(cmd, stage, self.pool.raw(), index) };
     }
 
-    /// Waits for all points; returns the times from each to the next. All must have been written and submitted.
+    /// Waits for all points; returns the times from each to the next, a tick of the device at least. All must have been written and submitted.
     pub fn read(&self) -> Result<Vec<Duration>, GpuError> {
         let mut ticks = vec![0_u64; self.count as usize];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
@@ -165,9 +167,26 @@ impl Timestamps {
         unsafe { self.context.device().get_query_pool_results(self.pool.raw(), 0, &mut ticks, flags) }
             .of("vkGetQueryPoolResults", "timestamps")?;
         let period = f64::from(self.context.properties().timestamp_period);
-        let time = |pair: &[u64]| Duration::from_nanos((pair[1].saturating_sub(pair[0]) as f64 * period) as u64);
+        let time = |pair: &[u64]| Duration::from_secs_f64(ticks_between(pair, self.mask) as f64 * period / 1e9);
         Ok(ticks.windows(2).map(time).collect())
     }
+}
+
+/// The bits of a timestamp that the queue writes.
+fn timestamp_mask(headless: &Headless) -> Result<u64, GpuError> {
+    let (device, family) = (headless.physical_device(), headless.queue_family() as usize);
+    // SAFETY: the device is of this instance.
+    let families = unsafe { headless.instance.get_physical_device_queue_family_properties(device) };
+    let bits = families.get(family).map_or(0, |family| family.timestamp_valid_bits);
+    let why = || format!("the device's queue family {family} writes no timestamps");
+    u64::MAX
+        .checked_shr(64 - bits.min(64))
+        .ok_or_else(|| GpuError::Unsupported { object: "timestamps".into(), why: why() })
+}
+
+/// From one timestamp to the next, at least one.
+fn ticks_between(pair: &[u64], mask: u64) -> u64 {
+    (pair[1].wrapping_sub(pair[0]) & mask).max(1)
 }
 
 fn query_pool(
@@ -231,6 +250,14 @@ impl Headless {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn timestamps_may_start_anew() {
+        let of_36_bits = u64::MAX >> 28;
+        assert_eq!(ticks_between(&[of_36_bits - 2, 7], of_36_bits), 10);
+        assert_eq!(ticks_between(&[5, 5], of_36_bits), 1);
+        assert_eq!(ticks_between(&[u64::MAX, 1 << 40], u64::MAX), (1 << 40) + 1);
+    }
 
     #[test]
     fn results_without_geometry_stages_have_no_gaps() {

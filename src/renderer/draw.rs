@@ -2,7 +2,7 @@
 
 use super::evaluated::Drawn;
 use super::factor::{Cull, Cut, Factor};
-use super::gpu_data::{COUNTER_CLOCKWISE_FLAG, DrawConstants};
+use super::gpu_data::{COUNTER_CLOCKWISE_FLAG, DrawConstants, ViewData};
 use super::lattice::BoundLattice;
 use super::model::Model;
 use super::pipelines::{GeometryKey, PipelineKey, STAGES};
@@ -115,7 +115,7 @@ impl Renderer {
         if *drawn >= max {
             return Err(Error::TooManyViews { frame, max });
         }
-        let offset = self.view_stride * (u64::from(frame) * u64::from(max) + u64::from(*drawn));
+        let offset = ViewData::STRIDE * (u64::from(frame) * u64::from(max) + u64::from(*drawn));
         *drawn += 1;
         self.views.write(offset, &[view.data()])?;
         Ok(offset as u32)

@@ -26,7 +26,7 @@ pub enum Error {
     DisplacementInUse { id: DisplacementId, model: ModelId },
     #[error("model {}: {given} positions are given, but its control mesh has {needed} vertices", id.number)]
     PositionCount { id: ModelId, given: usize, needed: usize },
-    #[error("model {}: {} take {bytes} bytes, but a shader can see {max} at once on this device: split the mesh", id.number, table.replace('_', " "))]
+    #[error("model {}: {} take {bytes} bytes, but a shader can see {max} at once on this device: {}", id.number, table.replace('_', " "), smaller(table))]
     TableTooLarge { id: ModelId, table: &'static str, bytes: u64, max: u64 },
     #[error("model {}: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw", id.number)]
     NotPrepared { id: ModelId },
@@ -100,6 +100,13 @@ pub enum Error {
     BadSamples { given: vk::SampleCountFlags },
     #[error("{what} of Options is {given}: it must be at least 1")]
     BadOption { what: &'static str, given: u32 },
+}
+
+/// The table that grows with segments.
+pub(super) const EVALUATED_VERTICES: &str = "evaluated vertices";
+
+fn smaller(table: &str) -> &'static str {
+    if table == EVALUATED_VERTICES { "have fewer segments, or split the mesh" } else { "split the mesh" }
 }
 
 fn instead(shader: &str) -> &'static str {

@@ -4,6 +4,7 @@
 //! 16-byte vectors and trailing 4-byte scalars, for which the two rules agree with `repr(C)`. GLSL twin:
 //! `glsl/lib/draw.glsl`.
 
+use crate::gpu::MAX_OFFSET_ALIGNMENT;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Mat4, Vec3};
 
@@ -16,6 +17,11 @@ pub(crate) struct ViewData {
     pub measured_view_projection: [[f32; 4]; 4],
     pub measured_eye: [f32; 4],
     pub viewport: [f32; 4],
+}
+
+impl ViewData {
+    /// Bytes from one view to the next.
+    pub(super) const STRIDE: u64 = (size_of::<Self>() as u64).next_multiple_of(MAX_OFFSET_ALIGNMENT);
 }
 
 #[repr(C)]

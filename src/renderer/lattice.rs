@@ -1,6 +1,7 @@
 //! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
 
 use super::computing::ComputePipelines;
+use super::error::EVALUATED_VERTICES;
 use super::factor::Cut;
 use super::model::{device_buffer, upload_buffer};
 use super::pipelines::ShaderCode;
@@ -119,7 +120,7 @@ impl Lattice {
         let counts = plan.groups().iter().map(|g| g.patches.len() as u64 * lattice_vertices(g.kind, segments));
         let bytes = counts.sum::<u64>() * u64::from(vertex_bytes(pipelines.texcoords, sharing));
         if computed && bytes > max {
-            return Err(Error::TableTooLarge { id, table: "evaluated vertices", bytes, max });
+            return Err(Error::TableTooLarge { id, table: EVALUATED_VERTICES, bytes, max });
         }
         let kinds = plan.groups().iter().map(|group| group.kind);
         let of_patches = LatticeIndices::new(kinds, segments, pipelines.indices_at_once);

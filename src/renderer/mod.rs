@@ -94,7 +94,7 @@ pub(crate) use {
     view::is_size,
 };
 
-use crate::gpu::{Buffer, BufferDesc, DeviceContext, MAX_OFFSET_ALIGNMENT, MemoryLocation};
+use crate::gpu::{Buffer, BufferDesc, DeviceContext, MemoryLocation};
 use crate::mesh::ControlMesh;
 use crate::table::Notice;
 use ash::vk;
@@ -146,7 +146,6 @@ pub struct Renderer {
     next_id: ModelId,
     retired: Vec<Retired>,
     views: Buffer,
-    view_stride: u64,
     /// Of each frame.
     lists: Vec<FrameLists>,
     /// The number of each frame's last preparation; none has the number 0.
@@ -159,7 +158,7 @@ impl Renderer {
     /// A renderer for targets like `target`, but for styles with one of their own ([`Style::target`]).
     ///
     /// # Errors
-    /// As [`check`], of what `context` was made with; [`Error::ViewsTooLarge`]; failed Vulkan calls.
+    /// As [`check`], of what `context` was made with; failed Vulkan calls.
     ///
     /// # Safety
     /// * The handles in `target` and `options` are of the context's device and live as long as the renderer, and the
@@ -182,19 +181,11 @@ impl Renderer {
     ) -> Result<Self, Error> {
         options::check_properties(context.properties(), context.features(), target, options)?;
         let pipelines = Pipelines::new(context, target, options, capture)?;
-        let view_stride = (size_of::<ViewData>() as u64).next_multiple_of(MAX_OFFSET_ALIGNMENT);
-        let bytes = u64::from(options.frames_in_flight)
-            .saturating_mul(options.views_per_frame.into())
-            .saturating_mul(view_stride);
-        // Offsets are of 32 bits.
-        if bytes > u32::MAX.into() {
-            return Err(Error::ViewsTooLarge { bytes, max: u32::MAX.into() });
-        }
         let views = Buffer::new(
             context,
             &BufferDesc {
                 name: "subdiv views",
-                size: bytes,
+                size: options.view_bytes(),
                 usage: vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER,
                 location: MemoryLocation::Upload,
             },
@@ -210,7 +201,6 @@ impl Renderer {
             next_id: ModelId { renderer: RENDERERS.fetch_add(1, Ordering::Relaxed), number: 0 },
             retired: Vec::new(),
             views,
-            view_stride,
             lists,
             preparations: vec![0; options.frames_in_flight as usize],
             views_drawn: vec![0; options.frames_in_flight as usize],

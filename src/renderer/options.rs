@@ -1,6 +1,7 @@
 //! What the caller says once: where to draw, and how.
 
 use super::bindings::MODEL_BUFFERS;
+use super::gpu_data::ViewData;
 use super::stages::is_spirv;
 use super::visible::LIST_FEATURES;
 use super::{Error, Evaluation, Pass, Target, View};
@@ -218,11 +219,18 @@ pub fn requirements(target: &Target, options: &Options) -> Requirements {
     Requirements { api_version: vk::API_VERSION_1_3, features, device_extensions: features.extensions() }
 }
 
+impl Options {
+    /// Bytes of what shaders know of the views of all frames.
+    pub(super) fn view_bytes(&self) -> u64 {
+        u64::from(self.frames_in_flight).saturating_mul(self.views_per_frame.into()).saturating_mul(ViewData::STRIDE)
+    }
+}
+
 /// Tells whether a physical device can do what `options` ask.
 ///
 /// # Errors
-/// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::BadSamples`],
-/// [`Error::NoSuchShader`], [`Error::NotSpirv`].
+/// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::ViewsTooLarge`],
+/// [`Error::BadSamples`], [`Error::NoSuchShader`], [`Error::NotSpirv`].
 ///
 /// # Safety
 /// `physical_device` comes from `instance`, whose version is at least 1.1.
@@ -244,6 +252,11 @@ fn check_options(target: &Target, options: &Options) -> Result<(), Error> {
         if given == 0 {
             return Err(Error::BadOption { what, given });
         }
+    }
+    // Offsets are of 32 bits.
+    let (bytes, max) = (options.view_bytes(), u32::MAX.into());
+    if bytes > max {
+        return Err(Error::ViewsTooLarge { bytes, max });
     }
     let mut samples = targets(target, options).map(|target| target.samples);
     if let Some(given) = samples.find(|samples| samples.as_raw().count_ones() != 1) {

@@ -1,5 +1,6 @@
 //! What a device cannot hold or make is an error that says so.
 
+use crate::common::stage::Stage;
 use ash::vk::{Format, SampleCountFlags};
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
@@ -30,6 +31,26 @@ fn a_table_that_no_shader_can_see_is_an_error() {
         renderer.add_model(&shape("cube").unwrap(), &ModelOptions::default()).unwrap();
     }
     headless.finish_silent();
+}
+
+#[test]
+fn vertices_that_no_shader_can_see_are_an_error() {
+    let stage = Stage::new();
+    let max = stage.headless.properties().max_storage_buffer_range;
+    let mut renderer = stage.renderer(&Options::default());
+    let (construction, evaluation) = (Construction::Cached, Evaluation::Compute);
+    let options = ModelOptions { construction, evaluation, ..ModelOptions::default() };
+    let model = renderer.add_model(&shape("creature").unwrap(), &options).unwrap();
+    let bytes = 24 * 1320 * 1025_u64.pow(2);
+    if bytes > max {
+        let error = renderer.set_segments(model, 1024).unwrap_err().to_string();
+        let told = format!(
+            "model 0: evaluated vertices take {bytes} bytes, but a shader can see {max} at once on this device: have fewer segments, or split the mesh"
+        );
+        assert_eq!(error, told);
+    }
+    drop(renderer);
+    stage.finish();
 }
 
 /// Where texel buffers are too small for tables these are read as storage buffers, with the same results to the bit.

@@ -161,6 +161,16 @@ impl Results {
             return Err("it has no rows".into());
         }
         let is_time = |ms: &f64| *ms > 0.0 && ms.is_finite();
+        for (number, recorded) in self.recording.iter().enumerate() {
+            let Recorded { frame_ms, draw_ms, prepare_ms, .. } = recorded;
+            // Nothing may be to be prepared.
+            let prepare = [prepare_ms.median, prepare_ms.min, prepare_ms.max];
+            let others = [frame_ms, draw_ms].into_iter().flat_map(|t| [t.median, t.min, t.max]);
+            if !(prepare.iter().all(|ms| *ms == 0.0 || is_time(ms)) && others.into_iter().all(|ms| is_time(&ms))) {
+                let who = recorded.who.label();
+                return Err(format!("recording {} ({who}): a time of it is not above 0", number + 1));
+            }
+        }
         for (number, row) in self.rows.iter().enumerate() {
             let wrong = |what: &str| Err(format!("row {} ({}): {what}", number + 1, row.who.label()));
             if !(row.factor >= 1.0 && row.factor.is_finite()) {

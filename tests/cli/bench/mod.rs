@@ -356,6 +356,16 @@ fn bench_says_what_is_wrong() {
     wrong(|bad| bad["rows"][0]["frames_ms"]["gpu"][1] = json!(-1.0), "row 1 (bilinear): a time of it is not above 0");
     wrong(|bad| bad["rows"][0]["frames_ms"] = json!({}), "row 1 (bilinear): it has no frames");
     wrong(|bad| bad["rows"][0]["factor"] = json!(-2.0), "row 1 (bilinear): its factor is not from 1 up");
+    let (_, good) =
+        measured(&folder("bench-good-recording"), "--shape cube --schemes gregory --paths instanced --recording 2");
+    let wrong = |key: &str, value: f64, why: &str| {
+        let mut bad = good.clone();
+        bad["recording"][1][key]["max"] = json!(value);
+        fs::write(&results, bad.to_string()).unwrap();
+        fails(&format!("bench --results {name}"), 1, &format!("{name}: not what `subdiv bench --json` writes: {why}"));
+    };
+    wrong("draw_ms", 0.0, "recording 2 (gregory cached instanced): a time of it is not above 0");
+    wrong("prepare_ms", -1.0, "recording 2 (gregory cached instanced): a time of it is not above 0");
     let output = run("bench --shape tetrahedron --schemes acc --paths tessellation");
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(stderr.ends_with("error: nothing could be measured: face 0: the scheme acc has no patches for triangles: choose the scheme gregory, which has, or name it as fallback\n"), "{stderr}");
