@@ -126,6 +126,8 @@ pub(super) struct Lane<'a> {
     pub target: &'a OffscreenDesc,
     pub subject: &'a Subject,
     pub spacing: Spacing,
+    /// What the rasterizer leaves out.
+    pub cull: vk::CullModeFlags,
     /// Calls of [`Drawable::cmd_draw`] in a frame.
     pub passes: u32,
 }

@@ -61,6 +61,9 @@ pub struct BenchOptions {
     pub size: [u32; 2],
     /// From where each contestant draws, in turns.
     pub cameras: Vec<Camera>,
+    /// Whether the rasterizer leaves out triangles that face away, as renderers have it of closed models. Some drivers then count
+    /// fewer of what clipping leaves.
+    pub single_sided: bool,
     /// Copies of the model that a frame draws, each with a transform of its own.
     pub instances: u32,
     /// Passes of a frame, each of which draws all instances again, as for depth, shadows and the picture.
@@ -72,8 +75,8 @@ pub struct BenchOptions {
 }
 
 impl Default for BenchOptions {
-    /// Factors 4, 8, 16 and 32, equal spacing, moving vertices, 1024 x 1024 pixels with all in the picture, one instance, one
-    /// pass, 21 frames after 3.
+    /// Factors 4, 8, 16 and 32, equal spacing, moving vertices, 1024 x 1024 pixels with all in the picture, of both sides, one instance,
+    /// one pass, 21 frames after 3.
     fn default() -> Self {
         Self {
             factors: vec![4.0, 8.0, 16.0, 32.0],
@@ -81,6 +84,7 @@ impl Default for BenchOptions {
             motion: Motion::Moving,
             size: [1024, 1024],
             cameras: vec![Camera::Fit],
+            single_sided: false,
             instances: 1,
             passes: 1,
             frames: 21,

@@ -167,8 +167,9 @@ impl<'h> Bench<'h> {
     }
 
     pub(super) fn lane<'a>(&'a self, subject: &'a Subject) -> Lane<'a> {
-        let BenchOptions { spacing, passes, .. } = self.options;
-        Lane { headless: self.headless, target: self.targets[0].desc(), subject, spacing, passes }
+        let BenchOptions { spacing, passes, single_sided, .. } = self.options;
+        let cull = if single_sided { vk::CullModeFlags::BACK } else { vk::CullModeFlags::NONE };
+        Lane { headless: self.headless, target: self.targets[0].desc(), subject, spacing, cull, passes }
     }
 
     fn runner<'a>(&self, contestant: Contestant, lane: Lane<'a>, scene: &Scene) -> Result<Runner<'a>, BenchError> {

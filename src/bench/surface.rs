@@ -31,13 +31,14 @@ pub(super) struct Surface {
 
 impl Surface {
     pub(super) fn new(lane: Lane, contestant: Contestant) -> Result<Self, BenchError> {
-        let Lane { headless, target, subject, passes, .. } = lane;
+        let Lane { headless, target, subject, cull, passes, .. } = lane;
         let model_options = contestant.model_options(lane);
         let ModelOptions { scheme, evaluation, .. } = model_options;
         let as_published = contestant.path.is_published_acc();
         let (tables, tables_ms) = median_of(|| timed(|| ModelTables::new(&subject.mesh, &model_options)))?;
         // In the order of `Pass::ALL`.
-        let styles = vec![Style::default(), Style { rasterizer_discard: true, ..Style::default() }];
+        let styles =
+            [false, true].map(|rasterizer_discard| Style { cull, rasterizer_discard, ..Style::default() }).to_vec();
         let evaluations = vec![evaluation];
         let culls_by_compute = contestant.culls_by_compute();
         let shaders = if as_published { published::shaders() } else { Vec::new() };

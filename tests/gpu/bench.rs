@@ -8,7 +8,7 @@ use ash_subdiv::bench::{
 use ash_subdiv::headless::Headless;
 use ash_subdiv::renderer::Cull;
 use ash_subdiv::topology::PatchKind;
-use ash_subdiv::{Construction, Scheme, Spacing, shape};
+use ash_subdiv::{Construction, ControlMesh, MeshData, Scheme, Spacing, shape};
 
 const GREGORY: Contestant = Contestant::new(Path::Tessellation, Some((Scheme::Gregory, Construction::TwoStage)));
 
@@ -104,6 +104,27 @@ fn the_bilinear_floor_is_the_control_mesh() {
         assert!(covered(&bench.picture(&subject, GREGORY, 5.0).unwrap()) < covered(&flat) * 9 / 10);
     }
     drop(bench);
+    headless.finish_silent();
+}
+
+#[test]
+fn what_faces_away_is_left_out_if_asked_for() {
+    let headless = headless();
+    let picture = |mesh: &ControlMesh, single_sided, contestant| {
+        let subject = Subject::new("square", mesh.clone(), 0, Subset::All).unwrap();
+        let bench = Bench::new(&headless, BenchOptions { single_sided, ..options() }).unwrap();
+        covered(&bench.picture(&subject, contestant, 2.0).unwrap())
+    };
+    let instanced = Contestant::new(Path::Instanced, Some((Scheme::Gregory, Construction::Cached)));
+    let front = shape("single-quad").unwrap();
+    let turned =
+        MeshData { face_vertices: front.data().face_vertices.iter().rev().copied().collect(), ..front.data().clone() };
+    let turned = ControlMesh::new(turned).unwrap();
+    for contestant in [GREGORY, instanced, floor(Path::Bilinear), floor(Path::VertexBuffer)] {
+        let of = |single_sided| [&front, &turned].map(|mesh| picture(mesh, single_sided, contestant));
+        let ([seen, away], both) = (of(true), of(false));
+        assert!(seen > 1500 && away == 0 && both == [seen; 2], "{contestant:?}: {seen} {away} {both:?}");
+    }
     headless.finish_silent();
 }
 

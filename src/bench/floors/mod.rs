@@ -106,6 +106,7 @@ impl Kit {
                 stages.push(Shader::fragment(shaders::SHADE_LIT_FRAG));
             }
             let desc = GraphicsPipelineDesc {
+                cull_mode: lane.cull,
                 patch_control_points: input.patch_control_points,
                 vertex_bindings: input.bindings,
                 vertex_attributes: input.attributes,

@@ -67,6 +67,9 @@ pub(in super::super) struct BenchArgs {
     /// Where the eye is, with commas: `clipped` shows the middle three times as large, and cuts off what is around.
     #[arg(long, value_name = "WHERE", value_delimiter = ',', default_value = "fit", value_parser = parse::camera())]
     pub(super) view: Vec<Camera>,
+    /// Have the rasterizer leave out triangles that face away, as renderers do of closed models.
+    #[arg(long)]
+    pub(super) single_sided: bool,
     /// Make one large mesh of this many copies; several counts with commas, to see how time grows.
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     replicate: Vec<u32>,
@@ -101,7 +104,7 @@ pub(in super::super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
+        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]
@@ -148,8 +151,8 @@ tessellating in every pass cross. Of copies of a mesh (--replicate), `time grows
 power of patches. `more` is more than what was measured can tell.
 
 JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period,
-processors}, options{size, instances, passes[], frames, warm_up, patches, refine}, meshes[{name,
-of, copies, vertices, faces, patches{kind}}], left_out[{setting, who, factor, why}],
+processors}, options{size, single_sided, instances, passes[], frames, warm_up, patches, refine},
+meshes[{name, of, copies, vertices, faces, patches{kind}}], left_out[{setting, who, factor, why}],
 rows[{setting, who, factor, patches, tes_invocations, compute_invocations, triangles,
 visible_triangles, gpu_ms{median, min, max, mad}, geometry_ms{..}, setup_ms, bytes{name},
 gpu_ratio{value, low, high}, geometry_ratio{..}, construction_ms{..}, tables_ms, upload_ms,

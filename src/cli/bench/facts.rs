@@ -24,6 +24,8 @@ pub(super) struct DeviceOut {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct OptionsOut {
     pub size: [u32; 2],
+    #[serde(default)]
+    pub single_sided: bool,
     pub instances: u32,
     pub passes: Vec<u32>,
     pub frames: u32,
@@ -66,15 +68,16 @@ pub(super) struct LeftOut {
 
 impl OptionsOut {
     pub(super) fn new(options: &BenchOptions, passes: Vec<u32>, patches: Subset, refine: u32) -> Self {
-        let &BenchOptions { size, instances, frames, warm_up, .. } = options;
-        Self { size, instances, passes, frames, warm_up, patches: patches.name().to_owned(), refine }
+        let &BenchOptions { size, single_sided, instances, frames, warm_up, .. } = options;
+        Self { size, single_sided, instances, passes, frames, warm_up, patches: patches.name().to_owned(), refine }
     }
 
     /// What the times of a row depend on besides its setting, as the program's options.
-    pub(super) fn alike(&self) -> [String; 4] {
-        let Self { size: [width, height], instances, patches, refine, .. } = self;
+    pub(super) fn alike(&self) -> [String; 5] {
+        let Self { size: [width, height], single_sided, instances, patches, refine, .. } = self;
         [
             format!("--size {width}x{height}"),
+            if *single_sided { "--single-sided" } else { "both sides" }.to_owned(),
             format!("--instances {instances}"),
             format!("--patches {patches}"),
             format!("--refine {refine}"),

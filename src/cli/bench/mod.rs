@@ -88,6 +88,7 @@ impl BenchArgs {
         let options = BenchOptions {
             factors: self.factors(),
             size: self.size,
+            single_sided: self.single_sided,
             instances: self.instances.or(self.preset.map(|p| p.instances)).unwrap_or(1),
             cameras: unique(&self.view, |&camera| camera),
             frames: self.frames,

@@ -160,6 +160,7 @@ fn bench_compares_what_can_be_compared_and_says_so_before_it_measures() {
     compare("--shape cube,strip", &format!("{cannot} torus, these of cube, strip: measure the same meshes"));
     let alike = |old, new| format!("{cannot} {old}, these of {new}: measure alike");
     compare("--shape torus --refine 1", &alike("--refine 0", "--refine 1"));
+    compare("--shape torus --single-sided", &alike("both sides", "--single-sided"));
     compare("--shape torus --instances 2", &alike("--instances 1", "--instances 2"));
     // The results again, but for what is changed in them.
     let changed = |name: &str, change: fn(&mut Value)| {
