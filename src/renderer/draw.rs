@@ -239,7 +239,7 @@ impl Renderer {
                 constants.colour = item.colors[stages.kind as usize];
                 self.bind(cmd, pipeline(number), bound);
                 if let Some(lists) = lists.filter(|_| stages.has_hull()) {
-                    self.cmd_draw_lists(cmd, lists, (model, number), &constants);
+                    self.cmd_draw_lists(cmd, lists, (model, number), &constants, &mut bound.lattice);
                     continue;
                 }
                 constants.first_corner = group.first_corner as u32;
@@ -258,7 +258,7 @@ impl Renderer {
                         if let Some(points) = model.control_points.as_ref().filter(|_| stages.attributes) {
                             let of_corner = u64::from(stages.patch_bytes()) / stages.kind.corners() as u64;
                             let offset = of_corner * group.first_corner as u64;
-                            device.cmd_bind_vertex_buffers(cmd, 0, &[points.raw()], &[offset]);
+                            bound.lattice.cmd_bind_vertices(device, cmd, points.raw(), offset);
                         }
                         lattice.cmd_draw(device, cmd, number);
                     }

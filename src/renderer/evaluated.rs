@@ -87,7 +87,7 @@ impl Renderer {
     /// With [`ModelOptions::edge_factors`] it is the most that an edge has, and what every patch has inside: edges with
     /// smaller factors have fewer segments, their factors rounded up. Draws have [`Factor::Edges`]`(1.0)`.
     ///
-    /// Takes memory for the indices of a patch, and for the vertices that compute evaluates, (n + 1)² a quad; lets that of the
+    /// Takes memory for the indices of a patch, unless another model has the same, and for the vertices that compute evaluates, (n + 1)² a quad; lets that of the
     /// segments before go when every frame has been prepared again. The number that is set already costs nothing.
     ///
     /// # Errors
@@ -106,7 +106,7 @@ impl Renderer {
             return Ok(());
         }
         let lattice = Lattice::new(
-            &self.pipelines.lattice,
+            &mut self.pipelines.lattice,
             id,
             evaluation,
             model.tables.sharing(),

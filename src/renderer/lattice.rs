@@ -3,13 +3,14 @@
 use super::computing::ComputePipelines;
 use super::error::EVALUATED_VERTICES;
 use super::factor::Cut;
-use super::model::{device_buffer, upload_buffer};
+use super::indices::{IndexCache, LatticeShape, PatchIndices, SharedIndices};
+use super::model::device_buffer;
 use super::pipelines::ShaderCode;
 use super::stages::{PatchStages, Sharing};
 use super::vertex_input::vertex_bytes;
 use super::{Capture, Error, Evaluation, MemoryUsage, ModelId};
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, descriptor_set_layout};
-use crate::table::{LatticeIndices, PatchPlan, lattice_vertices};
+use crate::table::{LatticeIndices, PatchGroup, PatchPlan, lattice_vertices};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
@@ -35,6 +36,7 @@ pub(super) struct LatticePipelines {
     texcoords: bool,
     /// As of the device, if strips may be drawn.
     indices_at_once: u32,
+    pub indices: IndexCache,
     pipelines: ComputePipelines<PatchStages, Dispatch>,
 }
 
@@ -53,7 +55,7 @@ impl LatticePipelines {
         let sets = [view, model, set_layout.raw()];
         let pipelines = ComputePipelines::new(context, "subdiv evaluation", &sets, cache)?;
         let indices_at_once = if wireframe { u32::MAX } else { context.properties().indices_at_once };
-        Ok(Self { set_layout, texcoords, indices_at_once, pipelines })
+        Ok(Self { set_layout, texcoords, indices_at_once, indices: IndexCache::default(), pipelines })
     }
 
     /// Makes what patches need.
@@ -68,20 +70,40 @@ pub(super) struct Lattice {
     pub segments: u32,
     /// Those that compute evaluates.
     pub vertices: Option<LatticeVertices>,
-    indices: Buffer,
-    /// What indices are of.
-    topology: vk::PrimitiveTopology,
+    pub indices: Arc<SharedIndices>,
     /// In the order of the plan.
     groups: Vec<LatticeGroup>,
-    staged: Option<Buffer>,
+    /// Whether a frame was prepared with it.
+    prepared: bool,
 }
 
 /// What lattices have bound in a command buffer since something else was.
 #[derive(Default)]
 pub(super) struct BoundLattice {
-    /// With the vertices that go with them, if they are evaluated.
     indices: vk::Buffer,
+    /// And from where on.
+    vertices: (vk::Buffer, u64),
     topology: Option<vk::PrimitiveTopology>,
+}
+
+impl BoundLattice {
+    /// Binds vertices, or attributes of instances, from an offset on, unless they are bound.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, and has this bound; the buffer is live.
+    pub(super) unsafe fn cmd_bind_vertices(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        buffer: vk::Buffer,
+        offset: u64,
+    ) {
+        if self.vertices != (buffer, offset) {
+            self.vertices = (buffer, offset);
+            // SAFETY: as the caller promises.
+            unsafe { device.cmd_bind_vertex_buffers(cmd, 0, &[buffer], &[offset]) };
+        }
+    }
 }
 
 /// Evaluated vertices, group by group.
@@ -97,23 +119,19 @@ struct LatticeGroup {
     /// Vertices of a patch, and the first of all.
     vertices: u32,
     first_vertex: u32,
-    /// Indices of a patch, those that join it to the one before in its block, and the first.
-    indices: u32,
-    joint: u32,
-    first_index: u32,
-    /// Patches that there are indices for.
-    block: u32,
+    indices: PatchIndices,
 }
 
 impl Lattice {
     pub(super) fn new(
-        pipelines: &LatticePipelines,
+        pipelines: &mut LatticePipelines,
         id: ModelId,
         evaluation: Evaluation,
         sharing: Sharing,
         plan: &PatchPlan,
         segments: u32,
     ) -> Result<Self, Error> {
+        let LatticePipelines { indices, indices_at_once, .. } = pipelines;
         let context = pipelines.pipelines.context();
         let computed = evaluation == Evaluation::Compute;
         let max = context.properties().max_storage_buffer_range;
@@ -122,54 +140,44 @@ impl Lattice {
         if computed && bytes > max {
             return Err(Error::TableTooLarge { id, table: EVALUATED_VERTICES, bytes, max });
         }
-        let kinds = plan.groups().iter().map(|group| group.kind);
-        let of_patches = LatticeIndices::new(kinds, segments, pipelines.indices_at_once);
-        let (mut groups, mut indices) = (Vec::new(), Vec::new());
-        let mut first_vertex = 0;
-        let mut blocks: [Option<(u32, u32, u32)>; 2] = [None; 2];
+        let mut shape = LatticeShape { segments, blocks: [0; 2] };
         for group in plan.groups() {
+            let most = if computed { group.patches.len() as u64 } else { 1 };
+            let block = (BLOCK_VERTICES / lattice_vertices(group.kind, segments)).clamp(1, most.max(1)) as u32;
+            let of_kind = &mut shape.blocks[LatticeShape::place(group.kind)];
+            *of_kind = block.max(*of_kind);
+        }
+        let indices = indices.get(context, shape, *indices_at_once)?;
+        let mut first_vertex = 0;
+        let group = |group: &PatchGroup| {
             let (kind, patches) = (group.kind, group.patches.len() as u32);
-            let vertices = lattice_vertices(kind, segments);
-            let (first_index, of_patch, block) = *blocks[usize::from(kind.is_triangular())].get_or_insert_with(|| {
-                let alike = plan.groups().iter().filter(|g| g.kind.is_triangular() == kind.is_triangular());
-                let most = alike.map(|g| g.patches.len() as u64).max().unwrap_or(1);
-                let block = if computed { (BLOCK_VERTICES / vertices).clamp(1, most) } else { 1 };
-                let (first, of_patch) = (indices.len() as u32, of_patches.of(kind, segments));
-                let mut of_block = Vec::new();
-                (0..block).for_each(|patch| of_patches.append(&mut of_block, &of_patch, (patch * vertices) as u32));
-                indices.extend(of_block);
-                (first, of_patch.len() as u32, block as u32)
-            });
-            let vertices = vertices as u32;
-            let joint = of_patches.joint(of_patch);
-            groups.push(LatticeGroup { patches, vertices, first_vertex, indices: of_patch, joint, first_index, block });
+            let vertices = lattice_vertices(kind, segments) as u32;
+            let lattice = LatticeGroup { patches, vertices, first_vertex, indices: indices.of_patch(kind) };
             if computed {
                 // What fits into the buffer can be counted by 32 bits.
                 first_vertex += patches * vertices;
             }
-        }
+            lattice
+        };
+        let groups = plan.groups().iter().map(group).collect();
         let vertices = computed.then(|| LatticeVertices::new(pipelines, bytes)).transpose()?;
-        // A buffer of no bytes is no buffer.
-        let index_bytes = (4 * indices.len() as u64).max(4);
-        let mut staged = upload_buffer(context, "subdiv indices to copy", index_bytes)?;
-        staged.write(0, &indices)?;
-        let indices = device_buffer(context, "subdiv indices", index_bytes, vk::BufferUsageFlags::INDEX_BUFFER)?;
-        Ok(Self { segments, vertices, indices, topology: topology(of_patches), groups, staged: Some(staged) })
+        Ok(Self { segments, vertices, indices, groups, prepared: false })
     }
 
+    /// Whether it is to be prepared.
     pub(super) fn needs_copies(&self) -> bool {
-        self.staged.is_some()
+        !self.prepared
     }
 
-    /// Gives away what is to be copied to the device, and whereto.
+    /// Gives away what is to be copied to the device, and whereto, unless another model's lattice did; prepared by that.
     pub(super) fn take_upload(&mut self) -> Option<(Buffer, vk::Buffer)> {
-        self.staged.take().map(|staged| (staged, self.indices.raw()))
+        self.prepared = true;
+        self.indices.take_upload()
     }
 
+    /// Without indices.
     pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
         usage.vertices += self.vertices.as_ref().map_or(0, |vertices| vertices.buffer.size());
-        usage.indices += self.indices.size();
-        usage.staging += self.staged.as_ref().map_or(0, Buffer::size);
     }
 
     /// Records the dispatches for all patches of a model, whose set and stages these are.
@@ -208,7 +216,8 @@ impl Lattice {
 
     /// How many indices a patch of a group has, and the first.
     pub(super) fn indices_of_patch(&self, group: usize) -> (u32, u32) {
-        (self.groups[group].indices, self.groups[group].first_index)
+        let PatchIndices { count, first, .. } = self.groups[group].indices;
+        (count, first)
     }
 
     /// Binds what all groups are drawn from, unless it is bound.
@@ -216,19 +225,20 @@ impl Lattice {
     /// # Safety
     /// `cmd` is being recorded, and has this bound.
     pub(super) unsafe fn cmd_bind(&self, device: &ash::Device, cmd: vk::CommandBuffer, bound: &mut BoundLattice) {
+        let (indices, topology) = (self.indices.buffer.raw(), self.indices.topology);
         // SAFETY: as the caller promises.
         unsafe {
-            if bound.indices != self.indices.raw() {
-                bound.indices = self.indices.raw();
-                device.cmd_bind_index_buffer(cmd, self.indices.raw(), 0, vk::IndexType::UINT32);
-                if let Some(vertices) = &self.vertices {
-                    device.cmd_bind_vertex_buffers(cmd, 0, &[vertices.buffer.raw()], &[0]);
-                }
+            if bound.indices != indices {
+                bound.indices = indices;
+                device.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT32);
+            }
+            if let Some(vertices) = &self.vertices {
+                bound.cmd_bind_vertices(device, cmd, vertices.buffer.raw(), 0);
             }
             // If nothing is drawn, the pipeline that is bound may not have it dynamic.
-            if !self.groups.is_empty() && bound.topology != Some(self.topology) {
-                bound.topology = Some(self.topology);
-                device.cmd_set_primitive_topology(cmd, self.topology);
+            if !self.groups.is_empty() && bound.topology != Some(topology) {
+                bound.topology = Some(topology);
+                device.cmd_set_primitive_topology(cmd, topology);
             }
         }
     }
@@ -238,7 +248,8 @@ impl Lattice {
     /// # Safety
     /// `cmd` is being recorded, inside rendering, after [`Lattice::cmd_bind`], with a pipeline for it.
     pub(super) unsafe fn cmd_draw(&self, device: &ash::Device, cmd: vk::CommandBuffer, group: usize) {
-        let LatticeGroup { patches, vertices, first_vertex, indices, joint, first_index, block } = self.groups[group];
+        let LatticeGroup { patches, vertices, first_vertex, indices } = self.groups[group];
+        let PatchIndices { count: indices, first: first_index, joint, block } = indices;
         if self.vertices.is_none() {
             // SAFETY: as the caller promises.
             unsafe { device.cmd_draw_indexed(cmd, indices, patches, first_index, 0, 0) };

@@ -51,6 +51,7 @@ mod error;
 mod evaluated;
 mod factor;
 mod gpu_data;
+mod indices;
 mod lattice;
 mod lists;
 mod memory;
@@ -335,6 +336,10 @@ impl Renderer {
         let lists = self.lists.iter().map(FrameLists::bytes).sum();
         let mut usage = MemoryUsage { views: self.views.size(), lists, ..MemoryUsage::default() };
         self.models.values().for_each(|model| model.add_memory(&mut usage));
+        let lattices = self.models.values().filter_map(|model| model.lattice.as_ref());
+        let indices: FxHashMap<_, _> =
+            lattices.map(|lattice| (Arc::as_ptr(&lattice.indices), &lattice.indices)).collect();
+        indices.values().for_each(|indices| indices.add_memory(&mut usage));
         usage
     }
 

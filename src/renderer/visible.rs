@@ -9,6 +9,7 @@ use super::draw::Bound;
 use super::evaluated::Drawn;
 use super::factor::{Cull, Cut};
 use super::gpu_data::DrawConstants;
+use super::lattice::BoundLattice;
 use super::lists::{FrameLists, ListConstants, ListLayout, REGION};
 use super::model::Model;
 use super::stages::PatchStages;
@@ -296,6 +297,7 @@ impl Renderer {
         ItemLists { all: visible, own }: ItemLists,
         (model, group): (&Model, usize),
         of_draw: &DrawConstants,
+        bound: &mut BoundLattice,
     ) {
         let device = self.context.device();
         let (stages, of_group) = (model.stages[group], &model.tables.plan().groups()[group]);
@@ -316,7 +318,7 @@ impl Renderer {
                 if list.patches_per_instance == 0 {
                     if stages.attributes {
                         let copies = offset + ListLayout::new(stages).copies_start(list.count);
-                        device.cmd_bind_vertex_buffers(cmd, 0, &[visible.buffer], &[copies]);
+                        bound.cmd_bind_vertices(device, cmd, visible.buffer, copies);
                     }
                     let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
                     device.cmd_draw_indexed_indirect(cmd, visible.buffer, commands, regions, stride);

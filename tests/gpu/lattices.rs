@@ -8,7 +8,9 @@ use ash_subdiv::capture::{CaptureDraw, Captured, CapturedVertex, Which};
 use ash_subdiv::renderer::{Evaluation, Factor, Fragment, Geometry, ModelTables};
 use ash_subdiv::table::{Patch, grid_parameters};
 use ash_subdiv::topology::{PatchKind, Topology};
-use ash_subdiv::{Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Scheme, Style, shape};
+use ash_subdiv::{
+    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Style, shape,
+};
 use glam::{Mat4, Vec3};
 use std::collections::{BTreeSet, HashMap};
 
@@ -325,6 +327,66 @@ fn triangles_are_those_of_the_tessellation_stages() {
             }
             renderer.remove_model(model).unwrap();
         }
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+/// Models with as many segments have their indices once, whoever of them came or goes first.
+#[test]
+fn indices_are_shared() {
+    let stage = Stage::new();
+    let mesh = shape("creature-mixed").expect("built in");
+    let mut renderer = stage.renderer(&Options { views_per_frame: 32, ..Options::default() });
+    let options = |evaluation| {
+        let construction = Construction::Cached;
+        ModelOptions { construction, evaluation, ..ModelOptions::default() }
+    };
+    let add = |renderer: &mut Renderer, evaluation, segments| {
+        let model = renderer.add_model(&mesh, &options(evaluation)).expect("a model");
+        renderer.set_segments(model, segments).expect("segments");
+        model
+    };
+    // A quad and a triangle on six segments.
+    let bytes = 4 * 3 * (2 * 6 * 6 + 6 * 6);
+    for evaluation in [Evaluation::Instanced, Evaluation::Compute] {
+        let mut pictures = Vec::new();
+        let [first, second] = [0; 2].map(|_| add(&mut renderer, evaluation, 6));
+        let of_one = renderer.memory_usage().indices;
+        assert_eq!(of_one % bytes, 0, "{evaluation:?}");
+        assert!(evaluation == Evaluation::Compute || of_one == bytes);
+        // What was to be copied for both does not go with the first.
+        renderer.remove_model(first).expect("a model");
+        stage.prepare(&mut renderer, 0);
+        let third = add(&mut renderer, evaluation, 6);
+        let item = |model| DrawItem::new(model, 6.0);
+        let early = stage.draw(&mut renderer, 0, &[item(third)]).unwrap_err().to_string();
+        assert!(early.contains("it was not yet prepared"), "{early}");
+        stage.prepare(&mut renderer, 0);
+        for model in [second, third] {
+            pictures.push(stage.draw(&mut renderer, 0, &[item(model)]).expect("a picture"));
+        }
+        assert_eq!(renderer.memory_usage().indices, of_one);
+        // Others are others, and go when nobody has them.
+        renderer.set_segments(third, 3).expect("segments");
+        assert!(renderer.memory_usage().indices > of_one);
+        renderer.set_segments(third, 6).expect("segments");
+        renderer.remove_model(second).expect("a model");
+        for frame in [0, 1, 0, 1] {
+            stage.prepare(&mut renderer, frame);
+        }
+        assert_eq!(renderer.memory_usage().indices, of_one);
+        pictures.push(stage.draw(&mut renderer, 0, &[item(third)]).expect("a picture"));
+        renderer.remove_model(third).expect("a model");
+        for frame in [0, 1] {
+            stage.prepare(&mut renderer, frame);
+        }
+        assert_eq!((renderer.memory_usage().indices, renderer.memory_usage().staging), (0, 0));
+        let alone = add(&mut renderer, evaluation, 6);
+        stage.prepare(&mut renderer, 0);
+        let expected = stage.draw(&mut renderer, 0, &[item(alone)]).expect("a picture");
+        pictures.iter().for_each(|picture| assert_same(picture, &expected, &format!("{evaluation:?}")));
+        renderer.remove_model(alone).expect("a model");
     }
     drop(renderer);
     stage.finish();

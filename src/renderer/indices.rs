@@ -1,0 +1,108 @@
+//! Indices of lattices: one buffer for all models with the same.
+
+use super::model::{device_buffer, upload_buffer};
+use super::{MemoryUsage, lattice::topology};
+use crate::gpu::{Buffer, DeviceContext, GpuError};
+use crate::table::{LatticeIndices, lattice_vertices};
+use crate::topology::PatchKind;
+use ash::vk;
+use rustc_hash::FxHashMap;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+/// What the indices of a lattice depend on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct LatticeShape {
+    pub segments: u32,
+    /// Of how many quads, and of how many triangles, whose vertices follow each other, there are indices; 0 if none are drawn.
+    pub blocks: [u32; 2],
+}
+
+impl LatticeShape {
+    /// Where in [`LatticeShape::blocks`] patches of a kind are.
+    pub(super) fn place(kind: PatchKind) -> usize {
+        usize::from(kind.is_triangular())
+    }
+}
+
+/// Those of a quad or of a triangle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PatchIndices {
+    /// How many, and where the first is.
+    pub count: u32,
+    pub first: u32,
+    /// How many join the patch to the one before in its block.
+    pub joint: u32,
+    /// Patches that there are indices for.
+    pub block: u32,
+}
+
+/// Indices on the device, or on the way there.
+pub(super) struct SharedIndices {
+    pub buffer: Buffer,
+    pub topology: vk::PrimitiveTopology,
+    patches: [PatchIndices; 2],
+    staged: Mutex<Option<Buffer>>,
+}
+
+impl SharedIndices {
+    fn new(context: &Arc<DeviceContext>, shape: LatticeShape, at_once: u32) -> Result<Self, GpuError> {
+        let LatticeShape { segments, blocks } = shape;
+        let kinds = [PatchKind::Regular, PatchKind::Triangle];
+        let drawn = kinds.into_iter().filter(|&kind| blocks[LatticeShape::place(kind)] > 0);
+        let of = LatticeIndices::new(drawn, segments, at_once);
+        let mut indices = Vec::new();
+        let patches = kinds.map(|kind| {
+            let block = blocks[LatticeShape::place(kind)];
+            let of_patch = if block > 0 { of.of(kind, segments) } else { Vec::new() };
+            let (count, first) = (of_patch.len() as u32, indices.len() as u32);
+            let mut of_block = Vec::new();
+            let vertices = lattice_vertices(kind, segments);
+            (0..block).for_each(|patch| of.append(&mut of_block, &of_patch, patch * vertices as u32));
+            indices.extend(of_block);
+            PatchIndices { count, first, joint: of.joint(count), block }
+        });
+        // A buffer of no bytes is no buffer.
+        let bytes = (4 * indices.len() as u64).max(4);
+        let mut staged = upload_buffer(context, "subdiv indices to copy", bytes)?;
+        staged.write(0, &indices)?;
+        let buffer = device_buffer(context, "subdiv indices", bytes, vk::BufferUsageFlags::INDEX_BUFFER)?;
+        Ok(Self { buffer, topology: topology(of), patches, staged: Mutex::new(Some(staged)) })
+    }
+
+    pub(super) fn of_patch(&self, kind: PatchKind) -> PatchIndices {
+        self.patches[LatticeShape::place(kind)]
+    }
+
+    /// Gives away what is to be copied to the device, and whereto: to the first that asks.
+    pub(super) fn take_upload(&self) -> Option<(Buffer, vk::Buffer)> {
+        let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner).take();
+        staged.map(|staged| (staged, self.buffer.raw()))
+    }
+
+    pub(super) fn add_memory(&self, usage: &mut MemoryUsage) {
+        usage.indices += self.buffer.size();
+        usage.staging += self.staged.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map_or(0, Buffer::size);
+    }
+}
+
+/// All that are in use.
+#[derive(Default)]
+pub(super) struct IndexCache(FxHashMap<LatticeShape, Weak<SharedIndices>>);
+
+impl IndexCache {
+    /// Those of a shape; strips where a patch has more than `at_once` as a list.
+    pub(super) fn get(
+        &mut self,
+        context: &Arc<DeviceContext>,
+        shape: LatticeShape,
+        at_once: u32,
+    ) -> Result<Arc<SharedIndices>, GpuError> {
+        if let Some(indices) = self.0.get(&shape).and_then(Weak::upgrade) {
+            return Ok(indices);
+        }
+        self.0.retain(|_, indices| indices.strong_count() > 0);
+        let indices = Arc::new(SharedIndices::new(context, shape, at_once)?);
+        self.0.insert(shape, Arc::downgrade(&indices));
+        Ok(indices)
+    }
+}
