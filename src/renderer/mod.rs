@@ -100,8 +100,6 @@ use crate::mesh::ControlMesh;
 use crate::table::Notice;
 use ash::vk;
 use displacement::Displacements;
-#[cfg(not(all(feature = "measure", feature = "headless")))]
-use gpu_data::ViewData;
 use lattice::Lattice;
 use lists::FrameLists;
 use model::{Model, Surroundings};
