@@ -1,6 +1,8 @@
 //! Images for shaders to read, such as displacement maps.
 
-use super::{Headless, HeadlessError};
+use super::Headless;
+#[cfg(feature = "png")]
+use super::HeadlessError;
 use crate::gpu::{Buffer, BufferDesc, GpuError, Image, ImageDesc, MemoryLocation, Owned, VkResultExt};
 use ash::vk;
 
