@@ -75,8 +75,8 @@ pub struct BenchOptions {
 }
 
 impl Default for BenchOptions {
-    /// Factors 4, 8, 16 and 32, equal spacing, moving vertices, 1024 x 1024 pixels with all in the picture, of both sides, one instance,
-    /// one pass, 21 frames after 3.
+    /// Factors 4, 8, 16 and 32, equal spacing, moving vertices, 1024 x 1024 pixels with all in the picture, of both sides, one
+    /// instance, one pass, 21 frames after 3.
     fn default() -> Self {
         Self {
             factors: vec![4.0, 8.0, 16.0, 32.0],

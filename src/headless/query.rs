@@ -159,7 +159,8 @@ impl Timestamps {
         unsafe { self.context.device().cmd_write_timestamp2(cmd, stage, self.pool.raw(), index) };
     }
 
-    /// Waits for all points; returns the times from each to the next, a tick of the device at least. All must have been written and submitted.
+    /// Waits for all points; returns the times from each to the next, a tick of the device at least. All must have been written
+    /// and submitted.
     pub fn read(&self) -> Result<Vec<Duration>, GpuError> {
         let mut ticks = vec![0_u64; self.count as usize];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;

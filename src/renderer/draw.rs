@@ -77,7 +77,8 @@ pub(super) struct Bound {
 
 impl Renderer {
     /// Records the draws of one view: items in their order, the kinds of patches of each in any. Viewport and scissor are the
-    /// caller's to set. Binds sets 0 and 1, pipelines, and index and vertex buffers; push constants are overwritten, and the topology where that is dynamic.
+    /// caller's to set. Binds sets 0 and 1, pipelines, index and vertex buffers; push constants are overwritten, and the topology
+    /// where that is dynamic.
     ///
     /// # Errors
     /// Unknown models, styles and frames, factors below 1 and more views than

@@ -163,7 +163,7 @@ impl Results {
         let is_time = |ms: &f64| *ms > 0.0 && ms.is_finite();
         for (number, recorded) in self.recording.iter().enumerate() {
             let Recorded { frame_ms, draw_ms, prepare_ms, .. } = recorded;
-            // Nothing may be to be prepared.
+            // There may be nothing to prepare.
             let prepare = [prepare_ms.median, prepare_ms.min, prepare_ms.max];
             let others = [frame_ms, draw_ms].into_iter().flat_map(|t| [t.median, t.min, t.max]);
             if !(prepare.iter().all(|ms| *ms == 0.0 || is_time(ms)) && others.into_iter().all(|ms| is_time(&ms))) {
