@@ -67,7 +67,8 @@ pub(in super::super) struct BenchArgs {
     /// Where the eye is, with commas: `clipped` shows the middle three times as large, and cuts off what is around.
     #[arg(long, value_name = "WHERE", value_delimiter = ',', default_value = "fit", value_parser = parse::camera())]
     pub(super) view: Vec<Camera>,
-    /// Have the rasterizer leave out triangles that face away, as renderers do of closed models.
+    /// Have the rasterizer leave out triangles that face away, as renderers do of closed models. Some drivers, lavapipe among
+    /// them, then count fewer of what clipping leaves: compare views without it.
     #[arg(long)]
     pub(super) single_sided: bool,
     /// Make one large mesh of this many copies; several counts with commas, to see how time grows.
