@@ -25,6 +25,8 @@ ROWS = (
 
 
 def run(command):
+    if not command[0].exists():
+        sys.exit(f"{command[0]}: there is no such program: build it, as peers/README.md says")
     done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}: {done.stderr.strip()}")

@@ -178,7 +178,10 @@ fn timestamp_mask(headless: &Headless) -> Result<u64, GpuError> {
     let (device, family) = (headless.physical_device(), headless.queue_family() as usize);
     // SAFETY: the device is of this instance.
     let families = unsafe { headless.instance.get_physical_device_queue_family_properties(device) };
-    let bits = families.get(family).map_or(0, |family| family.timestamp_valid_bits);
+    mask_of(families.get(family).map_or(0, |family| family.timestamp_valid_bits), family)
+}
+
+fn mask_of(bits: u32, family: usize) -> Result<u64, GpuError> {
     let why = || format!("the device's queue family {family} writes no timestamps");
     u64::MAX
         .checked_shr(64 - bits.min(64))
@@ -254,7 +257,10 @@ mod tests {
 
     #[test]
     fn timestamps_may_start_anew() {
-        let of_36_bits = u64::MAX >> 28;
+        let of_36_bits = mask_of(36, 0).unwrap();
+        assert_eq!((of_36_bits, mask_of(64, 0).unwrap()), (0xf_ffff_ffff, u64::MAX));
+        let none = mask_of(0, 2).unwrap_err().to_string();
+        assert_eq!(none, "timestamps: the device's queue family 2 writes no timestamps");
         assert_eq!(ticks_between(&[of_36_bits - 2, 7], of_36_bits), 10);
         assert_eq!(ticks_between(&[5, 5], of_36_bits), 1);
         assert_eq!(ticks_between(&[u64::MAX, 1 << 40], u64::MAX), (1 << 40) + 1);

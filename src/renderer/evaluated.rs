@@ -185,7 +185,7 @@ impl Model {
             let lattice = kept.filter(|lattice| lattice.segments == segments);
             let segments = kept.map_or(0, |lattice| lattice.segments);
             let lattice = lattice.ok_or(Error::OtherSegments { id, factor, segments })?;
-            if lattice.needs_copies() { Err(Error::NotPrepared { id }) } else { Ok(Drawn::Lattice(lattice)) }
+            if lattice.prepared { Ok(Drawn::Lattice(lattice)) } else { Err(Error::NotPrepared { id }) }
         } else if segments > MAX_SEGMENTS {
             Err(Error::BadSegments { id, given: segments, max: MAX_SEGMENTS })
         } else {

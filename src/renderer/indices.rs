@@ -1,7 +1,7 @@
 //! Indices of lattices: one buffer for all models with the same.
 
+use super::MemoryUsage;
 use super::model::{device_buffer, upload_buffer};
-use super::{MemoryUsage, lattice::topology};
 use crate::gpu::{Buffer, DeviceContext, GpuError};
 use crate::table::{LatticeIndices, lattice_vertices};
 use crate::topology::PatchKind;
@@ -86,23 +86,38 @@ impl SharedIndices {
 }
 
 /// All that are in use.
-#[derive(Default)]
-pub(super) struct IndexCache(FxHashMap<LatticeShape, Weak<SharedIndices>>);
+pub(super) struct IndexCache {
+    /// Where a patch has more as a list, it is a strip.
+    at_once: u32,
+    made: FxHashMap<LatticeShape, Weak<SharedIndices>>,
+}
 
 impl IndexCache {
-    /// Those of a shape; strips where a patch has more than `at_once` as a list.
+    /// None yet. Lists of a patch have up to `at_once` indices.
+    pub(super) fn new(at_once: u32) -> Self {
+        Self { at_once, made: FxHashMap::default() }
+    }
+
+    /// Those of a shape.
     pub(super) fn get(
         &mut self,
         context: &Arc<DeviceContext>,
         shape: LatticeShape,
-        at_once: u32,
     ) -> Result<Arc<SharedIndices>, GpuError> {
-        if let Some(indices) = self.0.get(&shape).and_then(Weak::upgrade) {
+        if let Some(indices) = self.made.get(&shape).and_then(Weak::upgrade) {
             return Ok(indices);
         }
-        self.0.retain(|_, indices| indices.strong_count() > 0);
-        let indices = Arc::new(SharedIndices::new(context, shape, at_once)?);
-        self.0.insert(shape, Arc::downgrade(&indices));
+        self.made.retain(|_, indices| indices.strong_count() > 0);
+        let indices = Arc::new(SharedIndices::new(context, shape, self.at_once)?);
+        self.made.insert(shape, Arc::downgrade(&indices));
         Ok(indices)
+    }
+}
+
+/// What indices are drawn as.
+pub(crate) fn topology(of: LatticeIndices) -> vk::PrimitiveTopology {
+    match of {
+        LatticeIndices::List => vk::PrimitiveTopology::TRIANGLE_LIST,
+        LatticeIndices::Strip => vk::PrimitiveTopology::TRIANGLE_STRIP,
     }
 }

@@ -10,7 +10,7 @@ use super::stages::{PatchStages, Sharing};
 use super::vertex_input::vertex_bytes;
 use super::{Capture, Error, Evaluation, MemoryUsage, ModelId};
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, descriptor_set_layout};
-use crate::table::{LatticeIndices, PatchGroup, PatchPlan, lattice_vertices};
+use crate::table::{PatchGroup, PatchPlan, lattice_vertices};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
@@ -34,9 +34,7 @@ struct Dispatch {
 pub(super) struct LatticePipelines {
     set_layout: Owned<vk::DescriptorSetLayout>,
     texcoords: bool,
-    /// As of the device, if strips may be drawn.
-    indices_at_once: u32,
-    pub indices: IndexCache,
+    indices: IndexCache,
     pipelines: ComputePipelines<PatchStages, Dispatch>,
 }
 
@@ -54,8 +52,8 @@ impl LatticePipelines {
         let set_layout = descriptor_set_layout(context, "subdiv vertices", &[vertices])?;
         let sets = [view, model, set_layout.raw()];
         let pipelines = ComputePipelines::new(context, "subdiv evaluation", &sets, cache)?;
-        let indices_at_once = if wireframe { u32::MAX } else { context.properties().indices_at_once };
-        Ok(Self { set_layout, texcoords, indices_at_once, indices: IndexCache::default(), pipelines })
+        let indices = IndexCache::new(if wireframe { u32::MAX } else { context.properties().indices_at_once });
+        Ok(Self { set_layout, texcoords, indices, pipelines })
     }
 
     /// Makes what patches need.
@@ -74,7 +72,7 @@ pub(super) struct Lattice {
     /// In the order of the plan.
     groups: Vec<LatticeGroup>,
     /// Whether a frame was prepared with it.
-    prepared: bool,
+    pub prepared: bool,
 }
 
 /// What lattices have bound in a command buffer since something else was.
@@ -131,7 +129,6 @@ impl Lattice {
         plan: &PatchPlan,
         segments: u32,
     ) -> Result<Self, Error> {
-        let LatticePipelines { indices, indices_at_once, .. } = pipelines;
         let context = pipelines.pipelines.context();
         let computed = evaluation == Evaluation::Compute;
         let max = context.properties().max_storage_buffer_range;
@@ -147,7 +144,7 @@ impl Lattice {
             let of_kind = &mut shape.blocks[LatticeShape::place(group.kind)];
             *of_kind = block.max(*of_kind);
         }
-        let indices = indices.get(context, shape, *indices_at_once)?;
+        let indices = pipelines.indices.get(context, shape)?;
         let mut first_vertex = 0;
         let group = |group: &PatchGroup| {
             let (kind, patches) = (group.kind, group.patches.len() as u32);
@@ -162,11 +159,6 @@ impl Lattice {
         let groups = plan.groups().iter().map(group).collect();
         let vertices = computed.then(|| LatticeVertices::new(pipelines, bytes)).transpose()?;
         Ok(Self { segments, vertices, indices, groups, prepared: false })
-    }
-
-    /// Whether it is to be prepared.
-    pub(super) fn needs_copies(&self) -> bool {
-        !self.prepared
     }
 
     /// Gives away what is to be copied to the device, and whereto, unless another model's lattice did; prepared by that.
@@ -261,14 +253,6 @@ impl Lattice {
             // SAFETY: as the caller promises.
             unsafe { device.cmd_draw_indexed(cmd, count, 1, first_index, offset, 0) };
         }
-    }
-}
-
-/// What indices are drawn as.
-pub(crate) fn topology(of: LatticeIndices) -> vk::PrimitiveTopology {
-    match of {
-        LatticeIndices::List => vk::PrimitiveTopology::TRIANGLE_LIST,
-        LatticeIndices::Strip => vk::PrimitiveTopology::TRIANGLE_STRIP,
     }
 }
 

@@ -89,7 +89,7 @@ pub(crate) use pipelines::STAGES;
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub(crate) use {
     gpu_data::{DrawConstants, ViewData},
-    lattice::topology,
+    indices::topology,
     stages::{reads_texels, spaced},
     subdivision::level as subdivision_level,
     view::is_size,

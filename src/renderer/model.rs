@@ -241,7 +241,7 @@ impl Model {
     }
 
     pub(super) fn needs_copies(&self, frame: u32) -> bool {
-        let indices = self.lattice.as_ref().is_some_and(Lattice::needs_copies);
+        let indices = self.lattice.as_ref().is_some_and(|lattice| !lattice.prepared);
         let factors = self.edge_factors.as_ref().is_some_and(|factors| factors.is_due(frame));
         !self.prepared || indices || factors || self.positions.is_due(frame)
     }

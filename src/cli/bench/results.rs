@@ -162,11 +162,9 @@ impl Results {
         }
         let is_time = |ms: &f64| *ms > 0.0 && ms.is_finite();
         for (number, recorded) in self.recording.iter().enumerate() {
-            let Recorded { frame_ms, draw_ms, prepare_ms, .. } = recorded;
             // There may be nothing to prepare.
-            let prepare = [prepare_ms.median, prepare_ms.min, prepare_ms.max];
-            let others = [frame_ms, draw_ms].into_iter().flat_map(|t| [t.median, t.min, t.max]);
-            if !(prepare.iter().all(|ms| *ms == 0.0 || is_time(ms)) && others.into_iter().all(|ms| is_time(&ms))) {
+            let prepared = recorded.prepare_ms.all().iter().all(|ms| *ms == 0.0 || is_time(ms));
+            if !prepared || ![recorded.frame_ms, recorded.draw_ms].iter().flat_map(Times::all).all(|ms| is_time(&ms)) {
                 let who = recorded.who.label();
                 return Err(format!("recording {} ({who}): a time of it is not above 0", number + 1));
             }
@@ -176,12 +174,12 @@ impl Results {
             if !(row.factor >= 1.0 && row.factor.is_finite()) {
                 return wrong("its factor is not from 1 up");
             }
-            let times = [row.gpu_ms, row.geometry_ms].into_iter().flat_map(|t| [t.median, t.min, t.max]);
+            let times = [row.gpu_ms, row.geometry_ms];
             let frames = || [GPU, GEOMETRY].into_iter().map(|what| row.frames(what));
             if frames().any(<[f64]>::is_empty) {
                 return wrong("it has no frames");
             }
-            if !times.chain(frames().flatten().copied()).all(|ms| is_time(&ms)) {
+            if !times.iter().flat_map(Times::all).chain(frames().flatten().copied()).all(|ms| is_time(&ms)) {
                 return wrong("a time of it is not above 0");
             }
         }
@@ -376,6 +374,11 @@ impl Times {
     pub(super) fn of(values: &[f64]) -> Option<Self> {
         let Summary { median, min, max, mad } = Summary::of(values)?;
         Some(Self { median, min, max, mad })
+    }
+
+    /// All that are times, and no spread.
+    fn all(&self) -> [f64; 3] {
+        [self.median, self.min, self.max]
     }
 }
 
