@@ -32,6 +32,29 @@ pub struct Buffer {
 }
 
 impl Buffer {
+    /// A buffer that the host writes and copies are made from.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub fn upload(context: &Arc<DeviceContext>, name: &str, size: u64) -> Result<Self, GpuError> {
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
+        Self::new(context, &BufferDesc { name, size, usage, location: MemoryLocation::Upload })
+    }
+
+    /// A buffer in the device's own memory, which copies go into.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub fn device_local(
+        context: &Arc<DeviceContext>,
+        name: &str,
+        size: u64,
+        usage: vk::BufferUsageFlags,
+    ) -> Result<Self, GpuError> {
+        let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
+        Self::new(context, &BufferDesc { name, size, usage, location: MemoryLocation::DeviceLocal })
+    }
+
     /// A new buffer, with memory.
     ///
     /// # Errors

@@ -128,7 +128,7 @@ impl Kit {
     /// # Safety
     /// `cmd` is being recorded; the device is done with earlier frames.
     unsafe fn cmd_bind(&mut self, cmd: vk::CommandBuffer, view: &View) -> Result<(), GpuError> {
-        self.view.write(0, &[view.data()])?;
+        self.view.write(0, &[ViewData::new(view)])?;
         let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, self.layout.raw());
         let sets = self.sets.each_ref().map(DescriptorSet::raw);
         // SAFETY: as the caller promises.

@@ -1,0 +1,108 @@
+//! The cached construction: frames of rings, and from these control points, by compute.
+
+use crate::gpu::{DeviceContext, GpuError, MAX_WORKGROUPS};
+use crate::renderer::pipelines::ComputePipelines;
+use crate::renderer::shader::{Cut, PatchStages, ShaderCode};
+use crate::table::PatchPlan;
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+use std::sync::Arc;
+
+/// Invocations in a workgroup of `glsl/lib/invocation.glsl`.
+const GROUP: u32 = 64;
+
+/// Push constants. GLSL twin: `glsl/lib/invocation.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Invocations {
+    count: u32,
+    /// Of the patches.
+    first_corner: u32,
+}
+
+/// What pipelines are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Step {
+    Frames {
+        /// Whether rings may have pentagons.
+        pentagons: bool,
+    },
+    /// By [`PatchStages::for_control_points`].
+    Points(PatchStages),
+}
+
+impl Step {
+    fn frames(stages: PatchStages) -> Self {
+        Self::Frames { pentagons: stages.scheme.has_pentagons() }
+    }
+}
+
+/// The pipelines of the cached construction.
+pub(crate) struct CachedPipelines(ComputePipelines<Step, Invocations>);
+
+impl CachedPipelines {
+    /// With the set layouts of the draws.
+    pub(crate) fn new(
+        context: &Arc<DeviceContext>,
+        sets: [vk::DescriptorSetLayout; 2],
+        cache: vk::PipelineCache,
+    ) -> Result<Self, GpuError> {
+        ComputePipelines::new(context, "subdiv control points", &sets, cache).map(Self)
+    }
+
+    /// Makes what patches need.
+    pub(crate) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
+        let stages = stages.for_control_points();
+        let constants = stages.specialization(Cut::default(), self.0.context().properties());
+        self.0.make(Step::frames(stages), "COMPUTE_FRAMES_COMP", code, &constants)?;
+        self.0.make(Step::Points(stages), &stages.control_points(), code, &constants)
+    }
+
+    /// Records the dispatch for so many rings of a model, whose set this is.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering; the pipelines of `stages` were made.
+    pub(crate) unsafe fn cmd_frames(
+        &self,
+        cmd: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        stages: &[PatchStages],
+        rings: u32,
+    ) {
+        let Some(&stages) = stages.first().filter(|_| rings > 0) else { return };
+        // SAFETY: as the caller promises.
+        unsafe {
+            self.0.cmd_bind(cmd, 1, &[set], &[]);
+            self.cmd_dispatch(cmd, Step::frames(stages), Invocations { count: rings, first_corner: 0 });
+        }
+    }
+
+    /// Records the dispatches for all patches of a model, whose set this is.
+    ///
+    /// # Safety
+    /// As [`CachedPipelines::cmd_frames`]; the frames are there.
+    pub(crate) unsafe fn cmd_points(
+        &self,
+        cmd: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        stages: &[PatchStages],
+        plan: &PatchPlan,
+    ) {
+        // SAFETY: as the caller promises.
+        unsafe { self.0.cmd_bind(cmd, 1, &[set], &[]) };
+        for (&stages, group) in stages.iter().zip(plan.groups()) {
+            let (count, first_corner) = (group.patches.len() as u32, group.first_corner as u32);
+            // SAFETY: as the caller promises.
+            unsafe {
+                self.cmd_dispatch(cmd, Step::Points(stages.for_control_points()), Invocations { count, first_corner })
+            };
+        }
+    }
+
+    unsafe fn cmd_dispatch(&self, cmd: vk::CommandBuffer, step: Step, invocations: Invocations) {
+        let groups = invocations.count.div_ceil(GROUP);
+        let rows = groups.div_ceil(MAX_WORKGROUPS);
+        // SAFETY: as the caller promises.
+        unsafe { self.0.cmd_dispatch(cmd, &step, &invocations, [groups.div_ceil(rows), rows]) };
+    }
+}

@@ -1,0 +1,329 @@
+//! Recording the draws of a view.
+
+use super::Renderer;
+use super::visible::ItemLists;
+use crate::gpu::{Domain, tessellated_vertices};
+use crate::renderer::evaluate::{BoundLattice, subdivision};
+use crate::renderer::model::{Drawn, Model};
+use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View, is_size};
+use crate::renderer::shader::{
+    COUNTER_CLOCKWISE_FLAG, Cut, DrawConstants, GeometryKey, PatchStages, PipelineKey, STAGES, ViewData,
+};
+use crate::table::Evaluation;
+use crate::table::{TILE_VERTICES, lattice_tiles};
+use ash::vk;
+
+impl DrawItem {
+    /// What the shaders know of it, for all patches; `most` is the largest factor of an edge.
+    pub(crate) fn constants(&self, model: &Model, style: &Style, view: &View, most: f32) -> DrawConstants {
+        let [scale, bias] = self.displacement;
+        let value = match self.factor {
+            Factor::Uniform(factor) => factor.min(most),
+            factor => factor.value(),
+        };
+        let back = if style.leaves_out_counter_clockwise(&self.transform, view) { COUNTER_CLOCKWISE_FLAG } else { 0 };
+        let flags = model.displacement_flags(self.displacement) | back;
+        DrawConstants { flags, ..DrawConstants::new(&self.transform, [value, scale, bias]) }
+    }
+}
+
+/// What is bound in a command buffer so far.
+#[derive(Default)]
+pub(crate) struct Bound {
+    pipeline: vk::Pipeline,
+    set: vk::DescriptorSet,
+    pub lattice: BoundLattice,
+}
+
+impl Renderer {
+    /// Records the draws of one view: items in their order, the kinds of patches of each in any. Viewport and scissor are the
+    /// caller's to set. Binds sets 0 and 1, pipelines, index and vertex buffers; push constants are overwritten, and the topology
+    /// where that is dynamic.
+    ///
+    /// # Errors
+    /// Unknown models, styles and frames, factors below 1 and more views than
+    /// [`Options::views_per_frame`](crate::renderer::Options::views_per_frame). Items before the wrong one are recorded.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, inside rendering that fits the [`Target`](crate::renderer::Target) of the items' styles, after
+    /// [`Renderer::cmd_prepare`] of the same frame. The caller's sets from 2 on are bound, with layouts as in
+    /// [`Options::set_layouts`](crate::renderer::Options::set_layouts).
+    pub unsafe fn cmd_draw(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        frame_index: u32,
+        view: &View,
+        items: &[DrawItem],
+    ) -> Result<(), Error> {
+        self.check_frame(frame_index)?;
+        let offset = self.take_view(frame_index, view)?;
+        let set = self.lists[frame_index as usize].set.raw();
+        // SAFETY: as the caller promises.
+        unsafe { self.cmd_bind_view(cmd, set, [offset, 0]) };
+        let mut bound = Bound::default();
+        for item in items {
+            self.make_cuts(item.model, item.factor, item.cull, false)?;
+            // SAFETY: as the caller promises.
+            unsafe { self.cmd_draw_item(cmd, view, item, None, &mut bound)? };
+        }
+        Ok(())
+    }
+
+    /// Writes what the shaders know of a view, and tells where that is.
+    pub(crate) fn take_view(&mut self, frame: u32, view: &View) -> Result<u32, Error> {
+        let max = self.options.views_per_frame;
+        let drawn = &mut self.views_drawn[frame as usize];
+        if *drawn >= max {
+            return Err(Error::TooManyViews { frame, max });
+        }
+        let offset = ViewData::STRIDE * (u64::from(frame) * u64::from(max) + u64::from(*drawn));
+        *drawn += 1;
+        self.views.write(offset, &[ViewData::new(view)])?;
+        Ok(offset as u32)
+    }
+
+    /// Binds set 0, with the offsets of the view and of a list of patches.
+    pub(crate) unsafe fn cmd_bind_view(&self, cmd: vk::CommandBuffer, set: vk::DescriptorSet, offsets: [u32; 2]) {
+        let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, self.pipelines.draws.layout.raw());
+        // SAFETY: as the caller of `cmd_draw` promises.
+        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, layout, 0, &[set], &offsets) };
+    }
+
+    /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor (but each
+    /// level of [`Evaluation::Subdivision`] has its own). Those for [`Factor::Uniform`] (level 0) with [`Cull::NONE`] are there
+    /// when the model is added; others are made by the first draw that needs them, unless this was called before.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchModel`]; failed Vulkan calls.
+    pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
+        if self.options.visible_lists && cull != Cull::NONE && self.model(id)?.evaluation.culls() {
+            self.make_cuts(id, factor, cull, true)?;
+        }
+        self.make_cuts(id, factor, cull, false)
+    }
+
+    /// As [`Renderer::make_pipelines`], for draws of lists only, or for others only.
+    pub(crate) fn make_cuts(&mut self, id: ModelId, factor: Factor, cull: Cull, lists: bool) -> Result<(), Error> {
+        let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
+        let cut = Cut::new(factor, cull);
+        // Of patches that are not looked at, all are drawn.
+        let cuts = if lists { [Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { [cut; 2] };
+        for each in cuts {
+            if model.made & each.bit() == 0 {
+                self.pipelines.make(&model.stages, each)?;
+                model.made |= each.bit();
+            }
+        }
+        if lists {
+            let mut listed = model.stages.iter().filter(|stages| stages.has_hull());
+            listed.try_for_each(|&stages| self.list_pipelines.make(stages, cut, &self.pipelines.draws.shaders))?;
+        }
+        // A factor that is none of a level is told by the draw.
+        if model.evaluation == Evaluation::Subdivision
+            && let Ok(level) = subdivision::level(id, factor)
+        {
+            self.pipelines.draws.make_subdivision(level)?;
+        }
+        Ok(())
+    }
+
+    /// Records the draws of an item, of the patches on lists where there are lists.
+    ///
+    /// # Safety
+    /// As [`Renderer::cmd_draw`], with set 0 bound.
+    pub(crate) unsafe fn cmd_draw_item(
+        &self,
+        cmd: vk::CommandBuffer,
+        view: &View,
+        item: &DrawItem,
+        lists: Option<ItemLists>,
+        bound: &mut Bound,
+    ) -> Result<(), Error> {
+        let style = self.style(item)?;
+        let (model, most) = self.check_item(view, item)?;
+        let device = self.context.device();
+        let mut constants = item.constants(model, style, view, most);
+        let lists = lists.filter(|lists| !lists.is_empty());
+        let cull = if lists.is_some() { Cull::NONE } else { item.cull };
+        let cut = Cut::new(item.factor, cull);
+        // SAFETY: as the caller of `cmd_draw` promises.
+        unsafe {
+            if bound.set != model.set.raw {
+                bound.set = model.set.raw;
+                let point = vk::PipelineBindPoint::GRAPHICS;
+                let layout = self.pipelines.draws.layout.raw();
+                device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set.raw], &[]);
+            }
+            if style.geometry != Geometry::Surface {
+                bound.lattice = BoundLattice::default();
+                constants.colour = item.colors[0];
+                let key = PipelineKey { style: item.style, geometry: GeometryKey::Control };
+                self.bind(cmd, self.pipelines.draws.get(key), bound);
+                self.push(cmd, &constants);
+                if let Some(control) = &model.control {
+                    let (first, count) = match style.geometry {
+                        Geometry::ControlEdges => (0, control.edges),
+                        _ => (control.edges, control.faces),
+                    };
+                    device.cmd_bind_index_buffer(cmd, control.buffer.raw(), 0, vk::IndexType::UINT32);
+                    device.cmd_draw_indexed(cmd, count, 1, first, control.vertex_offset, 0);
+                }
+                return Ok(());
+            }
+            let drawn = model.drawn(item.factor)?;
+            lists.map_or(Ok(()), |lists| lists.check(drawn))?;
+            match drawn {
+                Drawn::Lattice(lattice) => {
+                    constants.set_factor(lattice.segments as f32);
+                    lattice.cmd_bind(device, cmd, &mut bound.lattice);
+                }
+                Drawn::Tiles { segments } => constants.set_factor(segments as f32),
+                Drawn::Patches | Drawn::Subdivided { .. } => {}
+            }
+            if drawn.lattice_segments().is_none() {
+                bound.lattice = BoundLattice::default();
+            }
+            let groups = model.tables.plan().groups();
+            let pipeline = |number: usize| {
+                let stages: PatchStages = model.stages[number];
+                let geometry = match drawn {
+                    Drawn::Subdivided { level } => GeometryKey::Subdivision(level),
+                    _ if lists.is_some() && stages.has_hull() => stages.geometry(Cut::listed(item.factor)),
+                    _ => stages.geometry(cut),
+                };
+                self.pipelines.draws.get(PipelineKey { style: item.style, geometry })
+            };
+            // Of many models, every other one is drawn from the last kind of patch to the first: its pipeline is bound already.
+            let backwards = groups.len() > 1 && pipeline(groups.len() - 1) == Some(bound.pipeline);
+            for i in 0..groups.len() {
+                let number = if backwards { groups.len() - 1 - i } else { i };
+                let (stages, group) = (model.stages[number], &groups[number]);
+                constants.colour = item.colors[stages.kind as usize];
+                self.bind(cmd, pipeline(number), bound);
+                if let Some(lists) = lists.filter(|_| stages.has_hull()) {
+                    self.cmd_draw_lists(cmd, lists, (model, number), &constants, &mut bound.lattice);
+                    continue;
+                }
+                constants.first_corner = group.first_corner as u32;
+                constants.first_patch = group.patches.start as u32;
+                let patches = group.patches.len() as u32;
+                match drawn {
+                    Drawn::Patches => {
+                        let vertices = self.vertices_of_patch(stages, most);
+                        self.cmd_draw_batches(cmd, &mut constants, patches, stages.input_points(), vertices);
+                    }
+                    Drawn::Subdivided { level } => {
+                        self.cmd_draw_batches(cmd, &mut constants, patches, 1, subdivision::vertices(level));
+                    }
+                    Drawn::Lattice(lattice) => {
+                        self.push(cmd, &constants);
+                        if let Some(points) = model.control_points.as_ref().filter(|_| stages.attributes) {
+                            let of_corner = u64::from(stages.patch_bytes()) / stages.kind.corners() as u64;
+                            let offset = of_corner * group.first_corner as u64;
+                            bound.lattice.cmd_bind_vertices(device, cmd, points.raw(), offset);
+                        }
+                        lattice.cmd_draw(device, cmd, number);
+                    }
+                    Drawn::Tiles { segments } => {
+                        let tiles = lattice_tiles(segments);
+                        // No more than can be counted.
+                        let step = u32::MAX / tiles;
+                        for first in (0..patches).step_by(step as usize) {
+                            let first_corner = group.first_corner + first as usize * stages.kind.corners();
+                            constants.first_corner = first_corner as u32;
+                            constants.first_patch = group.patches.start as u32 + first;
+                            let count = step.min(patches - first) * tiles;
+                            self.cmd_draw_batches(cmd, &mut constants, count, 1, TILE_VERTICES);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Records the draws of so many patches (or tiles of them), in instances as the device likes them. Each has so many points,
+    /// and at most so many vertices when it is evaluated.
+    unsafe fn cmd_draw_batches(
+        &self,
+        cmd: vk::CommandBuffer,
+        constants: &mut DrawConstants,
+        count: u32,
+        points: u32,
+        vertices: u32,
+    ) {
+        for draw in self.context.properties().patch_batch.draws(count, points, vertices) {
+            // SAFETY: as the caller of `cmd_draw` promises.
+            unsafe {
+                if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
+                    constants.patches_per_instance = draw.patches_per_instance;
+                    self.push(cmd, constants);
+                }
+                self.context.device().cmd_draw(cmd, draw.vertex_count, draw.instance_count, 0, draw.first_instance);
+            }
+        }
+    }
+
+    /// The most vertices that the tessellation stages make of a patch whose factors are at most this.
+    fn vertices_of_patch(&self, stages: PatchStages, most: f32) -> u32 {
+        let domain = if stages.kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
+        tessellated_vertices(domain, stages.spacing, most, self.context.properties().max_tessellation_level)
+    }
+
+    /// How many of so many patches an instance of a draw through the tessellation stages has.
+    pub(crate) fn patches_per_instance(&self, stages: PatchStages, patches: u32, most: f32) -> u32 {
+        let rule = self.context.properties().patch_batch;
+        rule.patches_per_instance(patches, stages.input_points(), self.vertices_of_patch(stages, most))
+    }
+
+    pub(crate) fn style(&self, item: &DrawItem) -> Result<&Style, Error> {
+        let styles = self.pipelines.draws.styles();
+        styles.get(item.style).ok_or(Error::NoSuchStyle { given: item.style, count: styles.len() })
+    }
+
+    /// Tells whether an item can be drawn. Gives its model, and the largest factor that any edge may have.
+    pub(crate) fn check_item(&self, view: &View, item: &DrawItem) -> Result<(&Model, f32), Error> {
+        let (id, factor) = (item.model, item.factor);
+        let model = self.model(id)?;
+        if !model.prepared {
+            return Err(Error::NotPrepared { id });
+        }
+        if !factor.is_valid() {
+            return Err(Error::BadFactor { id, factor });
+        }
+        if !is_size(view.measured().viewport) && (factor.needs_viewport() || item.cull.small) {
+            return Err(Error::NoViewport { id });
+        }
+        let [scale, bias] = item.displacement;
+        if !(scale.is_finite() && bias.is_finite()) {
+            return Err(Error::BadDisplacement { id, scale, bias });
+        }
+        let max = self.context.properties().max_tessellation_level as f32;
+        let most = match factor {
+            Factor::Uniform(factor) => factor.min(max),
+            Factor::Pixels(_) | Factor::Curvature(_) => max,
+            Factor::Edges(scale) => {
+                let largest = model.largest_edge_factor().ok_or(Error::NoEdgeFactors { id })?;
+                (scale * largest).clamp(1.0, max)
+            }
+        };
+        Ok((model, most))
+    }
+
+    unsafe fn bind(&self, cmd: vk::CommandBuffer, pipeline: Option<vk::Pipeline>, bound: &mut Bound) {
+        // Every pipeline of the model was made before.
+        if let Some(pipeline) = pipeline
+            && bound.pipeline != pipeline
+        {
+            bound.pipeline = pipeline;
+            // SAFETY: as the caller of `cmd_draw` promises.
+            unsafe { self.context.device().cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
+        }
+    }
+
+    pub(crate) unsafe fn push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
+        let layout = self.pipelines.draws.layout.raw();
+        // SAFETY: as the caller of `cmd_draw` promises.
+        unsafe { self.context.device().cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(constants)) };
+    }
+}

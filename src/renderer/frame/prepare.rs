@@ -1,0 +1,136 @@
+//! What a frame does before its draws: copies, and what compute shaders make of them.
+
+use super::{Renderer, RetiredObject};
+use crate::renderer::model::Model;
+use crate::renderer::options::Error;
+#[cfg(doc)]
+use crate::renderer::{Construction, Evaluation};
+use ash::vk;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// How many frames were prepared so far, by all renderers: each has a number of its own.
+static PREPARATIONS: AtomicU64 = AtomicU64::new(1);
+
+impl Renderer {
+    /// Records what has to happen before this frame's draws: copies, barriers, and what compute shaders make. Once a frame.
+    ///
+    /// Where there is something to compute, it binds compute pipelines, with set 1, and pushes constants; models that are
+    /// [`Evaluation::GeometryTwoPass`] have a render pass of their own here. What is bound for draws is to be bound after it.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchFrame`]; nothing is recorded then.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
+    /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or, with
+    /// [`Options::visible_lists`](crate::renderer::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). The
+    /// device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue, and every one is: uploads
+    /// and changes are recorded once, and later frames count on them. A frame that turns out to have nothing to draw into, such
+    /// as when the swapchain is out of date, is submitted without draws.
+    pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
+        self.check_frame(frame_index)?;
+        self.views_drawn[frame_index as usize] = 0;
+        self.lists[frame_index as usize].clear();
+        self.preparations[frame_index as usize] = PREPARATIONS.fetch_add(1, Ordering::Relaxed);
+        for retired in &mut self.retired {
+            retired.frames[frame_index as usize] = false;
+        }
+        self.retired.retain(|retired| retired.frames.contains(&true));
+        if self.models.values().all(|model| model.is_at_rest(frame_index)) {
+            return Ok(());
+        }
+        let device = self.context.device();
+        let readers = vk::PipelineStageFlags::VERTEX_INPUT | self.shader_readers();
+        let transfer = vk::PipelineStageFlags::TRANSFER;
+        let none = vk::DependencyFlags::empty();
+        let after_copies = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            // Computation writes control points and vertices again, too.
+            .dst_access_mask(
+                vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE | vk::AccessFlags::INDEX_READ,
+            )];
+        let after_writes = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)];
+        // SAFETY: as the caller promises; the copied ranges are of live buffers.
+        unsafe {
+            // The frame before may still read what is overwritten here.
+            device.cmd_pipeline_barrier(cmd, readers | transfer, transfer, none, &after_writes, &[], &[]);
+            self.models.values_mut().for_each(|model| model.mark_stale(frame_index));
+            let mut staged = Vec::new();
+            for model in self.models.values_mut().filter(|model| model.needs_copies(frame_index)) {
+                staged.extend(model.cmd_copy(device, cmd, frame_index));
+            }
+            device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
+            self.cmd_compute(cmd);
+            if !staged.is_empty() {
+                self.retire(Some(frame_index), RetiredObject::Staging(staged));
+            }
+        }
+        Ok(())
+    }
+
+    /// Records what makes control points, and vertices where they are evaluated by compute, for draws to read them.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, outside rendering, after the copies and the barrier that follows them. That and the one
+    /// before the copies have the computation wait for what read the points before.
+    pub(crate) unsafe fn cmd_compute(&mut self, cmd: vk::CommandBuffer) {
+        let readers = self.shader_readers();
+        let Self { models, pipelines, context, .. } = self;
+        if !models.values().any(Model::is_stale) {
+            return;
+        }
+        use vk::PipelineStageFlags as Stage;
+        let makers = readers & (Stage::COMPUTE_SHADER | Stage::GEOMETRY_SHADER);
+        let written = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ)];
+        let none = vk::DependencyFlags::empty();
+        let device = context.device();
+        // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
+        unsafe {
+            for model in models.values().filter(|model| model.has_stale_points()) {
+                model.cmd_frames(pipelines, cmd);
+            }
+            device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]);
+            for model in models.values().filter(|model| model.has_stale_points()) {
+                model.cmd_points(pipelines, cmd);
+            }
+            device.cmd_pipeline_barrier(cmd, makers, readers, none, &written, &[], &[]);
+        }
+        for model in models.values_mut().filter(|model| model.is_stale()) {
+            // SAFETY: as above, after the control points.
+            unsafe { model.cmd_evaluate(&pipelines.lattice, cmd) };
+        }
+        let evaluated = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::VERTEX_ATTRIBUTE_READ)];
+        // SAFETY: as the caller promises.
+        unsafe {
+            device.cmd_pipeline_barrier(cmd, makers, Stage::VERTEX_INPUT, none, &evaluated, &[], &[]);
+        }
+    }
+
+    /// Has a model's control points and vertices made anew in the next frame: the bench times them.
+    #[cfg(all(feature = "measure", feature = "headless"))]
+    pub(crate) fn forget_control_points(&mut self, id: crate::renderer::ModelId) -> Result<(), Error> {
+        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.forget_points();
+        Ok(())
+    }
+
+    /// The shader stages that read what models keep in buffers.
+    fn shader_readers(&self) -> vk::PipelineStageFlags {
+        use vk::PipelineStageFlags as Stage;
+        let mut readers = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER;
+        if self.context.features().geometry {
+            readers |= Stage::GEOMETRY_SHADER;
+        }
+        // The queue may be one that does not compute.
+        let lists = self.options.visible_lists;
+        if self.models.values().any(|model| model.computes() || lists && model.evaluation.culls()) {
+            readers |= Stage::COMPUTE_SHADER;
+        }
+        readers
+    }
+}

@@ -1,0 +1,74 @@
+//! Tessellation factors that the edges of a model have of their own.
+
+use super::streamed::Streamed;
+use crate::gpu::{Buffer, DeviceContext, GpuError};
+use crate::renderer::options::{Error, ModelId};
+use crate::table::Edges;
+use ash::vk;
+use std::sync::Arc;
+
+pub(crate) struct EdgeFactors {
+    /// The factor of each patch corner's plus edge.
+    of_corners: Streamed,
+    /// The largest of what was last written for each frame.
+    largest_written: Vec<f32>,
+    /// The largest of what the device has.
+    largest: f32,
+}
+
+impl EdgeFactors {
+    /// All 1.
+    pub(crate) fn new(context: &Arc<DeviceContext>, name: &str, edges: &Edges, frames: u32) -> Result<Self, GpuError> {
+        let ones = vec![1.0f32; edges.of_corners.len()];
+        Ok(Self {
+            of_corners: Streamed::new(context, &format!("{name}: factors of edges"), &ones, frames)?,
+            largest_written: vec![1.0; frames as usize],
+            largest: 1.0,
+        })
+    }
+
+    /// Takes the factors of all edges, for the copy of this frame.
+    pub(crate) fn write(&mut self, id: ModelId, frame: u32, edges: &Edges, factors: &[f32]) -> Result<(), Error> {
+        let needed = edges.vertices.len();
+        if factors.len() != needed {
+            return Err(Error::EdgeFactorCount { id, given: factors.len(), needed });
+        }
+        if let Some(edge) = factors.iter().position(|factor| !factor.is_finite()) {
+            return Err(Error::BadEdgeFactor { id, edge, factor: factors[edge] });
+        }
+        let of_corners: Vec<f32> = edges.of_corners.iter().map(|&edge| factors[edge as usize]).collect();
+        self.of_corners.write(frame, &of_corners)?;
+        self.largest_written[frame as usize] = factors.iter().copied().fold(1.0, f32::max);
+        Ok(())
+    }
+
+    /// The largest of what the device has; at least 1.
+    pub(crate) fn largest(&self) -> f32 {
+        self.largest
+    }
+
+    pub(crate) fn is_due(&self, frame: u32) -> bool {
+        self.of_corners.is_due(frame)
+    }
+
+    /// Records the copy that is due, if one is.
+    ///
+    /// # Safety
+    /// As [`Streamed::cmd_send`].
+    pub(crate) unsafe fn cmd_send(&mut self, device: &ash::Device, cmd: vk::CommandBuffer, frame: u32) {
+        if self.is_due(frame) {
+            self.largest = self.largest_written[frame as usize];
+        }
+        // SAFETY: as the caller promises.
+        unsafe { self.of_corners.cmd_send(device, cmd, frame) };
+    }
+
+    pub(crate) fn buffer(&self) -> &Buffer {
+        self.of_corners.buffer()
+    }
+
+    /// Bytes on the device, and on the host.
+    pub(crate) fn bytes(&self) -> [u64; 2] {
+        self.of_corners.bytes()
+    }
+}

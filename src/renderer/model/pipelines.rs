@@ -1,0 +1,67 @@
+//! Every pipeline that the models of a renderer need.
+
+use crate::gpu::{DeviceContext, GpuError};
+use crate::renderer::construct::{CachedPipelines, Conversion};
+use crate::renderer::evaluate::LatticePipelines;
+use crate::renderer::options::{Options, Target};
+use crate::renderer::pipelines::DrawPipelines;
+use crate::renderer::shader::{Capture, Cut, PatchStages};
+use crate::table::{Construction, Evaluation};
+use ash::vk;
+use std::sync::Arc;
+
+/// Pipelines of draws, and of what comes before them.
+pub(crate) struct ModelPipelines {
+    context: Arc<DeviceContext>,
+    cache: vk::PipelineCache,
+    pub draws: DrawPipelines,
+    /// For what the cached construction computes.
+    pub cached: CachedPipelines,
+    /// For the first of two passes, once a model wants it.
+    pub conversion: Option<Conversion>,
+    /// For evaluation by compute.
+    pub lattice: LatticePipelines,
+}
+
+impl ModelPipelines {
+    pub(crate) fn new(
+        context: &Arc<DeviceContext>,
+        target: &Target,
+        options: &Options,
+        capture: Capture,
+    ) -> Result<Self, GpuError> {
+        let draws = DrawPipelines::new(context, target, options, capture)?;
+        let (sets, cache) = (draws.set_layouts(), options.pipeline_cache);
+        let cached = CachedPipelines::new(context, sets, cache)?;
+        let wireframe = options.styles.iter().any(|style| style.wireframe);
+        let lattice = LatticePipelines::new(context, sets, cache, options.texcoords, wireframe)?;
+        Ok(Self { context: context.clone(), cache, draws, cached, conversion: None, lattice })
+    }
+
+    /// Makes what draws of these patches need in every style, and what comes before.
+    pub(crate) fn make(&mut self, patches: &[PatchStages], cut: Cut) -> Result<(), GpuError> {
+        // Subdivision has no patches, and pipelines by level.
+        let patches: Vec<PatchStages> =
+            patches.iter().copied().filter(|stages| stages.evaluation != Evaluation::Subdivision).collect();
+        for &stages in &patches {
+            match (stages.construction, stages.evaluation) {
+                (Construction::Cached, Evaluation::GeometryTwoPass) => self.convert(stages)?,
+                (Construction::Cached, _) => self.cached.make(stages, &self.draws.shaders)?,
+                _ => {}
+            }
+            if stages.evaluation == Evaluation::Compute {
+                self.lattice.make(stages, &self.draws.shaders)?;
+            }
+        }
+        self.draws.make(&patches, cut)
+    }
+
+    /// Makes what the first of two passes needs.
+    fn convert(&mut self, stages: PatchStages) -> Result<(), GpuError> {
+        let made = match self.conversion.take() {
+            Some(made) => made,
+            None => Conversion::new(&self.context, self.draws.set_layouts(), self.cache)?,
+        };
+        self.conversion.insert(made).make(stages, &self.draws.shaders)
+    }
+}

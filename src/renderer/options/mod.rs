@@ -1,0 +1,30 @@
+//! What callers say: once of a renderer, once of a model, and for each draw.
+
+mod displacement;
+mod error;
+mod factor;
+mod id;
+mod item;
+mod memory;
+mod model_options;
+#[expect(clippy::module_inception, reason = "the struct that the folder is named after")]
+mod options;
+mod style;
+mod target;
+mod view;
+
+pub use displacement::{DisplacementId, DisplacementMap};
+pub use error::Error;
+pub use factor::{Cull, Factor};
+pub use id::ModelId;
+pub use item::DrawItem;
+pub use memory::MemoryUsage;
+pub use model_options::ModelOptions;
+pub use options::Options;
+pub use style::{Fragment, Geometry, Style};
+pub use target::{ColorEncoding, Pass, Target};
+pub use view::{MeasuredFrom, View};
+
+pub(crate) use error::EVALUATED_VERTICES;
+pub(crate) use style::STYLE_SHADERS;
+pub(crate) use view::is_size;

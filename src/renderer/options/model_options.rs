@@ -1,0 +1,46 @@
+//! How one model is drawn.
+
+use super::DisplacementId;
+use crate::gpu::Spacing;
+use crate::patch::{Fallback, Scheme};
+use crate::table::{Construction, Evaluation, TableOptions};
+
+/// How one model is drawn.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModelOptions {
+    /// The debug name.
+    pub name: String,
+    /// Which patches faces become.
+    pub scheme: Scheme,
+    /// What becomes of faces that the scheme has no patches for.
+    pub fallback: Fallback,
+    /// How the control points are made.
+    pub construction: Construction,
+    /// What evaluates the patches.
+    pub evaluation: Evaluation,
+    /// Where the tessellator puts its vertices along an edge.
+    pub spacing: Spacing,
+    /// Give neighbouring patches the same normals along their edges and at their corners, to the last bit: positions are the
+    /// same in any case. Costs table memory and 10 to 25 % of the geometry's time; displacement needs it.
+    ///
+    /// For schemes that are watertight ([`Scheme::is_watertight`]).
+    pub shared_normals: bool,
+    /// Move the surface along its normal by what a map says, a height map or one of vectors
+    /// ([`Renderer::add_displacement`](crate::renderer::Renderer::add_displacement)); draws say how far
+    /// ([`DrawItem::displacement`](crate::renderer::DrawItem::displacement)). The mesh has to have texture coordinates. Normals are
+    /// shared then in any case.
+    pub displacement: Option<DisplacementId>,
+    /// Let edges have tessellation factors of their own ([`Factor::Edges`](crate::renderer::Factor::Edges)).
+    pub edge_factors: bool,
+    /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
+    pub refine: u32,
+}
+
+impl From<&ModelOptions> for TableOptions {
+    fn from(options: &ModelOptions) -> Self {
+        let &ModelOptions { scheme, fallback, construction, evaluation, shared_normals, edge_factors, refine, .. } =
+            options;
+        let displaced = options.displacement.is_some();
+        Self { scheme, fallback, construction, evaluation, shared_normals, displaced, edge_factors, refine }
+    }
+}

@@ -1,0 +1,12 @@
+//! Pipelines of draws and of compute, and what a device must have for them.
+
+mod compute;
+mod draw;
+mod requirements;
+mod vertex_input;
+
+pub(crate) use compute::ComputePipelines;
+pub(crate) use draw::DrawPipelines;
+pub(crate) use requirements::check_properties;
+pub use requirements::{Requirements, check, requirements};
+pub(crate) use vertex_input::vertex_bytes;

@@ -1,0 +1,64 @@
+//! What tells the draws of a patch apart besides its shaders.
+
+use crate::renderer::options::{Cull, Factor};
+
+/// How the patches of a draw are cut and which of them are drawn: each way has pipelines of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(crate) struct Cut {
+    metric: u32,
+    /// Those that the control shader leaves out.
+    cull: Cull,
+    /// Whether only those on a list are drawn.
+    listed: bool,
+}
+
+impl Cut {
+    pub(crate) fn new(factor: Factor, cull: Cull) -> Self {
+        Self { metric: factor.metric(), cull, listed: false }
+    }
+
+    /// For draws of the patches on a list.
+    pub(crate) fn listed(factor: Factor) -> Self {
+        Self { listed: true, ..Self::new(factor, Cull::NONE) }
+    }
+
+    pub(crate) fn is_listed(self) -> bool {
+        self.listed
+    }
+
+    /// Of draws where nothing is left for a control shader to do.
+    pub(crate) fn without_control(self) -> Self {
+        Self { listed: self.listed, ..Self::default() }
+    }
+
+    /// GLSL twin: `DRAW_FLAGS` in `glsl/lib/factors.glsl`.
+    pub(crate) fn flags(self) -> u32 {
+        let Cull { frustum, back, small } = self.cull;
+        // Five bits: see `Cut::bit`.
+        self.metric | u32::from(frustum) << 2 | u32::from(back) << 3 | u32::from(small) << 4
+    }
+
+    /// What is not as in draws with a uniform factor of all patches; else empty.
+    pub(crate) fn words(self) -> [&'static str; 5] {
+        let metric = match self.metric {
+            0 => "",
+            1 => "pixels",
+            2 => "curvature",
+            _ => "edges",
+        };
+        let Cull { frustum, back, small } = self.cull;
+        let flag = |set, word| if set { word } else { "" };
+        [
+            metric,
+            flag(frustum, "cull frustum"),
+            flag(back, "cull back"),
+            flag(small, "cull small"),
+            flag(self.listed, "listed"),
+        ]
+    }
+
+    /// A bit of its own among 64.
+    pub(crate) fn bit(self) -> u64 {
+        1 << (self.flags() | u32::from(self.listed) << 5)
+    }
+}

@@ -1,0 +1,16 @@
+//! The border to the shaders: which one draws a patch, what it reads, and the bytes of that.
+
+mod code;
+mod cut;
+mod gpu_data;
+mod key;
+mod layout;
+pub(crate) mod names;
+mod spirv;
+
+pub(crate) use code::ShaderCode;
+pub(crate) use cut::Cut;
+pub(crate) use gpu_data::{COUNTER_CLOCKWISE_FLAG, DrawConstants, ViewData, displacement_flags};
+pub(crate) use key::{Capture, GeometryKey, PatchStages, PipelineKey, reads_texels, subdivision_shader};
+pub(crate) use layout::{FRAMES_BINDING, MODEL_BUFFERS, POINTS_BINDING, STAGES, TEXELS, model_layout, view_layout};
+pub(crate) use spirv::{is_spirv, spaced};

@@ -1,0 +1,300 @@
+//! The arrays of a model, before they are on the GPU.
+
+use super::{
+    Construction, Evaluation, FaceOrigin, Notice, PatchPlan, RingTable, SharedCorner, SharedTable, Sharing,
+    StencilTable, SubdivisionTable, TableError, TableOptions, bytes, prepare_patches, prepare_quads,
+};
+use crate::limit::Stencils;
+use crate::mesh::ControlMesh;
+use crate::topology::{PatchKind, Topology};
+use glam::Vec3;
+
+/// Everything that a model's shaders read but its positions. Made without a device, on any thread.
+#[derive(Debug, Clone)]
+pub struct ModelTables {
+    pub(crate) plan: PatchPlan,
+    options: TableOptions,
+    /// Of the two-stage and the cached construction, and wherever normals are shared.
+    rings: Option<RingTable>,
+    /// Of the stencil construction, and of conversion by the geometry shader.
+    stencils: Option<StencilTable>,
+    /// Of subdivision.
+    fans: Option<SubdivisionTable>,
+    /// Where normals are shared.
+    shared: Option<SharedTable>,
+    pub(crate) texcoords: Option<Vec<[f32; 2]>>,
+    edges: Option<Edges>,
+    /// Pairs of control vertices: the edges of the caller's mesh.
+    pub(crate) control_edges: Vec<u32>,
+    /// Triples of control vertices: its faces as fans.
+    pub(crate) control_faces: Vec<u32>,
+    /// Vertices of the caller's mesh, and of the refined one if it had to be refined.
+    pub(crate) control_vertices: usize,
+    patch_vertices: usize,
+    steps: Vec<Stencils>,
+    origins: Vec<FaceOrigin>,
+    notices: Vec<Notice>,
+}
+
+/// The edges of patches, for factors of their own.
+#[derive(Debug, Clone)]
+pub struct Edges {
+    /// The vertices at both ends of each: those of the control mesh, or of the refined one where it had to be refined.
+    pub vertices: Vec<[u32; 2]>,
+    /// For each patch corner, in the order of the plan, the edge to the next.
+    pub of_corners: Vec<u32>,
+}
+
+impl Edges {
+    /// Of the patches in `plan`, whose faces are those of `topology`.
+    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
+        let mesh = topology.mesh();
+        let mut vertices = Vec::new();
+        let mut of_half_edges = vec![0; mesh.corner_count()];
+        for h in 0..mesh.corner_count() as u32 {
+            of_half_edges[h as usize] = match topology.twin(h) {
+                Some(twin) if twin < h => of_half_edges[twin as usize],
+                _ => {
+                    vertices.push([topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h))]);
+                    vertices.len() as u32 - 1
+                }
+            };
+        }
+        let of_corners = plan.corners(topology).into_iter().map(|h| of_half_edges[h as usize]).collect();
+        Self { vertices, of_corners }
+    }
+}
+
+/// Bytes of a stored vertex, and of a texel of what is kept. GLSL twins: `glsl/lib/positions.glsl`, `cached.glsl`.
+pub(crate) const TEXEL_BYTES: u64 = 16;
+/// Bytes of a frame of a ring. GLSL twin: `glsl/lib/kept_frames.glsl`.
+const FRAME_BYTES: u64 = 4 * 12;
+
+/// Texels of four numbers for the vectors that a corner owns and shares, and whether its plus edge is sharp. GLSL twin:
+/// `KEPT_TEXELS` in `glsl/lib/cached.glsl`.
+pub(crate) fn kept_texels(owned: usize, sharing: Sharing) -> u32 {
+    let sharp = u32::from(sharing != Sharing::Positions);
+    (3 * (owned as u32 + sharing.vectors()) + sharp).div_ceil(4)
+}
+
+/// Bytes of a table by its name.
+pub type TableBytes = (&'static str, u64);
+
+impl ModelTables {
+    /// Prepares a mesh and builds its tables.
+    ///
+    /// # Errors
+    /// A refined mesh or a table that cannot be addressed; faces that the scheme has no patch for; shared normals of a
+    /// scheme whose patches share no edges.
+    pub fn new(mesh: &ControlMesh, options: impl Into<TableOptions>) -> Result<Self, TableError> {
+        let options = options.into();
+        let TableOptions { scheme, fallback, refine, .. } = options;
+        let subdivides = options.evaluation == Evaluation::Subdivision;
+        let (prepared, mut plan) = match subdivides {
+            true => prepare_quads(mesh, refine)?,
+            false => prepare_patches(mesh, scheme, fallback, refine)?,
+        };
+        let topology = Topology::new(&prepared.mesh);
+        let fans = subdivides.then(|| SubdivisionTable::new(&topology, &plan)).transpose()?;
+        let converts = options.evaluation == Evaluation::GeometryTwoPass;
+        // The stencil table puts the patches in its own order, so it comes first.
+        let stencils = (options.construction == Construction::Stencil && !subdivides || converts)
+            .then(|| StencilTable::new(&topology, &mut plan))
+            .transpose()?;
+        let sharing = options.sharing();
+        let shared = match sharing {
+            Sharing::Displacement => {
+                Some(SharedTable::with_texcoords(&topology, &plan).ok_or(TableError::NoTexcoords)?)
+            }
+            Sharing::Normals => Some(SharedTable::new(&topology, &plan)),
+            Sharing::Positions => None,
+        };
+        if shared.is_some() && !scheme.is_watertight() {
+            return Err(TableError::NothingShared { scheme });
+        }
+        let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(&topology, &plan));
+        Ok(Self {
+            texcoords: plan.texcoords(&topology),
+            edges: options.edge_factors.then(|| Edges::new(&topology, &plan)),
+            origins: prepared.origins(&plan),
+            notices: prepared.notices(&topology, &plan),
+            plan,
+            options,
+            rings,
+            stencils,
+            fans,
+            shared,
+            control_edges: control_edges(mesh),
+            control_faces: control_faces(mesh),
+            control_vertices: mesh.vertex_count(),
+            patch_vertices: prepared.mesh.vertex_count(),
+            steps: prepared.steps,
+        })
+    }
+
+    /// Whether any corner has another ring than its own speak for what it shares.
+    pub(crate) fn has_speakers(&self) -> bool {
+        let (Some(shared), Some(rings)) = (&self.shared, &self.rings) else { return false };
+        let own = |(shared, &[own, _]): (&SharedCorner, &[u32; 2])| {
+            [shared.ring, shared.plus_ring, shared.minus_ring] == [own; 3]
+        };
+        !shared.corners.iter().zip(&rings.corners).all(own)
+    }
+
+    /// What a user will want to know about how the mesh is drawn.
+    pub fn notices(&self) -> &[Notice] {
+        &self.notices
+    }
+
+    /// The edges of the patches, with [`TableOptions::edge_factors`].
+    pub fn edges(&self) -> Option<&Edges> {
+        self.edges.as_ref()
+    }
+
+    /// Where each patch comes from, in the order of [`ModelTables::plan`].
+    pub fn origins(&self) -> &[FaceOrigin] {
+        &self.origins
+    }
+
+    /// Vertices that the shaders read: those of the refined mesh, followed by the control vertices if it was refined.
+    pub(crate) fn stored_vertices(&self) -> usize {
+        self.patch_vertices + if self.steps.is_empty() { 0 } else { self.control_vertices }
+    }
+
+    /// Where the control vertices start among the stored ones.
+    pub(crate) fn first_control_vertex(&self) -> usize {
+        self.stored_vertices() - self.control_vertices
+    }
+
+    /// Puts the stored vertices for these positions of the control vertices in the place of what is in `stored`: with a fourth
+    /// number each, as texel buffers have them.
+    pub(crate) fn store_positions(&self, control: &[[f32; 3]], stored: &mut Vec<[f32; 4]>) {
+        let wide = |&[x, y, z]: &[f32; 3]| [x, y, z, 0.0];
+        stored.clear();
+        if let Some((first, rest)) = self.steps.split_first() {
+            let positions: Vec<Vec3> = control.iter().map(|&p| p.into()).collect();
+            let refined = rest.iter().fold(first.apply(&positions), |refined, step| step.apply(&refined));
+            stored.extend(refined.into_iter().map(|p| wide(&p.into())));
+        }
+        stored.extend(control.iter().map(wide));
+    }
+
+    /// The patches, in the order of the tables.
+    pub fn plan(&self) -> &PatchPlan {
+        &self.plan
+    }
+
+    /// The options that the tables were built for.
+    pub fn options(&self) -> TableOptions {
+        self.options
+    }
+
+    /// How many texels a corner has room for, where what it owns and shares is kept between draws; else 0. GLSL twin:
+    /// `glsl/lib/cached.glsl`.
+    pub(crate) fn kept_texels(&self) -> u32 {
+        if self.options.construction != Construction::Cached || self.options.evaluation == Evaluation::Subdivision {
+            return 0;
+        }
+        let owned = self.plan.groups().iter().map(|group| group.scheme.owned(group.kind)).max().unwrap_or(0);
+        kept_texels(owned, self.sharing())
+    }
+
+    /// How many rings have frames that are kept between draws.
+    pub(crate) fn kept_frames(&self) -> u32 {
+        let frames = self.kept_texels() > 0 && self.options.evaluation != Evaluation::GeometryTwoPass;
+        self.rings.as_ref().filter(|_| frames).map_or(0, |rings| rings.headers.len() as u32)
+    }
+
+    /// What the evaluation takes from other patches.
+    pub(crate) fn sharing(&self) -> Sharing {
+        self.options.sharing()
+    }
+
+    /// Bytes of what the cached construction keeps of corners, and of frames.
+    pub(crate) fn kept_bytes(&self) -> [u64; 2] {
+        let corners = self.plan.corner_count() as u64;
+        [TEXEL_BYTES * u64::from(self.kept_texels()) * corners, FRAME_BYTES * u64::from(self.kept_frames())]
+    }
+
+    /// How many patches of a kind there are.
+    pub fn patch_count(&self, kind: PatchKind) -> u32 {
+        self.plan.count(kind)
+    }
+
+    /// How many types of connectivity have weights of their own: of rings (two-stage, cached), patches (stencil) or fans (subdivision).
+    pub fn type_count(&self) -> usize {
+        match (&self.stencils, &self.fans) {
+            (Some(stencils), _) => stencils.type_count,
+            (None, Some(fans)) => fans.type_count,
+            (None, None) => self.rings.as_ref().map_or(0, |rings| rings.type_count),
+        }
+    }
+
+    /// Bytes of each table that drawing the surface reads.
+    pub fn bytes(&self) -> Vec<TableBytes> {
+        let positions = ("positions", TEXEL_BYTES * self.stored_vertices() as u64);
+        let tables = self.bindings().into_iter().filter(|(name, array)| *name != "texcoords" && !array.is_empty());
+        let kept = ["control_points", "frames"].into_iter().zip(self.kept_bytes()).filter(|&(_, bytes)| bytes > 0);
+        std::iter::once(positions).chain(tables.map(|(name, array)| (name, bytes(array)))).chain(kept).collect()
+    }
+
+    /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need
+    /// are empty.
+    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 10] {
+        fn array<'t, T, E: bytemuck::NoUninit>(table: &'t Option<T>, array: impl Fn(&'t T) -> &'t [E]) -> &'t [u8] {
+            table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
+        }
+        let (rings, stencils, fans) = (&self.rings, &self.stencils, &self.fans);
+        // Shaders read rings or fans, never both.
+        let around = match fans {
+            None => [
+                ("ring_headers", array(rings, |t| &t.headers)),
+                ("ring_entries", array(rings, |t| &t.entries)),
+                ("ring_types", array(rings, |t| &t.types)),
+                ("patch_corners", array(rings, |t| &t.corners)),
+            ],
+            Some(_) => [
+                ("fan_headers", array(fans, |t| &t.headers)),
+                ("fan_entries", array(fans, |t| t.entries.as_flattened())),
+                ("fan_words", array(fans, |t| &t.words)),
+                ("face_corners", array(fans, |t| &t.corners)),
+            ],
+        };
+        let [headers, entries, types, corners] = around;
+        [
+            headers,
+            entries,
+            types,
+            corners,
+            ("stencil_patches", array(stencils, |t| &t.patches)),
+            ("stencil_vertices", array(stencils, |t| &t.vertices)),
+            ("stencil_types", array(stencils, |t| &t.types)),
+            ("texcoords", array(&self.texcoords, |t| t.as_slice())),
+            ("shared_corners", array(&self.shared, |t| &t.corners)),
+            ("shared_texcoords", array(&self.shared, |t| &t.texcoords)),
+        ]
+    }
+}
+
+fn control_edges(mesh: &ControlMesh) -> Vec<u32> {
+    let mut edges = Vec::with_capacity(mesh.corner_count());
+    for face in 0..mesh.face_count() as u32 {
+        let (vertices, corners) = (mesh.face(face), mesh.face_corners(face));
+        for (k, h) in corners.enumerate() {
+            // An edge of two faces belongs to the lower half-edge; a boundary's twin is above all.
+            if mesh.twins()[h] > h as u32 {
+                edges.extend([vertices[k], vertices[(k + 1) % vertices.len()]]);
+            }
+        }
+    }
+    edges
+}
+
+fn control_faces(mesh: &ControlMesh) -> Vec<u32> {
+    let mut triangles = Vec::with_capacity(3 * (mesh.corner_count() - 2 * mesh.face_count()));
+    for face in 0..mesh.face_count() as u32 {
+        let vertices = mesh.face(face);
+        triangles.extend(vertices[1..].windows(2).flat_map(|pair| [vertices[0], pair[0], pair[1]]));
+    }
+    triangles
+}
