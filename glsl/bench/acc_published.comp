@@ -6,9 +6,9 @@
 #define ACC
 #define KEPT_FRAMES
 #define MAKES_POINTS
-#include "cached.glsl"
-#include "corner.glsl"
-#include "invocation.glsl"
+#include "construct/cached.glsl"
+#include "construct/corner.glsl"
+#include "draw/invocation.glsl"
 
 const uint CORNERS = 4u;
 

@@ -7,8 +7,8 @@
 // The others are tangents.
 #define HULL 4
 #define INNER 5
-#include "control.glsl"
-#include "frames.glsl"
+#include "construct/control.glsl"
+#include "construct/frames.glsl"
 
 layout(location = 11) patch out vec4 cosines;
 

@@ -8,20 +8,20 @@
 vec3 owned[CORNERS][OWNED];
 float cosines[CORNERS];
 
-#include "acc.glsl"
+#include "evaluate/acc.glsl"
 #define x_plus(k) across(k, edge_plus(k), edge_minus((k + 1) & 3), t_plus(k), (k + 1) & 3)
 #define x_minus(k) across(k, edge_minus(k), edge_plus((k + 3) & 3), t_minus(k), (k + 3) & 3)
 #define across(k, near, far, tangent, end) acc_across(inner(k), near, near, far, tangent, cosines[k], cosines[end])
-#include "evaluate_acc.glsl"
+#include "evaluate/evaluate_acc.glsl"
 // A kind of patch of its own.
 #define KINDS_GLSL
-#include "lattice.glsl"
+#include "evaluate/lattice.glsl"
 // And the cosine.
 #define KEPT (3 * OWNED + 1)
 // Of ours, which are eight vectors a corner.
 #define ATTRIBUTE_TEXELS 6
-#include "cached.glsl"
-#include "draw.glsl"
+#include "construct/cached.glsl"
+#include "draw/draw.glsl"
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;

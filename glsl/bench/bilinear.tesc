@@ -2,7 +2,7 @@
 // variants: TRIANGLE
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "draw.glsl"
+#include "draw/draw.glsl"
 
 #ifdef TRIANGLE
 layout(vertices = 3) out;

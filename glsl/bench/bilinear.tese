@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 1
-#include "evaluation.glsl"
+#include "evaluate/evaluation.glsl"
 
 void main() {
     vec3 at = parameter();

@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define POSITION_TEXELS 2
-#include "draw.glsl"
-#include "positions.glsl"
+#include "draw/draw.glsl"
+#include "draw/positions.glsl"
 
 layout(constant_id = 0) const uint CORNERS = 4u;
 

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The evaluation shader has a buffer of its own.
 #define CAPTURE_BINDING 1
-#include "capture.glsl"
+#include "capture/capture.glsl"
 
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;

@@ -9,9 +9,9 @@
 #endif
 #define KEPT_FRAMES
 #define MAKES_POINTS
-#include "cached.glsl"
-#include "invocation.glsl"
-#include "two_stages.glsl"
+#include "construct/cached.glsl"
+#include "draw/invocation.glsl"
+#include "construct/two_stages.glsl"
 
 void main() {
     uint index = invocation_number();

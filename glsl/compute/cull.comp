@@ -8,16 +8,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MAKES_LISTS
-#include "draw.glsl"
-#include "patch_kind.glsl"
-#include "visible.glsl"
+#include "draw/draw.glsl"
+#include "draw/patch_kind.glsl"
+#include "draw/visible.glsl"
 #ifdef TWO_STAGE
-#include "two_stages.glsl"
+#include "construct/two_stages.glsl"
 #elif defined(STENCIL)
-#include "stencils.glsl"
+#include "construct/stencils.glsl"
 #else
 #define CACHED
-#include "cached.glsl"
+#include "construct/cached.glsl"
 #endif
 
 #ifdef CACHED
@@ -35,8 +35,8 @@ shared uint listed[REGION];
 
 uint outside[CORNERS];
 vec4 pixel_box[CORNERS];
-#include "culling.glsl"
-#include "edge_factors.glsl"
+#include "edges/culling.glsl"
+#include "edges/edge_factors.glsl"
 
 // Not in a loop: Mesa (22.3) unrolls none that has another in it, and so has the arrays that it goes through in memory. That took
 // half as long again.

@@ -2,9 +2,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MAKES_FRAMES
-#include "framed_ring.glsl"
-#include "invocation.glsl"
-#include "kept_frames.glsl"
+#include "construct/framed_ring.glsl"
+#include "draw/invocation.glsl"
+#include "construct/kept_frames.glsl"
 
 void main() {
     uint index = invocation_number();

@@ -4,9 +4,9 @@
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 8
 #define INNER 5
-#include "control.glsl"
-#include "frames.glsl"
-#include "acc_points.glsl"
+#include "construct/control.glsl"
+#include "construct/frames.glsl"
+#include "construct/acc_points.glsl"
 
 void main() {
     uint k = uint(gl_InvocationID);

@@ -16,14 +16,14 @@
 #define OWNED 4
 #endif
 #define KEPT_FRAMES
-#include "control.glsl"
+#include "construct/control.glsl"
 #ifdef SHARED
-#include "shared.glsl"
-#include "write_shared.glsl"
+#include "edges/shared.glsl"
+#include "edges/write_shared.glsl"
 #endif
-#include "cached.glsl"
+#include "construct/cached.glsl"
 #ifdef DISPLACED
-#include "corner_lod.glsl"
+#include "displace/corner_lod.glsl"
 #endif
 
 layout(location = 0) in uint in_patch_number[];

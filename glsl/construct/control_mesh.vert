@@ -1,8 +1,8 @@
 // A control vertex as it is: for the faces and edges of the control mesh itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "draw.glsl"
-#include "positions.glsl"
+#include "draw/draw.glsl"
+#include "draw/positions.glsl"
 
 // The same bits in every pipeline: a pass for depth alone, and one that tests against it.
 invariant gl_Position;

@@ -7,8 +7,8 @@
 #define OWNED 4
 #endif
 #define MAKES_POINTS
-#include "stencils.glsl"
-#include "cached.glsl"
+#include "construct/stencils.glsl"
+#include "construct/cached.glsl"
 
 layout(points) in;
 layout(points, max_vertices = 1) out;

@@ -5,9 +5,9 @@
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 5
 #define INNER 2
-#include "control.glsl"
-#include "frames.glsl"
-#include "gregory_points.glsl"
+#include "construct/control.glsl"
+#include "construct/frames.glsl"
+#include "construct/gregory_points.glsl"
 
 void main() {
     uint k = uint(gl_InvocationID);

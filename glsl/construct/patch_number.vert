@@ -2,8 +2,8 @@
 // which tile of all patches', for glsl/evaluate/strips.geom.)
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "draw.glsl"
-#include "visible.glsl"
+#include "draw/draw.glsl"
+#include "draw/visible.glsl"
 
 layout(location = 0) out uint patch_number;
 

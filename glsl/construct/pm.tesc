@@ -6,8 +6,8 @@
 #define OWNED 6
 #define INNER 3
 #define OWNED_IS_SHARED
-#include "control.glsl"
-#include "frames.glsl"
+#include "construct/control.glsl"
+#include "construct/frames.glsl"
 
 // What each corner gives to the centre of the patch.
 layout(location = 14) patch out vec3 centre_share[CORNERS];
@@ -16,7 +16,7 @@ layout(location = 14) patch out vec3 centre_share[CORNERS];
 layout(location = 19) patch out vec3 b112_sum[CORNERS];
 #endif
 
-#include "pm_points.glsl"
+#include "construct/pm_points.glsl"
 
 void main() {
     uint k = uint(gl_InvocationID);

@@ -3,9 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 4
-#include "control.glsl"
-#include "frames.glsl"
-#include "bicubic_points.glsl"
+#include "construct/control.glsl"
+#include "construct/frames.glsl"
+#include "construct/bicubic_points.glsl"
 
 void main() {
     uint k = uint(gl_InvocationID);

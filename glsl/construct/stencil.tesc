@@ -15,14 +15,14 @@
 #ifndef OWNED
 #define OWNED 4
 #endif
-#include "control.glsl"
-#include "stencils.glsl"
+#include "construct/control.glsl"
+#include "construct/stencils.glsl"
 #ifdef SHARED
-#include "shared.glsl"
-#include "write_shared.glsl"
+#include "edges/shared.glsl"
+#include "edges/write_shared.glsl"
 #endif
 #ifdef DISPLACED
-#include "corner_lod.glsl"
+#include "displace/corner_lod.glsl"
 #endif
 
 layout(location = 0) in uint in_patch_number[];

@@ -6,12 +6,12 @@
 #ifdef DISPLACED
 #define SHARED
 #endif
-#include "draw.glsl"
-#include "corner.glsl"
-#include "corner_numbers.glsl"
-#include "visible.glsl"
+#include "draw/draw.glsl"
+#include "construct/corner.glsl"
+#include "construct/corner_numbers.glsl"
+#include "draw/visible.glsl"
 #ifdef DISPLACED
-#include "corner_lod.glsl"
+#include "displace/corner_lod.glsl"
 #endif
 
 layout(constant_id = 0) const uint CORNERS = 4u;

@@ -1,10 +1,10 @@
-// A regular patch. Evaluated in glsl/lib/evaluate_bicubic.glsl.
+// A regular patch. Evaluated in glsl/lib/evaluate/evaluate_bicubic.glsl.
 // variants: TEXCOORD, CAPTURE, CAPTURE_GRID, SHARED, SHARED+TEXCOORD, SHARED+CAPTURE, SHARED+CAPTURE_GRID, DISPLACED, DISPLACED+CAPTURE, DISPLACED+CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 4
-#include "evaluation.glsl"
-#include "evaluate_bicubic.glsl"
+#include "evaluate/evaluation.glsl"
+#include "evaluate/evaluate_bicubic.glsl"
 
 void main() {
     vec3 at = parameter();

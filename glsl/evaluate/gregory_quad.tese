@@ -1,10 +1,10 @@
-// A Gregory quad. Evaluated in glsl/lib/evaluate_gregory_quad.glsl.
+// A Gregory quad. Evaluated in glsl/lib/evaluate/evaluate_gregory_quad.glsl.
 // variants: TEXCOORD, CAPTURE, CAPTURE_GRID, SHARED, SHARED+TEXCOORD, SHARED+CAPTURE, SHARED+CAPTURE_GRID, DISPLACED, DISPLACED+CAPTURE, DISPLACED+CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 5
-#include "evaluation.glsl"
-#include "evaluate_gregory_quad.glsl"
+#include "evaluate/evaluation.glsl"
+#include "evaluate/evaluate_gregory_quad.glsl"
 
 void main() {
     vec3 at = parameter();

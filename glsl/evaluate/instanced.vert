@@ -14,15 +14,15 @@
 // variants: each+ATTRIBUTES
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lattice.glsl"
-#include "read_cached.glsl"
-#include "draw.glsl"
-#include "visible.glsl"
+#include "evaluate/lattice.glsl"
+#include "construct/read_cached.glsl"
+#include "draw/draw.glsl"
+#include "draw/visible.glsl"
 #ifdef DISPLACED
-#include "displaced.glsl"
+#include "displace/displaced.glsl"
 #endif
 #ifdef CAPTURE
-#include "capture.glsl"
+#include "capture/capture.glsl"
 #endif
 
 // The same bits in every pipeline: a pass for depth alone, and one that tests against it.

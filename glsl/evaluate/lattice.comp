@@ -8,8 +8,8 @@
 // variants: BICUBIC+DISPLACED, GREGORY_QUAD+DISPLACED, GREGORY_TRIANGLE+DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lattice.glsl"
-#include "read_cached.glsl"
+#include "evaluate/lattice.glsl"
+#include "construct/read_cached.glsl"
 
 layout(local_size_x = 32) in;
 

@@ -4,9 +4,9 @@
 #extension GL_GOOGLE_include_directive : require
 #ifdef DISPLACED
 #define TEXCOORD
-#include "displaced.glsl"
+#include "displace/displaced.glsl"
 #endif
-#include "draw.glsl"
+#include "draw/draw.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;

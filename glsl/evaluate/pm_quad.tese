@@ -1,11 +1,11 @@
-// A Pm-patch of a quad: a c-patch. Evaluated in glsl/lib/evaluate_pm_quad.glsl.
+// A Pm-patch of a quad: a c-patch. Evaluated in glsl/lib/evaluate/evaluate_pm_quad.glsl.
 // variants: TEXCOORD, CAPTURE, CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 6
 #define CORNERS 4
-#include "evaluation.glsl"
-#include "evaluate_pm_quad.glsl"
+#include "evaluate/evaluation.glsl"
+#include "evaluate/evaluate_pm_quad.glsl"
 
 void main() {
     vec3 at = parameter();

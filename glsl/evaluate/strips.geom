@@ -19,18 +19,18 @@
 // variants: BICUBIC+CACHED+DISPLACED+CAPTURE, GREGORY_QUAD+CACHED+DISPLACED+CAPTURE, GREGORY_TRIANGLE+CACHED+DISPLACED+CAPTURE
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lattice.glsl"
-#include "draw.glsl"
+#include "evaluate/lattice.glsl"
+#include "draw/draw.glsl"
 #ifdef CACHED
-#include "read_cached.glsl"
+#include "construct/read_cached.glsl"
 #else
-#include "stencils.glsl"
+#include "construct/stencils.glsl"
 #endif
 #ifdef DISPLACED
-#include "displaced.glsl"
+#include "displace/displaced.glsl"
 #endif
 #ifdef CAPTURE
-#include "capture.glsl"
+#include "capture/capture.glsl"
 #endif
 
 // Every Vulkan device lets an invocation write 1024 components: 16 a vertex, however they are counted.

@@ -1,9 +1,9 @@
 // The faces of the control mesh, each lit by its own plane.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "draw.glsl"
-#include "lighting.glsl"
-#include "output.glsl"
+#include "draw/draw.glsl"
+#include "shade/lighting.glsl"
+#include "draw/output.glsl"
 
 layout(location = 0) in vec3 world_position;
 

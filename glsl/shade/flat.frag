@@ -1,8 +1,8 @@
 // One colour, as for the lines of a wireframe.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "draw.glsl"
-#include "output.glsl"
+#include "draw/draw.glsl"
+#include "draw/output.glsl"
 
 void main() {
     write_colour(draw.colour.rgb, draw.colour.a);

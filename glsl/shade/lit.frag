@@ -3,10 +3,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define FRAGMENT_STAGE
-#include "draw.glsl"
-#include "lighting.glsl"
-#include "output.glsl"
-#include "surface.glsl"
+#include "draw/draw.glsl"
+#include "shade/lighting.glsl"
+#include "draw/output.glsl"
+#include "evaluate/surface.glsl"
 
 void main() {
     vec3 normal = surface_normal();

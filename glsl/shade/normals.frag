@@ -3,9 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define FRAGMENT_STAGE
-#include "draw.glsl"
-#include "output.glsl"
-#include "surface.glsl"
+#include "draw/draw.glsl"
+#include "draw/output.glsl"
+#include "evaluate/surface.glsl"
 
 void main() {
     write_colour(0.5 + 0.5 * normalize(surface_normal()), draw.colour.a);

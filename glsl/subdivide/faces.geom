@@ -22,9 +22,9 @@
 #define UNROLL [[unroll]]
 #endif
 
-#include "draw.glsl"
-#include "patch.glsl"
-#include "subdivision.glsl"
+#include "draw/draw.glsl"
+#include "evaluate/patch.glsl"
+#include "subdivide/subdivision.glsl"
 
 const int SIDE = 1 << LEVEL;
 // What is drawn of the lattice. Every device has room for 1024 numbers; at level 3 four invocations draw the quarter at corner 0
@@ -61,7 +61,7 @@ layout(location = 2) out vec2 out_texcoord;
 layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
 #endif
 #ifdef CAPTURE_GRID
-#include "capture.glsl"
+#include "capture/capture.glsl"
 #endif
 
 const int STRIDE = SIDE + 3;

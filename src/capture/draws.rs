@@ -10,7 +10,7 @@ use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The head of the buffer. GLSL twin: `glsl/lib/capture.glsl`.
+/// The head of the buffer. GLSL twin: `glsl/lib/capture/capture.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 pub(super) struct Head {

@@ -17,7 +17,7 @@ pub const CORNER_SLOTS: [[usize; 4]; 4] = [[0, 4, 1, 5], [12, 13, 8, 9], [15, 11
 /// Corner and edge points are those of the rings, as for every other patch; the inner point of a corner is
 /// `(4 v + 2 a + 2 b + d) / 9` with the vertices of the face itself, at a boundary too.
 ///
-/// GLSL twin: `glsl/lib/bicubic_points.glsl`.
+/// GLSL twin: `glsl/lib/construct/bicubic_points.glsl`.
 pub fn bicubic_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> [T; 16] {
     let mut points: [T; 16] = std::array::from_fn(|_| T::default());
     for (k, corner) in corners.iter().enumerate() {
@@ -35,7 +35,7 @@ pub fn bicubic_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> [T; 16] {
 
 /// A bicubic Bezier patch at (u, v).
 ///
-/// GLSL twin: `glsl/lib/evaluate_bicubic.glsl`.
+/// GLSL twin: `glsl/lib/evaluate/evaluate_bicubic.glsl`.
 pub fn evaluate_bicubic<P: Point>(points: &[P; 16], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let corner = |slots: [usize; 4]| {
         let [p, plus, minus, inner] = slots.map(|slot| points[slot]);
@@ -54,7 +54,7 @@ pub(crate) struct Basis<S> {
 impl<S: num_traits::Float> Basis<S> {
     /// In the symmetric form: at t and 1 - t the same numbers in reverse order, to the bit.
     ///
-    /// GLSL twin: `cubic_basis` in `glsl/lib/patch.glsl`.
+    /// GLSL twin: `cubic_basis` in `glsl/lib/evaluate/patch.glsl`.
     pub(crate) fn new<P: Point<Scalar = S>>(t: S) -> Self {
         let [one, two, three] = [1.0, 2.0, 3.0].map(scalar::<P>);
         let s = one - t;
@@ -89,7 +89,7 @@ pub(crate) struct CurveBasis<S> {
 impl<S: num_traits::Float> CurveBasis<S> {
     /// At t and 1 - t the same numbers, in reverse order and with other signs, to the bit.
     ///
-    /// GLSL twin: `curve_basis` in `glsl/lib/patch.glsl`.
+    /// GLSL twin: `curve_basis` in `glsl/lib/evaluate/patch.glsl`.
     pub(crate) fn new<P: Point<Scalar = S>>(t: S) -> Self {
         let [one, two, three] = [1.0, 2.0, 3.0].map(scalar::<P>);
         let s = one - t;
@@ -106,14 +106,14 @@ impl<S: num_traits::Float> CurveBasis<S> {
 /// A point of a curve: a sum that both directions along an edge evaluate to the same bits. Of the ends, and between them the points
 /// beside as seen from there.
 ///
-/// GLSL twin: `curve_point` in `glsl/lib/patch.glsl`.
+/// GLSL twin: `curve_point` in `glsl/lib/evaluate/patch.glsl`.
 pub(crate) fn curve_point<P: Point>(at: &CurveBasis<P::Scalar>, [p0, beside0, beside1, p1]: [P; 4]) -> P {
     (p0 * at.ends[0] + p1 * at.ends[1]) + (beside0 * at.beside[0] + beside1 * at.beside[1])
 }
 
 /// A third of the derivative there. From either end the same but for its sign.
 ///
-/// GLSL twin: `curve_slope` in `glsl/lib/patch.glsl`.
+/// GLSL twin: `curve_slope` in `glsl/lib/evaluate/patch.glsl`.
 pub(crate) fn curve_slope<P: Point>(at: &CurveBasis<P::Scalar>, [p0, beside0, beside1, p1]: [P; 4]) -> P {
     (p1 - p0) * at.slope[1] + (beside0 * at.slope[0] + beside1 * at.slope[2])
 }
@@ -147,7 +147,7 @@ impl<P: Point> TensorCorner<P> {
 /// By its edges along u, and by what lies inwards from them: so slopes across an edge are made of vectors alone. With points, they
 /// would be differences of nearly equal numbers where a patch is small and far from the origin.
 ///
-/// GLSL twin: `evaluate_tensor` in `glsl/lib/patch.glsl`.
+/// GLSL twin: `evaluate_tensor` in `glsl/lib/evaluate/patch.glsl`.
 pub(crate) fn evaluate_tensor<P: Point>(corners: &[TensorCorner<P>; 4], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let (at_u, at_v) = (CurveBasis::new::<P>(u), CurveBasis::new::<P>(v));
     let [a, b, c, d] = corners;

@@ -52,7 +52,7 @@ pub fn edge_position<P: Point>(edge: &Edge<P>, t: P::Scalar) -> P {
 
 /// The unit normal at `t` along an edge, of both its faces. Where curve and transversal are parallel it is along `facing`.
 ///
-/// GLSL twins: `curve_slope` in `glsl/lib/patch.glsl` and `edge_across` in `glsl/lib/edges.glsl`.
+/// GLSL twins: `curve_slope` in `glsl/lib/evaluate/patch.glsl` and `edge_across` in `glsl/lib/edges/edges.glsl`.
 pub fn edge_normal<P: Point>(edge: &Edge<P>, t: P::Scalar, facing: P) -> P {
     let along = curve_slope(&CurveBasis::new::<P>(t), seen_from_ends(edge.curve));
     let (s, three) = (scalar::<P>(1.0) - t, scalar::<P>(3.0));

@@ -100,7 +100,7 @@ pub fn fitted_frame<T: Blend>(ring: &RingValues<T>, fit: &Fit) -> Frame<T> {
 
 /// `r'_j` of a ring whose frame is its [`fitted_frame`].
 ///
-/// GLSL twin: `scheme_transversal` in `glsl/lib/rings.glsl`.
+/// GLSL twin: `scheme_transversal` in `glsl/lib/construct/rings.glsl`.
 pub fn fitted_transversal<T: Blend>(ring: &RingValues<T>, frame: &Frame<T>, j: usize, fit: &Fit) -> T {
     let r = ring.transversal(j);
     let [along, across] = fit.transversal_weights(&ring.shape, j);

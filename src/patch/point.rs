@@ -57,7 +57,7 @@ pub(crate) fn scalar<P: Point>(x: f64) -> P::Scalar {
 
 /// The unit vector along `du x dv`; where the derivatives are parallel, along `fallback`.
 ///
-/// GLSL twin: `unit_normal` in `glsl/lib/patch.glsl`.
+/// GLSL twin: `unit_normal` in `glsl/lib/evaluate/patch.glsl`.
 pub(crate) fn unit_normal<P: Point>(du: P, dv: P, fallback: P) -> P {
     use num_traits::Float;
     let normal = du.cross(dv);

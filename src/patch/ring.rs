@@ -238,7 +238,7 @@ impl<T: Blend> RingValues<T> {
 
     /// [`RingValues::edge_point`] as seen from the limit point.
     ///
-    /// GLSL twin: `edge_vector` in `glsl/lib/rings.glsl`.
+    /// GLSL twin: `edge_vector` in `glsl/lib/construct/rings.glsl`.
     pub fn edge_vector(&self, frame: &Frame<T>, j: usize) -> T {
         if self.shape.has_frame() {
             let [cos, sin] = self.shape.edge_direction(j);

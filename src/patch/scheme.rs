@@ -1,9 +1,9 @@
 //! The schemes, each a way to approximate the Catmull-Clark surface by patches, one a face.
 //!
 //! A scheme is three things: a file beside this one with its construction and evaluation, its shaders
-//! (`glsl/lib/NAME_points.glsl` with `glsl/construct/NAME.tesc`, what its corners take from their rings in `glsl/lib/corner.glsl`,
+//! (`glsl/lib/NAME_points.glsl` with `glsl/construct/NAME.tesc`, what its corners take from their rings in `glsl/lib/construct/corner.glsl`,
 //! `glsl/lib/evaluate_NAME.glsl` with `glsl/evaluate/NAME.tese`, and variants of `glsl/compute/control_points.comp` and
-//! `glsl/lib/kinds.glsl`), and its arms in the `match`es of this file and of `renderer/stages.rs`. Regular faces are bicubic patches in every scheme.
+//! `glsl/lib/draw/kinds.glsl`), and its arms in the `match`es of this file and of `renderer/stages.rs`. Regular faces are bicubic patches in every scheme.
 
 use super::fitted::Fit;
 use super::gregory::PatchCorner;
@@ -117,7 +117,7 @@ impl Scheme {
     /// point as seen from where these two lead to one after the other, of triangles as seen from the limit point; of Gregory
     /// patches, the way from that inner point to the other.
     ///
-    /// GLSL twin: `CONTROL_POINT` in `glsl/lib/patch.glsl`, which takes it back.
+    /// GLSL twin: `CONTROL_POINT` in `glsl/lib/evaluate/patch.glsl`, which takes it back.
     pub(crate) fn kept<T: Blend>(self, kind: PatchKind, owned: &[T]) -> Vec<T> {
         if !self.shares_frame(kind) {
             return owned.to_vec();

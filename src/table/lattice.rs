@@ -3,7 +3,7 @@
 use crate::topology::PatchKind;
 use std::cmp::Ordering;
 
-/// The most segments along a side: what the arithmetic of `glsl/lib/lattice.glsl` is right for.
+/// The most segments along a side: what the arithmetic of `glsl/lib/evaluate/lattice.glsl` is right for.
 pub(crate) const MAX_SEGMENTS: u32 = 1024;
 
 /// How many vertices a patch has with `n` segments along each side.

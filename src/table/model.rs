@@ -65,13 +65,13 @@ impl Edges {
     }
 }
 
-/// Bytes of a stored vertex, and of a texel of what is kept. GLSL twins: `glsl/lib/positions.glsl`, `cached.glsl`.
+/// Bytes of a stored vertex, and of a texel of what is kept. GLSL twins: `glsl/lib/draw/positions.glsl`, `cached.glsl`.
 pub(crate) const TEXEL_BYTES: u64 = 16;
-/// Bytes of a frame of a ring. GLSL twin: `glsl/lib/kept_frames.glsl`.
+/// Bytes of a frame of a ring. GLSL twin: `glsl/lib/construct/kept_frames.glsl`.
 const FRAME_BYTES: u64 = 4 * 12;
 
 /// Texels of four numbers for the vectors that a corner owns and shares, and whether its plus edge is sharp. GLSL twin:
-/// `KEPT_TEXELS` in `glsl/lib/cached.glsl`.
+/// `KEPT_TEXELS` in `glsl/lib/construct/cached.glsl`.
 pub(crate) fn kept_texels(owned: usize, sharing: Sharing) -> u32 {
     let sharp = u32::from(sharing != Sharing::Positions);
     (3 * (owned as u32 + sharing.vectors()) + sharp).div_ceil(4)
@@ -190,7 +190,7 @@ impl ModelTables {
     }
 
     /// How many texels a corner has room for, where what it owns and shares is kept between draws; else 0. GLSL twin:
-    /// `glsl/lib/cached.glsl`.
+    /// `glsl/lib/construct/cached.glsl`.
     pub(crate) fn kept_texels(&self) -> u32 {
         if self.options.construction != Construction::Cached || self.options.evaluation == Evaluation::Subdivision {
             return 0;

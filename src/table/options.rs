@@ -122,7 +122,7 @@ pub(crate) enum Sharing {
 }
 
 impl Sharing {
-    /// How many vectors a corner shares. GLSL twin: `SHARED_VECTORS` in `glsl/lib/shared_bits.glsl`.
+    /// How many vectors a corner shares. GLSL twin: `SHARED_VECTORS` in `glsl/lib/edges/shared_bits.glsl`.
     pub(crate) fn vectors(self) -> u32 {
         match self {
             Self::Positions => 0,

@@ -20,7 +20,7 @@ pub const FALLBACK_BIT: u32 = 1 << 29;
 /// Bit of [`RingTable::headers`]`[3]`: transversals are the scheme's own, with weights in the ring's type.
 pub const FITTED_BIT: u32 = 1 << 28;
 
-/// One-rings as the shaders read them. GLSL twin: `glsl/lib/rings.glsl`.
+/// One-rings as the shaders read them. GLSL twin: `glsl/lib/construct/rings.glsl`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RingTable {
     /// A ring: its vertex; where its entries start; where its type starts; its number of faces and flag bits.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Bit of [`SharedCorner::plus_edge`]: the faces at the plus edge are lit with normals of their own.
 pub const SHARP_EDGE_BIT: u32 = 1 << 30;
 
-/// Who speaks for what a patch corner shares with other patches. GLSL twin: `glsl/lib/shared.glsl`.
+/// Who speaks for what a patch corner shares with other patches. GLSL twin: `glsl/lib/edges/shared.glsl`.
 ///
 /// Along a smooth edge and around a smooth vertex there is only one ring to ask. Along a crease the side speaks on whose left
 /// the edge leads from the lower vertex to the higher; for a vertex with several rings the first of them in
@@ -29,7 +29,7 @@ pub struct SharedCorner {
 }
 
 /// Texture coordinates of a patch corner on what it shares: where displacement is looked up there, so that both sides of a
-/// seam find the same texel. The patch's own are used inside. GLSL twin: `glsl/lib/shared_texcoords.glsl`.
+/// seam find the same texel. The patch's own are used inside. GLSL twin: `glsl/lib/edges/shared_texcoords.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct SharedTexcoord {

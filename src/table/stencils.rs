@@ -8,7 +8,7 @@ use crate::topology::Topology;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Patches as weighted sums of the vertices around them. GLSL twin: `glsl/lib/stencils.glsl`.
+/// Patches as weighted sums of the vertices around them. GLSL twin: `glsl/lib/construct/stencils.glsl`.
 ///
 /// Within a group of the plan, patches are sorted by type.
 ///
@@ -160,7 +160,7 @@ struct CornerRing {
 
 impl CornerRing {
     /// In a closed ring first the vertex itself, then around it from the plus edge of half-edge `h`. In an open ring the ends
-    /// come first, as in `ring_frame` of `glsl/lib/rings.glsl`: the ring on the other side of a crease has them the other
+    /// come first, as in `ring_frame` of `glsl/lib/construct/rings.glsl`: the ring on the other side of a crease has them the other
     /// way round.
     fn of(topology: &Topology, fallback: &FallbackRings, h: u32) -> Self {
         let place = topology.place(h);

@@ -10,11 +10,11 @@ use std::collections::HashMap;
 
 /// Bit of [`SubdivisionTable::headers`]`[3]`: the first and the last edge differ.
 pub const FAN_OPEN_BIT: u32 = 1 << 31;
-/// Words of a type before its weights. GLSL twin: `TYPE_HEAD` in `glsl/lib/subdivision.glsl`.
+/// Words of a type before its weights. GLSL twin: `TYPE_HEAD` in `glsl/lib/subdivide/subdivision.glsl`.
 const TYPE_HEAD: usize = 10;
 
 /// All faces around each vertex of a mesh of quads (a fan), and the weights of what refinement makes of the vertex and its
-/// neighbours. GLSL twin: `glsl/lib/subdivision.glsl`.
+/// neighbours. GLSL twin: `glsl/lib/subdivide/subdivision.glsl`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SubdivisionTable {
     /// A fan: its vertex; where its entries start; where its type starts; its number of faces and flag bits.

@@ -331,7 +331,7 @@ fn own(file: &str, defines: &[&str]) -> Vec<u32> {
     compiled(file, &defines, &["tests/glsl/own"])
 }
 
-/// As `glsl/lib/displace.glsl` says.
+/// As `glsl/lib/displace/displace.glsl` says.
 #[test]
 fn callers_displace_as_they_like() {
     let headless = common::headless();

@@ -32,7 +32,7 @@ struct Input<'a> {
     dynamic_states: &'a [vk::DynamicState],
 }
 
-/// Layouts and the view, as `glsl/lib/draw.glsl` has them.
+/// Layouts and the view, as `glsl/lib/draw/draw.glsl` has them.
 struct Kit {
     context: Arc<DeviceContext>,
     layout: Owned<vk::PipelineLayout>,

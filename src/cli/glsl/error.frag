@@ -1,8 +1,8 @@
 // How far the surface is from the limit surface, as a colour. Rust twin: `ErrorMap` in src/cli/error_map.rs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "draw.glsl"
-#include "output.glsl"
+#include "draw/draw.glsl"
+#include "draw/output.glsl"
 
 layout(location = 0) in vec3 world_position;
 layout(location = 1) centroid in vec3 world_normal;

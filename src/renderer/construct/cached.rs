@@ -8,10 +8,10 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
 
-/// Invocations in a workgroup of `glsl/lib/invocation.glsl`.
+/// Invocations in a workgroup of `glsl/lib/draw/invocation.glsl`.
 const GROUP: u32 = 64;
 
-/// Push constants. GLSL twin: `glsl/lib/invocation.glsl`.
+/// Push constants. GLSL twin: `glsl/lib/draw/invocation.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Invocations {

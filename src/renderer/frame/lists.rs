@@ -64,7 +64,7 @@ impl ListLayout {
     }
 }
 
-/// What a list and its indirect draws are made of: push constants. GLSL twin: `Draw` in `glsl/lib/draw.glsl`.
+/// What a list and its indirect draws are made of: push constants. GLSL twin: `Draw` in `glsl/lib/draw/draw.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct ListConstants {

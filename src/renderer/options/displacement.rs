@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-/// An image that says how far, or whereto, a surface is moved. See `glsl/lib/displace.glsl`.
+/// An image that says how far, or whereto, a surface is moved. See `glsl/lib/displace/displace.glsl`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DisplacementMap {
     /// A view of a colour image with all its mip levels.

@@ -28,7 +28,7 @@ pub struct Options {
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
     /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]), but for
     /// fragment shaders, which [`Style::fragment`] names: such as evaluation shaders with a `displace` function of your own, see
-    /// `glsl/lib/displace.glsl`.
+    /// `glsl/lib/displace/displace.glsl`.
     pub shaders: Vec<(String, Vec<u32>)>,
     /// Used for all pipelines; null for none.
     pub pipeline_cache: vk::PipelineCache,

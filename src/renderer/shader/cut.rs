@@ -31,7 +31,7 @@ impl Cut {
         Self { listed: self.listed, ..Self::default() }
     }
 
-    /// GLSL twin: `DRAW_FLAGS` in `glsl/lib/factors.glsl`.
+    /// GLSL twin: `DRAW_FLAGS` in `glsl/lib/edges/factors.glsl`.
     pub(crate) fn flags(self) -> u32 {
         let Cull { frustum, back, small } = self.cull;
         // Five bits: see `Cut::bit`.

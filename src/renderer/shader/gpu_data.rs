@@ -2,7 +2,7 @@
 //!
 //! [`ViewData`] is a uniform block (`std140`), [`DrawConstants`] a push-constant block (`std430`): both hold only
 //! 16-byte vectors and trailing 4-byte scalars, for which the two rules agree with `repr(C)`. GLSL twin:
-//! `glsl/lib/draw.glsl`.
+//! `glsl/lib/draw/draw.glsl`.
 
 use crate::gpu::MAX_OFFSET_ALIGNMENT;
 use crate::renderer::options::{DisplacementMap, MeasuredFrom, View};
@@ -72,7 +72,7 @@ pub(crate) struct DrawConstants {
     pub flags: u32,
 }
 
-/// Bits of [`DrawConstants::flags`]. GLSL twins: `glsl/lib/displace.glsl`, `glsl/lib/culling.glsl`.
+/// Bits of [`DrawConstants::flags`]. GLSL twins: `glsl/lib/displace/displace.glsl`, `glsl/lib/edges/culling.glsl`.
 pub(crate) const VECTOR_FLAG: u32 = 1;
 /// What is seen counter-clockwise faces away.
 pub(crate) const COUNTER_CLOCKWISE_FLAG: u32 = 2;

@@ -94,7 +94,7 @@ impl Sharing {
 }
 
 /// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch; the latter is also its name in
-/// `glsl/lib/kinds.glsl`.
+/// `glsl/lib/draw/kinds.glsl`.
 fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
     match (kind, scheme) {
         (PatchKind::Regular, _) => ["REGULAR", "BICUBIC"],
@@ -185,7 +185,7 @@ impl PatchStages {
     }
 
     /// Whether its control points enclose it, so that they tell whether it can be seen. GLSL twin: `HULL` in
-    /// `glsl/lib/culling.glsl`.
+    /// `glsl/lib/edges/culling.glsl`.
     pub(crate) fn has_hull(self) -> bool {
         !matches!(files(self.scheme, self.kind)[0], "PM")
     }
@@ -274,7 +274,7 @@ impl PatchStages {
     }
 }
 
-/// What all shaders that read tables are specialized to. GLSL twin: `READS_TEXELS` in `glsl/lib/positions.glsl`.
+/// What all shaders that read tables are specialized to. GLSL twin: `READS_TEXELS` in `glsl/lib/draw/positions.glsl`.
 pub(crate) fn reads_texels(device: &DeviceProperties) -> Specialization {
     Specialization::bool(9, device.reads_texels)
 }

@@ -26,8 +26,8 @@ pub(crate) fn view_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::Desc
 pub(crate) const MODEL_BUFFERS: usize = 13;
 
 /// Which storage buffers of set 1 shaders see as texel buffers, too, how, and the bytes of a texel: positions, rings, their
-/// entries, their types, corners of patches, frames, control points. GLSL twins: `glsl/lib/positions.glsl`, `rings.glsl`,
-/// `kept_frames.glsl`, `cached.glsl`.
+/// entries, their types, corners of patches, frames, control points. GLSL twins: `glsl/lib/draw/positions.glsl`, `glsl/lib/construct/rings.glsl`,
+/// `glsl/lib/construct/kept_frames.glsl`, `glsl/lib/construct/cached.glsl`.
 pub(crate) const TEXELS: [(usize, vk::Format, u64); 7] = [
     (0, vk::Format::R32G32B32A32_SFLOAT, 16),
     (1, vk::Format::R32G32B32A32_UINT, 16),

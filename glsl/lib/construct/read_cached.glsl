@@ -1,0 +1,36 @@
+// What the cached construction keeps of a patch, for shaders that evaluate a lattice.
+#ifndef READ_CACHED_GLSL
+#define READ_CACHED_GLSL
+
+#include "evaluate/lattice_sample.glsl"
+#include "construct/cached.glsl"
+#ifdef DISPLACED
+#include "displace/map_lod.glsl"
+#include "edges/shared_texcoords.glsl"
+#endif
+
+// Of a patch whose first corner this is, for a lattice of so many segments.
+void read_cached(uint first_corner, uint segments) {
+    for (int k = 0; k < CORNERS; ++k) {
+        vec4 texels[KEPT_TEXELS] = texels_of_patch(first_corner, k);
+        for (int i = 0; i < OWNED; ++i) {
+            owned[k][i] = kept_vector(texels, i);
+        }
+#ifdef SHARED
+        for (int i = 0; i < SHARED_VECTORS; ++i) {
+            shared_with[k][i] = kept_vector(texels, OWNED + i);
+        }
+        shared_bits[k] = kept_bits(texels);
+#endif
+#ifdef DISPLACED
+        SharedTexcoord shared_at = shared_texcoords[first_corner + k];
+        shared_texcoord[k] = vec2[3](shared_at.plus, shared_at.minus, shared_at.corner);
+        shared_lod[k] = map_lod(shared_at.scale.x, float(segments));
+#endif
+#ifdef TEXCOORD
+        texcoord[k] = texcoords[first_corner + k];
+#endif
+    }
+}
+
+#endif

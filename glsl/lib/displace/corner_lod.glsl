@@ -1,0 +1,15 @@
+// The level of the displacement map for a corner of a patch.
+#ifndef CORNER_LOD_GLSL
+#define CORNER_LOD_GLSL
+
+#include "edges/factors.glsl"
+#include "construct/framed_ring.glsl"
+#include "displace/map_lod.glsl"
+#include "edges/shared_texcoords.glsl"
+
+// At which an edge at the corner has as many texels as segments; `speaker` is the ring that speaks for the corner.
+float corner_lod(uint corner, FramedRing speaker) {
+    return map_lod(shared_texcoords[corner].scale.x, vertex_factor(speaker.p, speaker.a, speaker.b));
+}
+
+#endif

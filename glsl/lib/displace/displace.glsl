@@ -1,0 +1,55 @@
+// Where a displaced surface goes: the one function to write anew for a displacement of your own.
+//
+// The evaluation shaders call `displace` with what all patches at a point share, so whatever it makes of these alone is
+// without cracks. To have your own, write a file `own_displace.glsl` with a function like the one below, and
+//
+//     glslangValidator -V --target-env vulkan1.2 -DDISPLACED -DOWN_DISPLACE -I. -I$ash_subdiv/glsl/lib
+//         $ash_subdiv/glsl/evaluate/gregory_quad.tese -o gregory_quad.spv     (one line)
+//
+// and give the SPIR-V to the renderer as `Options::shaders` under the name "EVALUATE_GREGORY_QUAD_TESE_DISPLACED"; the same
+// for `bicubic` and `gregory_triangle`. Without the tessellation stages it is `lattice.vert` alone (evaluation by compute;
+// "EVALUATE_LATTICE_VERT_DISPLACED"), or with one of -DBICUBIC, -DGREGORY_QUAD, -DGREGORY_TRIANGLE `instanced.vert`
+// ("EVALUATE_INSTANCED_VERT_BICUBIC_DISPLACED"; for control points as vertex attributes, which is faster, with -DATTRIBUTES
+// besides, under that name and "_ATTRIBUTES") or, with -DCACHED besides, `strips.geom`
+// ("EVALUATE_STRIPS_GEOM_BICUBIC_CACHED_DISPLACED"). For the map include `displacement_map.glsl`. Light knows nothing of it: bring a
+// fragment shader of your own.
+#ifndef DISPLACE_GLSL
+#define DISPLACE_GLSL
+
+#include "displace/displacement_map.glsl"
+#include "draw/draw.glsl"
+
+const uint VECTOR_FLAG = 1u;  // in draw.flags
+
+// Object space to object space. `direction` is of length one, `texcoord` that of the edge's or corner's owner on edges and
+// corners, `lod` a level of the map at which a segment of the tessellation is about a texel long.
+vec3 displace(vec3 position, vec3 direction, vec2 texcoord, float lod) {
+    vec4 texel = textureLod(displacement_map, texcoord, lod);
+    precise vec3 vector = displacement_scale() * texel.xyz + displacement_bias();
+    precise vec3 along = (displacement_scale() * texel.x + displacement_bias()) * direction;
+    precise vec3 displaced = position + ((draw.flags & VECTOR_FLAG) != 0u ? vector : along);
+    return displaced;
+}
+
+#ifdef FRAGMENT_STAGE
+// The normal of the displaced surface in world space, so that light shows what is finer than the tessellation (Mikkelsen,
+// Bump Mapping Unparametrized Surfaces on the GPU, 2010). `normal` is that of the surface before it was displaced.
+vec3 displaced_normal(vec3 position, vec3 normal, vec2 texcoord) {
+    vec3 dx = dFdx(position), dy = dFdy(position);
+    if ((draw.flags & VECTOR_FLAG) != 0u) {
+        // Of the triangle: the map says nothing of what lies between its vertices.
+        vec3 plane = cross(dx, dy);
+        return dot(plane, normal) < 0.0 ? -plane : plane;
+    }
+    float scale = displacement_scale() * length(draw.transform[0].xyz);
+    float height = texture(displacement_map, texcoord).x;
+    float height_dx = scale * (texture(displacement_map, texcoord + dFdx(texcoord)).x - height);
+    float height_dy = scale * (texture(displacement_map, texcoord + dFdy(texcoord)).x - height);
+    vec3 n = normalize(normal);
+    vec3 across_x = cross(dy, n), across_y = cross(n, dx);
+    float area = dot(dx, across_x);
+    return abs(area) * n - sign(area) * (height_dx * across_x + height_dy * across_y);
+}
+#endif
+
+#endif

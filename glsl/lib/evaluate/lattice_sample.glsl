@@ -1,0 +1,29 @@
+// A vertex of a lattice: of the `owned` control points and, with SHARED, of what the corners of the patch share.
+#ifndef LATTICE_SAMPLE_GLSL
+#define LATTICE_SAMPLE_GLSL
+
+#include "draw/kinds.glsl"
+
+#ifdef TEXCOORD
+layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
+vec2 texcoord[CORNERS];
+#endif
+
+#ifdef SHARED
+#include "edges/edges.glsl"
+
+// One name for the type of either.
+#define LatticeSample SharedSample
+
+LatticeSample lattice_sample(vec3 at) {
+    return share(evaluate_surface(at), at);
+}
+#else
+#define LatticeSample Sample
+
+LatticeSample lattice_sample(vec3 at) {
+    return sample_of(evaluate_surface(at));
+}
+#endif
+
+#endif

@@ -1,0 +1,95 @@
+// The table for subdivision of faces: fans and the weights around them. Rust twin: src/table/subdivision.rs.
+#ifndef SUBDIVISION_GLSL
+#define SUBDIVISION_GLSL
+
+#include "draw/positions.glsl"
+
+layout(set = 1, binding = 1, std430) readonly buffer FanHeaders { uvec4 fan_headers[]; };
+// a_i, d_i, and the profile of edge i.
+layout(set = 1, binding = 2, std430) readonly buffer FanEntries { uint fan_entries[]; };
+layout(set = 1, binding = 3, std430) readonly buffer FanWords { uint fan_words[]; };
+layout(set = 1, binding = 4, std430) readonly buffer FaceCorners { uvec2 face_corners[]; };
+
+const uint FAN_OPEN_BIT = 1u << 31;
+const uint TYPE_HEAD = 10u;
+
+// All faces around a corner of a face, and where that face is among them.
+struct Fan {
+    uint vertex;
+    uint entries;
+    uint type;
+    int faces;
+    int edges;
+    int face;
+};
+
+// Corners are counted through all patches.
+Fan fan_at(uint corner) {
+    uvec2 place = face_corners[corner];
+    uvec4 header = fan_headers[place.x];
+    int faces = int(header.w & ~FAN_OPEN_BIT);
+    int edges = faces + int((header.w & FAN_OPEN_BIT) != 0u);
+    return Fan(header.x, 3u * header.y, header.z, faces, edges, int(place.y));
+}
+
+// The number of edge j, which may be some edges before the first or after the last. Of an open fan the nearest that there is:
+// what comes of it is not used.
+int fan_edge(Fan fan, int j) {
+    int edges = fan.edges;
+    return edges > fan.faces ? clamp(j, 0, edges - 1) : (j + 2 * edges) % edges;
+}
+
+// a_j, at the other end of edge j.
+vec3 fan_neighbour(Fan fan, int j) {
+    return vertex_position(fan_entries[fan.entries + 3u * uint(fan_edge(fan, j))]);
+}
+
+// d_j, in the face to the left of edge j.
+vec3 fan_diagonal(Fan fan, int j) {
+    return vertex_position(fan_entries[fan.entries + 3u * uint(fan_edge(fan, j)) + 1u]);
+}
+
+uint fan_profile(Fan fan, int j) {
+    return fan_entries[fan.entries + 3u * uint(fan_edge(fan, j)) + 2u];
+}
+
+float fan_weight(uint word) {
+    return uintBitsToFloat(fan_words[word]);
+}
+
+// The rules, each with the same bits from every face that a point is in: sums in pairs that are opposite. Rust twin of the rules:
+// src/limit/refine.rs.
+
+vec3 face_point(vec3 x0, vec3 x1, vec3 x2, vec3 x3) {
+    precise vec3 mean = 0.25 * ((x0 + x2) + (x1 + x3));
+    return mean;
+}
+
+vec3 sharpened(vec3 point, vec3 sharp, float weight) {
+    precise vec3 mixed = (1.0 - weight) * point + weight * sharp;
+    return mixed;
+}
+
+vec3 smooth_edge_point(vec3 from, vec3 to, vec3 left, vec3 right) {
+    precise vec3 mean = 0.25 * ((from + to) + (left + right));
+    return mean;
+}
+
+vec3 sharp_edge_point(vec3 from, vec3 to) {
+    precise vec3 mean = 0.5 * (from + to);
+    return mean;
+}
+
+// Between four faces: neighbours and face points in order around the vertex.
+vec3 smooth_vertex_point(vec3 vertex, vec3 a0, vec3 a1, vec3 a2, vec3 a3, vec3 f0, vec3 f1, vec3 f2, vec3 f3) {
+    precise vec3 around = ((a0 + a2) + (a1 + a3)) + ((f0 + f2) + (f1 + f3));
+    precise vec3 mean = 0.5 * vertex + 0.0625 * around;
+    return mean;
+}
+
+vec3 crease_vertex_point(vec3 vertex, vec3 before, vec3 after) {
+    precise vec3 mean = 0.75 * vertex + 0.125 * (before + after);
+    return mean;
+}
+
+#endif
