@@ -122,6 +122,7 @@ pub mod limit;
 #[cfg(feature = "measure")]
 pub mod measure;
 pub mod mesh;
+mod named;
 pub mod patch;
 pub mod renderer;
 pub mod table;

@@ -40,63 +40,41 @@ pub use recording::{Crowd, Recording};
 pub use row::{Row, Series};
 pub use subject::{Subject, Subset};
 
+use crate::named::named;
 use crate::patch::Scheme;
 use crate::renderer::{Construction, Cull, Evaluation};
 
-/// A way to get the surface drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Path {
-    /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
-    Tessellation,
-    /// The same with ACC as published (Loop and Schaefer 2008), where the evaluation shader makes the tangents: for the scheme
-    /// [`Scheme::Acc`] and [`Construction::TwoStage`], to compare with.
-    AccPublished,
-    /// Likewise with the vertex shader that evaluates instances of a lattice, as [`Path::Instanced`]: for
-    /// [`Construction::Cached`].
-    AccPublishedInstanced,
-    /// Evaluated by compute once a frame, and drawn as indexed triangles in each pass ([`Evaluation::Compute`]).
-    Compute,
-    /// Faces subdivided in a geometry shader ([`Evaluation::Subdivision`]): at factors 1, 2, 4 and 8.
-    Subdivision,
-    /// A lattice instanced over the patches ([`Evaluation::Instanced`]).
-    Instanced,
-    /// Strips from the geometry shader ([`Evaluation::Geometry`]).
-    Geometry,
-    /// Control points from the geometry shader, then instanced ([`Evaluation::GeometryTwoPass`]).
-    GeometryTwoPass,
-    /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
-    Bilinear,
-    /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
-    /// lattice, which has fewer, for triangles.
-    VertexBuffer,
+named! {
+    /// A way to get the surface drawn.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Path {
+        /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
+        Tessellation = Evaluation::Tessellation.name(),
+        /// The same with ACC as published (Loop and Schaefer 2008), where the evaluation shader makes the tangents: for the scheme
+        /// [`Scheme::Acc`] and [`Construction::TwoStage`], to compare with.
+        AccPublished = "acc-published",
+        /// Likewise with the vertex shader that evaluates instances of a lattice, as [`Path::Instanced`]: for
+        /// [`Construction::Cached`].
+        AccPublishedInstanced = "acc-published-instanced",
+        /// Evaluated by compute once a frame, and drawn as indexed triangles in each pass ([`Evaluation::Compute`]).
+        Compute = Evaluation::Compute.name(),
+        /// A lattice instanced over the patches ([`Evaluation::Instanced`]).
+        Instanced = Evaluation::Instanced.name(),
+        /// Strips from the geometry shader ([`Evaluation::Geometry`]).
+        Geometry = Evaluation::Geometry.name(),
+        /// Control points from the geometry shader, then instanced ([`Evaluation::GeometryTwoPass`]).
+        GeometryTwoPass = Evaluation::GeometryTwoPass.name(),
+        /// Faces subdivided in a geometry shader ([`Evaluation::Subdivision`]): at factors 1, 2, 4 and 8.
+        Subdivision = Evaluation::Subdivision.name(),
+        /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
+        Bilinear = "bilinear",
+        /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
+        /// lattice, which has fewer, for triangles.
+        VertexBuffer = "vertex-buffer",
+    }
 }
 
 impl Path {
-    /// All of them.
-    pub const ALL: [Self; 10] = [
-        Self::Tessellation,
-        Self::AccPublished,
-        Self::AccPublishedInstanced,
-        Self::Compute,
-        Self::Instanced,
-        Self::Geometry,
-        Self::GeometryTwoPass,
-        Self::Subdivision,
-        Self::Bilinear,
-        Self::VertexBuffer,
-    ];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::AccPublished => "acc-published",
-            Self::AccPublishedInstanced => "acc-published-instanced",
-            Self::Bilinear => "bilinear",
-            Self::VertexBuffer => "vertex-buffer",
-            _ => self.evaluation().map_or("", Evaluation::name),
-        }
-    }
-
     /// What evaluates; `None` for a floor.
     pub fn evaluation(self) -> Option<Evaluation> {
         match self {
@@ -149,51 +127,31 @@ impl Path {
     }
 }
 
-/// Where normals along edges and at corners come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Normals {
-    /// Each patch has its own.
-    #[default]
-    Own,
-    /// Those that patches share
-    /// ([`ModelOptions::shared_normals`](crate::renderer::ModelOptions::shared_normals)).
-    Shared,
-}
-
-impl Normals {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Own, Self::Shared];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Own => "own",
-            Self::Shared => "shared",
-        }
+named! {
+    /// Where normals along edges and at corners come from.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Normals {
+        /// Each patch has its own.
+        #[default]
+        Own = "own",
+        /// Those that patches share
+        /// ([`ModelOptions::shared_normals`](crate::renderer::ModelOptions::shared_normals)).
+        Shared = "shared",
     }
 }
 
-/// What leaves out the patches that are not seen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum CullBy {
-    /// The control shader, in each draw ([`Renderer::cmd_draw`](crate::Renderer::cmd_draw)).
-    Control,
-    /// A compute shader, before the draws of a view ([`Renderer::cmd_cull`](crate::Renderer::cmd_cull)).
-    Compute,
+named! {
+    /// What leaves out the patches that are not seen.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum CullBy {
+        /// The control shader, in each draw ([`Renderer::cmd_draw`](crate::Renderer::cmd_draw)).
+        Control = "control",
+        /// A compute shader, before the draws of a view ([`Renderer::cmd_cull`](crate::Renderer::cmd_cull)).
+        Compute = "compute",
+    }
 }
 
 impl CullBy {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Control, Self::Compute];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Control => "control",
-            Self::Compute => "compute",
-        }
-    }
-
     /// What does if nothing is said: compute where control points are cached.
     pub const fn usual(patches: Option<(Scheme, Construction)>) -> Self {
         match patches {

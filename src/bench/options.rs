@@ -1,50 +1,29 @@
 use crate::gpu::Spacing;
 #[cfg(doc)]
 use crate::measure::statistics::FEWEST;
+use crate::named::named;
 
-/// Where the eye is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Camera {
-    /// So far that all is in the picture.
-    #[default]
-    Fit,
-    /// The middle of that, three times as large: the edges of the picture cut the rest off.
-    Clipped,
-}
-
-impl Camera {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Fit, Self::Clipped];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fit => "fit",
-            Self::Clipped => "clipped",
-        }
+named! {
+    /// Where the eye is.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Camera {
+        /// So far that all is in the picture.
+        #[default]
+        Fit = "fit",
+        /// The middle of that, three times as large: the edges of the picture cut the rest off.
+        Clipped = "clipped",
     }
 }
 
-/// Whether the control vertices move.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Motion {
-    /// In every frame: what depends on them is made anew.
-    #[default]
-    Moving,
-    /// Never: what was kept of the frame before is drawn.
-    Still,
-}
-
-impl Motion {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Moving, Self::Still];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Moving => "moving",
-            Self::Still => "still",
-        }
+named! {
+    /// Whether the control vertices move.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Motion {
+        /// In every frame: what depends on them is made anew.
+        #[default]
+        Moving = "moving",
+        /// Never: what was kept of the frame before is drawn.
+        Still = "still",
     }
 }
 

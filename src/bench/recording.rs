@@ -3,29 +3,23 @@
 use super::drawable::timed;
 use super::scene::Scene;
 use super::{Bench, BenchError, Camera, Contestant, Subject};
+use crate::named::named;
 use crate::renderer::{DrawItem, ModelId, ModelTables, Options, Renderer, Style, Target};
 
-/// What the models of a frame are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Crowd {
-    /// One model, drawn so many times.
-    Instances,
-    /// So many models with tables and buffers of their own, at rest.
-    Models,
-    /// The same, and the vertices of each moved.
-    Moving,
-}
-
-impl Crowd {
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Instances => "instances",
-            Self::Models => "models",
-            Self::Moving => "moving",
-        }
+named! {
+    /// What the models of a frame are.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Crowd {
+        /// One model, drawn so many times.
+        Instances = "instances",
+        /// So many models with tables and buffers of their own, at rest.
+        Models = "models",
+        /// The same, and the vertices of each moved.
+        Moving = "moving",
     }
 }
+
+impl Crowd {}
 
 /// What recording one frame of a crowd took on the host's clock, frame by frame, in milliseconds.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,35 +2,26 @@
 
 use super::BenchError;
 use crate::mesh::{ControlMesh, MeshData};
+use crate::named::named;
 use crate::patch::{Fallback, Scheme};
 use crate::table::{PatchPlan, TableError, prepare};
 use crate::topology::{PatchKind, Topology};
 
-/// Which patches of a mesh are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Subset {
-    /// All of them.
-    #[default]
-    All,
-    /// Regular quads.
-    Regular,
-    /// Irregular quads and triangles.
-    Irregular,
+named! {
+    /// Which patches of a mesh are drawn.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Subset {
+        /// All of them.
+        #[default]
+        All = "all",
+        /// Regular quads.
+        Regular = "regular",
+        /// Irregular quads and triangles.
+        Irregular = "irregular",
+    }
 }
 
 impl Subset {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::All, Self::Regular, Self::Irregular];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::All => "all",
-            Self::Regular => "regular",
-            Self::Irregular => "irregular",
-        }
-    }
-
     fn has(self, kind: PatchKind) -> bool {
         match self {
             Self::All => true,

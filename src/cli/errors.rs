@@ -19,7 +19,7 @@ pub(super) struct ErrorArgs {
     #[command(flatten)]
     mesh: SourceArgs,
     /// A scheme to measure; may be given several times. All that have patches for the mesh if not given.
-    #[arg(long, value_name = "SCHEME", value_parser = parse::scheme())]
+    #[arg(long, value_name = "SCHEME", value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     scheme: Vec<Scheme>,
     /// Samples along each side of a face.
     #[arg(long, value_name = "N", default_value_t = 33, value_parser = clap::value_parser!(u32).range(1..=1025))]

@@ -13,7 +13,7 @@ pub(super) struct EvaluationArgs {
     #[arg(long, value_name = "WHAT", default_value = Evaluation::Tessellation.name(), value_parser = parse::evaluation())]
     pub(super) evaluation: Evaluation,
     /// How the GPU makes the control points; if not given, as is usual with the evaluation (two-stage with tessellation).
-    #[arg(long, value_name = "HOW", value_parser = parse::construction())]
+    #[arg(long, value_name = "HOW", value_parser = parse::one_of(Construction::ALL, Construction::name))]
     construction: Option<Construction>,
 }
 

@@ -24,7 +24,7 @@ pub(super) struct InfoArgs {
     #[command(flatten)]
     mesh: MeshArgs,
     /// The construction whose tables are counted.
-    #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::construction())]
+    #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::one_of(Construction::ALL, Construction::name))]
     construction: Construction,
 }
 

@@ -1,30 +1,24 @@
 //! Values of options.
 
-use ash_subdiv::bench::{Camera, CullBy, Motion, Normals, Path, Subset};
 use ash_subdiv::renderer::Evaluation;
-use ash_subdiv::{Construction, Fallback, Scheme, Spacing};
+use ash_subdiv::{Fallback, Scheme};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 
-/// One of these by its name.
-fn named<T, const N: usize>(all: [(&'static str, T); N]) -> impl TypedValueParser<Value = T>
+/// One of `all` by its name.
+pub(super) fn one_of<T, const N: usize>(all: [T; N], name: fn(T) -> &'static str) -> impl TypedValueParser<Value = T>
 where
     T: Copy + Send + Sync + 'static,
 {
-    PossibleValuesParser::new(all.map(|(name, _)| name)).map(move |given| {
+    PossibleValuesParser::new(all.map(name)).map(move |given| {
         // The parser lets none but these names through.
-        all.into_iter().find(|(name, _)| *name == given).unwrap_or(all[0]).1
+        all.into_iter().find(|&one| name(one) == given).unwrap_or(all[0])
     })
-}
-
-/// A scheme by its name.
-pub(super) fn scheme() -> impl TypedValueParser<Value = Scheme> {
-    named(Scheme::ALL.map(|scheme| (scheme.name(), scheme)))
 }
 
 /// A scheme to fall back to, by its name.
 pub(super) fn fallback() -> impl TypedValueParser<Value = Fallback> {
-    named([(Scheme::Gregory.name(), Fallback::Gregory)])
+    one_of([Fallback::Gregory], |_| Scheme::Gregory.name())
 }
 
 /// A scheme by its name, or the limit surface as [`LIMIT`].
@@ -46,65 +40,11 @@ pub(super) enum Surface {
 /// What [`scheme_or_limit`] calls the limit surface.
 pub(super) const LIMIT: &str = "limit";
 
-/// A way to draw by its name.
-pub(super) fn path() -> impl TypedValueParser<Value = Path> {
-    named(Path::ALL.map(|path| (path.name(), path)))
-}
-
-/// Where normals come from, by its name.
-pub(super) fn normals() -> impl TypedValueParser<Value = Normals> {
-    named(Normals::ALL.map(|normals| (normals.name(), normals)))
-}
-
-/// What leaves out patches, by its name.
-pub(super) fn cull_by() -> impl TypedValueParser<Value = CullBy> {
-    named(CullBy::ALL.map(|by| (by.name(), by)))
-}
-
-/// A camera of the bench by its name.
-pub(super) fn camera() -> impl TypedValueParser<Value = Camera> {
-    named(Camera::ALL.map(|camera| (camera.name(), camera)))
-}
-
-/// Whether vertices move, by its name.
-pub(super) fn motion() -> impl TypedValueParser<Value = Motion> {
-    named(Motion::ALL.map(|motion| (motion.name(), motion)))
-}
-
-/// Some of the patches by their name.
-pub(super) fn subset() -> impl TypedValueParser<Value = Subset> {
-    named(Subset::ALL.map(|subset| (subset.name(), subset)))
-}
-
-/// A construction by its name.
-pub(super) fn construction() -> impl TypedValueParser<Value = Construction> {
-    named(Construction::ALL.map(|construction| (construction.name(), construction)))
-}
-
-/// What evaluates, by its name.
+/// What evaluates patches, by its name.
 pub(super) fn evaluation() -> impl TypedValueParser<Value = Evaluation> {
     // Subdivision has --level.
     use Evaluation::{Compute, Geometry, GeometryTwoPass, Instanced, Tessellation};
-    let of_patches = [Tessellation, Compute, Instanced, Geometry, GeometryTwoPass];
-    named(of_patches.map(|evaluation| (evaluation.name(), evaluation)))
-}
-
-const SPACINGS: [(&str, Spacing); 3] =
-    [("equal", Spacing::Equal), ("odd", Spacing::FractionalOdd), ("even", Spacing::FractionalEven)];
-
-/// A spacing by its name.
-pub(super) fn spacing() -> impl TypedValueParser<Value = Spacing> {
-    named(SPACINGS)
-}
-
-/// All that [`spacing`] knows.
-pub(super) fn spacings() -> impl Iterator<Item = Spacing> {
-    SPACINGS.into_iter().map(|(_, spacing)| spacing)
-}
-
-/// What [`spacing`] calls it.
-pub(super) fn spacing_name(spacing: Spacing) -> &'static str {
-    SPACINGS.into_iter().find(|(_, s)| *s == spacing).map_or("equal", |(name, _)| name)
+    one_of([Tessellation, Compute, Instanced, Geometry, GeometryTwoPass], Evaluation::name)
 }
 
 /// The largest tessellation factor that every device has.

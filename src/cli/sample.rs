@@ -32,7 +32,7 @@ pub(super) struct SampleArgs {
     #[arg(long, conflicts_with_all = ["construction", "device", "validation"])]
     cpu: bool,
     /// How the GPU makes the control points.
-    #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::construction())]
+    #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::one_of(Construction::ALL, Construction::name))]
     construction: Construction,
     #[command(flatten)]
     device: DeviceArgs,

@@ -32,10 +32,10 @@ pub(super) struct ScreenArgs {
     #[command(flatten)]
     cull: CullArgs,
     /// Where the tessellator puts its vertices along an edge.
-    #[arg(long, default_value = "equal", value_parser = parse::spacing())]
+    #[arg(long, default_value = "equal", value_parser = parse::one_of(Spacing::ALL, Spacing::name))]
     spacing: Spacing,
     /// How the GPU makes the control points.
-    #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::construction())]
+    #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::one_of(Construction::ALL, Construction::name))]
     construction: Construction,
     /// Width and height of the screen in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = parse::size)]
@@ -186,7 +186,7 @@ pub(super) fn run(args: &ScreenArgs, json: bool) -> Result<(), CliError> {
         mesh: args.mesh.source.name(),
         device: &device,
         size: args.size,
-        spacing: parse::spacing_name(args.spacing),
+        spacing: args.spacing.name(),
         construction: args.construction.name(),
         rows: &adaptive,
     };

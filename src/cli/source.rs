@@ -17,7 +17,7 @@ pub(super) struct MeshArgs {
     #[command(flatten)]
     pub source: SourceArgs,
     /// Which patches faces become.
-    #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::scheme())]
+    #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     pub scheme: Scheme,
 }
 

@@ -160,7 +160,7 @@ pub(super) fn run(args: &WatertightArgs, json: bool) -> Result<(), CliError> {
         let mut seed = 0;
         loop {
             for construction in Construction::ALL {
-                for spacing in [Spacing::Equal, Spacing::FractionalOdd, Spacing::FractionalEven] {
+                for spacing in Spacing::ALL {
                     for (shared_normals, displaced) in [(false, false), (true, false), (true, true)] {
                         let options = args.options(construction, spacing, shared_normals);
                         let setup = args.setup(headless, &mesh, options, displaced)?;
@@ -252,7 +252,7 @@ impl WatertightArgs {
                 };
                 let configuration = Configuration {
                     construction: setup.options.construction.name(),
-                    spacing: parse::spacing_name(setup.options.spacing),
+                    spacing: setup.options.spacing.name(),
                     factors: factors.clone(),
                     shared_normals,
                     displaced: setup.texture.is_some(),

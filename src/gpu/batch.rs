@@ -1,5 +1,6 @@
 //! How many patches one draw instance may hold.
 
+use crate::named::named;
 use ash::vk;
 
 /// The domain of a tessellation evaluation shader.
@@ -11,16 +12,18 @@ pub enum Domain {
     Triangles,
 }
 
-/// How a tessellation factor becomes a whole number of segments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Spacing {
-    /// `equal_spacing`: rounded up.
-    #[default]
-    Equal,
-    /// `fractional_odd_spacing`: rounded up to an odd number.
-    FractionalOdd,
-    /// `fractional_even_spacing`: rounded up to an even number.
-    FractionalEven,
+named! {
+    /// How a tessellation factor becomes a whole number of segments.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Spacing {
+        /// `equal_spacing`: rounded up.
+        #[default]
+        Equal = "equal",
+        /// `fractional_odd_spacing`: rounded up to an odd number.
+        FractionalOdd = "odd",
+        /// `fractional_even_spacing`: rounded up to an even number.
+        FractionalEven = "even",
+    }
 }
 
 impl Spacing {

@@ -12,6 +12,9 @@ macro_rules! features {
         }
 
         impl Features {
+            /// No feature.
+            pub const NONE: Self = Self { $($field: false,)* };
+
             /// Every feature, with its Vulkan name.
             pub fn named(self) -> impl Iterator<Item = (&'static str, bool)> {
                 [$(($name, self.$field),)*].into_iter()
@@ -69,27 +72,6 @@ features! {
 }
 
 impl Features {
-    /// Nothing.
-    pub const NONE: Self = Self {
-        tessellation: false,
-        dynamic_rendering: false,
-        synchronization2: false,
-        maintenance4: false,
-        terminate_invocation: false,
-        demote_to_helper_invocation: false,
-        fill_mode_non_solid: false,
-        wide_lines: false,
-        vertex_stores: false,
-        statistics: false,
-        geometry: false,
-        indirect_first_instance: false,
-        multi_draw_indirect: false,
-        independent_blend: false,
-        float64: false,
-        anisotropy: false,
-        transform_feedback: false,
-    };
-
     /// The features that a physical device has.
     ///
     /// # Safety

@@ -8,25 +8,28 @@
 use super::fitted::Fit;
 use super::gregory::PatchCorner;
 use super::{Blend, FallbackRings, Frame, Point, RingShape, RingValues, Sample, acc, bicubic, fitted, gregory, pm};
+use crate::named::named;
 use crate::topology::{PatchKind, RingKind, Topology};
 
-/// A way to approximate the Catmull-Clark surface by patches, one a face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub enum Scheme {
-    /// Gregory patches for irregular faces ([`gregory`]): quads and triangles, boundaries, G1 everywhere.
-    #[default]
-    Gregory,
-    /// Gregory patches that are closer to the limit surface ([`fitted`]): the same points and evaluation, with other tangent
-    /// lengths and transversals.
-    GregoryFitted,
-    /// A geometry patch and two tangent patches for irregular faces ([`acc`]): quads only; the shading is smooth, the
-    /// surface has a faint kink at the edges of irregular faces.
-    Acc,
-    /// Quartic pieces around the centre of each irregular face ([`pm`]): triangles, quads and pentagons, no boundaries or
-    /// creases; G1.
-    Pm,
-    /// The Pm-patches of quads, as first published ([`pm`]): no triangles.
-    CPatch,
+named! {
+    /// A way to approximate the Catmull-Clark surface by patches, one a face.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+    pub enum Scheme {
+        /// Gregory patches for irregular faces ([`gregory`]): quads and triangles, boundaries, G1 everywhere.
+        #[default]
+        Gregory = "gregory",
+        /// Gregory patches that are closer to the limit surface ([`fitted`]): the same points and evaluation, with other tangent
+        /// lengths and transversals.
+        GregoryFitted = "gregory-fitted",
+        /// A geometry patch and two tangent patches for irregular faces ([`acc`]): quads only; the shading is smooth, the
+        /// surface has a faint kink at the edges of irregular faces.
+        Acc = "acc",
+        /// Quartic pieces around the centre of each irregular face ([`pm`]): triangles, quads and pentagons, no boundaries or
+        /// creases; G1.
+        Pm = "pm",
+        /// The Pm-patches of quads, as first published ([`pm`]): no triangles.
+        CPatch = "c-patch",
+    }
 }
 
 /// A face that a scheme has no patch for.
@@ -42,20 +45,6 @@ pub struct Undefined {
 }
 
 impl Scheme {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::Gregory, Self::GregoryFitted, Self::Acc, Self::Pm, Self::CPatch];
-
-    /// As the program calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gregory => "gregory",
-            Self::GregoryFitted => "gregory-fitted",
-            Self::Acc => "acc",
-            Self::Pm => "pm",
-            Self::CPatch => "c-patch",
-        }
-    }
-
     /// Tells whether the scheme has a patch for a face, and of which kind.
     ///
     /// # Errors

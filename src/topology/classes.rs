@@ -2,24 +2,24 @@
 
 use super::Topology;
 use crate::mesh::BoundaryRule;
+use crate::named::named;
 
-/// The patch that a face of the mesh becomes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum PatchKind {
-    /// A quad whose one-rings are regular: a bicubic B-spline patch, which is the limit surface itself.
-    Regular,
-    /// Any other quad.
-    IrregularQuad,
-    /// A triangle, in whatever surroundings.
-    Triangle,
-    /// A fifth of a face of five corners, in whatever surroundings: the triangle between an edge of it and its centre.
-    Pentagon,
+named! {
+    /// The patch that a face of the mesh becomes.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum PatchKind {
+        /// A quad whose one-rings are regular: a bicubic B-spline patch, which is the limit surface itself.
+        Regular = "regular",
+        /// Any other quad.
+        IrregularQuad = "irregular_quad",
+        /// A triangle, in whatever surroundings.
+        Triangle = "triangle",
+        /// A fifth of a face of five corners, in whatever surroundings: the triangle between an edge of it and its centre.
+        Pentagon = "pentagon",
+    }
 }
 
 impl PatchKind {
-    /// In the order in which they are stored and drawn.
-    pub const ALL: [Self; 4] = [Self::Regular, Self::IrregularQuad, Self::Triangle, Self::Pentagon];
-
     /// Corners of the patch. A fifth of a pentagon takes its control points from all five corners of the face.
     pub fn corners(self) -> usize {
         match self {
@@ -37,16 +37,6 @@ impl PatchKind {
     /// Whether the patch has barycentric parameters, those of a triangle.
     pub fn is_triangular(self) -> bool {
         matches!(self, Self::Triangle | Self::Pentagon)
-    }
-
-    /// The kind as it is called in the program's output.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Regular => "regular",
-            Self::IrregularQuad => "irregular_quad",
-            Self::Triangle => "triangle",
-            Self::Pentagon => "pentagon",
-        }
     }
 }
 

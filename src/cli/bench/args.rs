@@ -26,16 +26,16 @@ pub(in super::super) struct BenchArgs {
     #[arg(long)]
     drop_isolated: bool,
     /// Schemes, with commas; all if not given.
-    #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::scheme())]
+    #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     pub(super) schemes: Vec<Scheme>,
     /// Constructions, with commas; all if not given.
-    #[arg(long, value_name = "HOW", value_delimiter = ',', value_parser = parse::construction())]
+    #[arg(long, value_name = "HOW", value_delimiter = ',', value_parser = parse::one_of(Construction::ALL, Construction::name))]
     pub(super) constructions: Vec<Construction>,
     /// Ways to draw, with commas; all if not given.
-    #[arg(long, value_name = "PATH", value_delimiter = ',', value_parser = parse::path())]
+    #[arg(long, value_name = "PATH", value_delimiter = ',', value_parser = parse::one_of(Path::ALL, Path::name))]
     pub(super) paths: Vec<Path>,
     /// Where normals come from, with commas: those that patches share cost time. For watertight schemes.
-    #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::normals())]
+    #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::one_of(Normals::ALL, Normals::name))]
     pub(super) normals: Vec<Normals>,
     /// Measure each row of the tessellation stages and of instances again with patches left out that are not seen: `back`
     /// those that face away, `frustum` those out of the picture, `small` those between pixels.
@@ -43,16 +43,16 @@ pub(in super::super) struct BenchArgs {
     pub(super) cull: Vec<CullArg>,
     /// What leaves them out, with commas: the control shader of each draw, or compute before the draws. If not given, compute for
     /// `cached`, the control shader for other constructions.
-    #[arg(long, value_name = "WHAT", value_delimiter = ',', requires = "cull", value_parser = parse::cull_by())]
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', requires = "cull", value_parser = parse::one_of(CullBy::ALL, CullBy::name))]
     cull_by: Vec<CullBy>,
     /// Tessellation factors, with commas; 4,8,16,32 if not given.
     #[arg(long, value_name = "FACTOR", value_delimiter = ',', value_parser = parse::factor)]
     factors: Vec<f32>,
     /// Where the tessellator puts its vertices along an edge; several with commas.
-    #[arg(long, value_delimiter = ',', default_value = "equal", value_parser = parse::spacing())]
+    #[arg(long, value_delimiter = ',', default_value = "equal", value_parser = parse::one_of(Spacing::ALL, Spacing::name))]
     pub(super) spacing: Vec<Spacing>,
     /// Which patches are drawn: all if not given.
-    #[arg(long, value_name = "WHICH", value_parser = parse::subset())]
+    #[arg(long, value_name = "WHICH", value_parser = parse::one_of(Subset::ALL, Subset::name))]
     pub(super) patches: Option<Subset>,
     /// Draw the model this many times, side by side, with a transform each.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
@@ -62,10 +62,10 @@ pub(in super::super) struct BenchArgs {
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(super) passes: Vec<u32>,
     /// Whether the control vertices move, with commas: if not, cached control points and vertices made by compute are kept.
-    #[arg(long, value_name = "WHETHER", value_delimiter = ',', default_value = "moving", value_parser = parse::motion())]
+    #[arg(long, value_name = "WHETHER", value_delimiter = ',', default_value = "moving", value_parser = parse::one_of(Motion::ALL, Motion::name))]
     pub(super) motion: Vec<Motion>,
     /// Where the eye is, with commas: `clipped` shows the middle three times as large, and cuts off what is around.
-    #[arg(long, value_name = "WHERE", value_delimiter = ',', default_value = "fit", value_parser = parse::camera())]
+    #[arg(long, value_name = "WHERE", value_delimiter = ',', default_value = "fit", value_parser = parse::one_of(Camera::ALL, Camera::name))]
     pub(super) view: Vec<Camera>,
     /// Have the rasterizer leave out triangles that face away, as renderers do of closed models. Some drivers, lavapipe among
     /// them, then count fewer of what clipping leaves: compare views without it.

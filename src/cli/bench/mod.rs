@@ -26,7 +26,6 @@ mod together;
 
 use super::error::CliError;
 use super::output::{self, Progress, note};
-use super::parse;
 pub(super) use args::BenchArgs;
 use args::Meshes;
 use ash_subdiv::bench::{Bench, BenchError, BenchOptions, Contestant, Event, Subject};
@@ -155,7 +154,8 @@ impl BenchArgs {
 
     /// In what contestants are raced, one after the other.
     fn races(&self, options: &BenchOptions) -> Vec<BenchOptions> {
-        let spacings: Vec<Spacing> = parse::spacings().filter(|spacing| self.spacing.contains(spacing)).collect();
+        let spacings: Vec<Spacing> =
+            Spacing::ALL.into_iter().filter(|spacing| self.spacing.contains(spacing)).collect();
         let mut races = Vec::new();
         for motion in unique(&self.motion, |&motion| motion) {
             for passes in unique(&self.passes, |&passes| passes) {

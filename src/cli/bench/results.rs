@@ -2,7 +2,6 @@
 
 use super::super::cull;
 use super::super::error::CliError;
-use super::super::parse;
 use super::compare::Change;
 use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line, left_out_by_reason};
 use super::findings::Findings;
@@ -205,7 +204,7 @@ impl Setting {
     pub(super) fn new(mesh: &str, options: &BenchOptions, camera: Camera) -> Self {
         Self {
             mesh: mesh.to_owned(),
-            spacing: parse::spacing_name(options.spacing).to_owned(),
+            spacing: options.spacing.name().to_owned(),
             motion: options.motion.name().to_owned(),
             view: camera.name().to_owned(),
             passes: options.passes,

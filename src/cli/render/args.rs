@@ -69,7 +69,7 @@ pub(in super::super) struct RenderArgs {
     #[command(flatten)]
     pub(super) factor: FactorArgs,
     /// Where the tessellator puts its vertices along an edge.
-    #[arg(long, default_value = "equal", value_parser = parse::spacing())]
+    #[arg(long, default_value = "equal", value_parser = parse::one_of(Spacing::ALL, Spacing::name))]
     pub(super) spacing: Spacing,
     /// What the picture shows.
     #[arg(long, value_enum, default_value_t = Shading::Lit)]

@@ -8,7 +8,6 @@ use super::error_map::ErrorMap;
 use super::info::Patches;
 use super::legend::Legend;
 use super::output::{self, Progress, write_file};
-use super::parse;
 use super::picture::unpremultiply;
 use super::source::tell_notices;
 pub(super) use args::RenderArgs;
@@ -116,7 +115,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
             level: args.factor.level,
             pixels: args.factor.pixels,
             bend: args.factor.bend,
-            spacing: parse::spacing_name(args.spacing),
+            spacing: args.spacing.name(),
             shading: args.shading.name(),
             samples,
             device: &device,
