@@ -1,6 +1,6 @@
-//! The exact limit surfaces of `../shared/limit`: format in `../shared/README.md`.
+//! The exact limit surfaces of `tests/limit` and `../shared/limit`: the format is in `tests/limit/README.md`.
 
-use super::shared;
+use super::{files, shared, tests};
 use ash_subdiv::mesh::{BoundaryRule, ReadOptions, read};
 use ash_subdiv::{ControlMesh, MeshData};
 use glam::DVec3;
@@ -63,10 +63,29 @@ impl Limit {
     }
 }
 
-/// A shared mesh, with the boundary rule its limit surface was made with, and that surface.
+/// The names of all limit surfaces: those of `tests/limit`, and of `../shared` where that is.
+pub fn names() -> Vec<String> {
+    let mut paths = files(&tests("limit"), "bin");
+    assert!(paths.len() >= 5, "tests/limit");
+    if cfg!(shared) {
+        let theirs = files(&shared().join("limit"), "bin");
+        assert_eq!(theirs.len(), 38, "../shared/limit");
+        paths.extend(theirs);
+    }
+    paths.iter().map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect()
+}
+
+/// A mesh, with the boundary rule its limit surface was made with, and that surface.
 pub fn mesh_and_limit(name: &str) -> (ControlMesh, Limit) {
-    let limit = parse(&std::fs::read(shared().join("limit").join(name).with_extension("bin")).expect("a .bin file"));
-    let path = shared().join("meshes").join(name).with_extension("obj");
+    let ours = tests("limit").join(name).with_extension("bin");
+    let (limit, path) = match ours.exists() {
+        true => (ours.clone(), ours.with_extension("obj")),
+        false => (
+            shared().join("limit").join(name).with_extension("bin"),
+            shared().join("meshes").join(name).with_extension("obj"),
+        ),
+    };
+    let limit = parse(&std::fs::read(limit).expect("a .bin file"));
     let options = ReadOptions { drop_isolated: true, ..ReadOptions::default() };
     let mesh = read(&path, &options).expect("a mesh");
     let mesh = ControlMesh::new(MeshData { boundary: limit.boundary, ..mesh.into_data() }).expect("the same mesh");

@@ -12,21 +12,35 @@ pub mod random;
 pub mod stage;
 
 use ash_subdiv::ControlMesh;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The folder beside the checkout with reference data.
 pub fn shared() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared")
 }
 
-/// The reference vectors by name.
-pub fn vectors() -> Vec<(String, serde_json::Value)> {
-    let mut files: Vec<_> = std::fs::read_dir(shared().join("reference/vectors"))
-        .expect("../shared/reference/vectors")
-        .map(|entry| entry.expect("a readable folder").path())
-        .collect();
+/// A folder below `tests/`.
+pub fn tests(folder: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests").join(folder)
+}
+
+/// The files in a folder that end so, in order.
+pub fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let files = entries.map(|entry| entry.expect("a readable folder").path());
+    let mut files: Vec<_> = files.filter(|file| file.extension().is_some_and(|e| e == ending)).collect();
     files.sort();
     files
+}
+
+/// The reference vectors by name: those of `tests/vectors` but [`pentagon_vector`], and all of `../shared` where that is.
+pub fn vectors() -> Vec<(String, serde_json::Value)> {
+    let mut paths = files(&tests("vectors"), "json");
+    paths.retain(|path| path.file_stem() != Some("pentagons".as_ref()));
+    if cfg!(shared) {
+        paths.extend(files(&shared().join("reference/vectors"), "json"));
+    }
+    paths
         .into_iter()
         .map(|path| {
             let text = std::fs::read_to_string(&path).expect("a readable file");

@@ -177,7 +177,6 @@ fn corner_and_edge_points_of_schemes_differ_where_the_docs_say() {
 
 /// The meshes of the reference vectors, whole and with some faces made triangles so that they fall back.
 #[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn meshes_of_the_vectors_join() {
     assert!(check_joins(meshes_of_vectors()).0 > 500);
 }

@@ -1,8 +1,8 @@
-//! Control points, evaluation and refinement against the reference vectors of `../shared/reference/vectors`, which an
-//! independent float64 implementation wrote.
+//! Control points, evaluation and refinement against reference vectors, which an independent float64 implementation wrote:
+//! those of `tests/vectors`, and all of `../shared/reference/vectors` where that is.
 
 use crate::common::vectors;
-use ash_subdiv::limit::refine;
+use ash_subdiv::limit::{LimitSurface, refine};
 use ash_subdiv::mesh::{Corner, Crease, CreaseMethod};
 use ash_subdiv::patch::{Blend, Scheme};
 use ash_subdiv::topology::{PatchKind, Topology};
@@ -53,11 +53,10 @@ fn for_each_gregory(mut visit: impl FnMut(&str, &Topology, u32, &Value)) {
             faces += 1;
         }
     }
-    assert!(faces > 50, "the vectors hold {faces} faces");
+    assert!(faces > 30, "the vectors hold {faces} faces");
 }
 
 #[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn gregory_points_agree_in_f64() {
     for_each_gregory(|name, topology, face, expected| {
         let ours = gregory(topology, face, |v| topology.mesh().position(v));
@@ -71,7 +70,6 @@ fn gregory_points_agree_in_f64() {
 }
 
 #[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn gregory_points_agree_in_f32() {
     for_each_gregory(|name, topology, face, expected| {
         let ours: Vec<Vec3> = gregory(topology, face, |v| topology.mesh().position(v).as_vec3());
@@ -83,7 +81,6 @@ fn gregory_points_agree_in_f32() {
 }
 
 #[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn evaluation_agrees() {
     for_each_gregory(|name, topology, face, expected| {
         let points_f64 = gregory(topology, face, |v| topology.mesh().position(v));
@@ -102,7 +99,6 @@ fn evaluation_agrees() {
 }
 
 #[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn regular_faces_are_the_gregory_patch() {
     for_each_gregory(|name, topology, face, _| {
         if topology.patch_kind(face) != Some(PatchKind::Regular) {
@@ -121,7 +117,6 @@ fn regular_faces_are_the_gregory_patch() {
 }
 
 #[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn refinement_agrees() {
     for (name, vector) in vectors() {
         let Some(order) = vector.get("subdiv1") else { continue };
@@ -140,6 +135,25 @@ fn refinement_agrees() {
             }
         }
     }
+}
+
+/// Where finite sharpness has worn off. Sharpness is f32, as in OpenSubdiv; the vectors have it in f64.
+#[test]
+fn limit_points_of_semi_sharp_meshes_agree() {
+    let mut meshes = 0;
+    for (name, vector) in vectors() {
+        for (method, key) in [(CreaseMethod::Uniform, "uniform"), (CreaseMethod::Chaikin, "chaikin")] {
+            let Some(expected) = vector.get(format!("limit_vertices_{key}")) else { continue };
+            let mesh = mesh(&vector, method);
+            let surface = LimitSurface::new(&mesh).expect("small");
+            for (v, expected) in points(expected).into_iter().enumerate() {
+                let error = (surface.limit_vertex(v as u32).position - expected).length() / mesh.diagonal();
+                assert!(error < 1e-7, "{name} {key}: vertex {v} is off by {error:e}");
+            }
+            meshes += 1;
+        }
+    }
+    assert!(meshes >= 4, "{meshes}");
 }
 
 fn check_refined(name: &str, mesh: &ControlMesh, positions: &[DVec3], edges: &[Vec<f64>]) {
@@ -164,7 +178,6 @@ fn check_refined(name: &str, mesh: &ControlMesh, positions: &[DVec3], edges: &[V
 }
 
 #[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn acc_points_agree() {
     let mut faces = 0;
     for (name, vector) in vectors() {
@@ -214,7 +227,7 @@ fn acc_points_agree() {
             check_acc_samples(&name, &mesh, &ours, expected);
         }
     }
-    assert!(faces >= 20, "the vectors hold {faces} faces");
+    assert!(faces >= 14, "the vectors hold {faces} faces");
 }
 
 fn check_acc_samples(name: &str, mesh: &ControlMesh, ours: &[DVec3], expected: &Value) {
@@ -232,7 +245,6 @@ fn check_acc_samples(name: &str, mesh: &ControlMesh, ours: &[DVec3], expected: &
 }
 
 #[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn pm_points_agree() {
     let mut faces = 0;
     for (name, vector) in vectors() {
@@ -266,7 +278,7 @@ fn pm_points_agree() {
             check_pm_samples(&name, &mesh, &ours, expected);
         }
     }
-    assert!(faces >= 20, "the vectors hold {faces} faces");
+    assert!(faces >= 14, "the vectors hold {faces} faces");
 }
 
 /// The vector files go through the sectors, each at the same barycentric parameters.
