@@ -101,9 +101,11 @@ impl Kit {
             stencil: vk::Format::UNDEFINED,
         };
         let pipeline = |pass: Pass| {
-            let mut stages = stages.to_vec();
-            if pass == Pass::Pixels {
-                stages.push(Shader::fragment(shaders::SHADE_LIT_FRAG));
+            let (mut stages, mut dynamic_states) = (stages.to_vec(), input.dynamic_states.to_vec());
+            match pass {
+                Pass::Pixels => stages.push(Shader::fragment(shaders::SHADE_LIT_FRAG)),
+                // As the styles of a renderer.
+                Pass::Geometry => dynamic_states.push(vk::DynamicState::RASTERIZER_DISCARD_ENABLE),
             }
             let desc = GraphicsPipelineDesc {
                 cull_mode: lane.cull,
@@ -112,8 +114,7 @@ impl Kit {
                 vertex_attributes: input.attributes,
                 depth: Some(DepthState::LESS),
                 samples: lane.target.samples,
-                rasterizer_discard: pass == Pass::Geometry,
-                dynamic_states: input.dynamic_states,
+                dynamic_states: &dynamic_states,
                 ..GraphicsPipelineDesc::new("bench floor", self.layout.raw(), target, &stages)
             };
             // SAFETY: the shaders are ours and match each other, the layout and the target.
@@ -147,9 +148,15 @@ impl Kit {
     /// # Safety
     /// `cmd` is being recorded.
     unsafe fn cmd_bind_pipeline(&self, cmd: vk::CommandBuffer, pipelines: &[Owned<vk::Pipeline>; 2], frame: &Frame) {
-        let pipeline = pipelines[usize::from(frame.pass == Pass::Geometry)].raw();
+        let discards = frame.pass == Pass::Geometry;
+        let (device, pipeline) = (self.context.device(), pipelines[usize::from(discards)].raw());
         // SAFETY: as the caller promises.
-        unsafe { self.context.device().cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
+        unsafe {
+            device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline);
+            if discards {
+                device.cmd_set_rasterizer_discard_enable(cmd, true);
+            }
+        }
     }
 }
 

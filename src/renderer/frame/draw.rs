@@ -33,12 +33,14 @@ pub(crate) struct Bound {
     pipeline: vk::Pipeline,
     set: vk::DescriptorSet,
     pub lattice: BoundLattice,
+    /// Whether the rasterizer was told to discard since the last pipeline that cannot be told.
+    discards: bool,
 }
 
 impl Renderer {
     /// Records the draws of one view: items in their order, the kinds of patches of each in any. Viewport and scissor are the
     /// caller's to set. Binds sets 0 and 1, pipelines, index and vertex buffers; push constants are overwritten, and the topology
-    /// where that is dynamic.
+    /// and rasterizer discard where those are dynamic.
     ///
     /// # Errors
     /// Unknown models, styles and frames, factors below 1 and more views than
@@ -158,7 +160,7 @@ impl Renderer {
                 bound.lattice = BoundLattice::default();
                 constants.colour = item.colors[0];
                 let key = PipelineKey { style: item.style, geometry: GeometryKey::Control };
-                self.bind(cmd, self.pipelines.draws.get(key), bound);
+                self.bind(cmd, style, self.pipelines.draws.get(key), bound);
                 self.push(cmd, &constants);
                 if let Some(control) = &model.control {
                     let (first, count) = match style.geometry {
@@ -199,7 +201,7 @@ impl Renderer {
                 let number = if backwards { groups.len() - 1 - i } else { i };
                 let (stages, group) = (model.stages[number], &groups[number]);
                 constants.colour = item.colors[stages.kind as usize];
-                self.bind(cmd, pipeline(number), bound);
+                self.bind(cmd, style, pipeline(number), bound);
                 if let Some(lists) = lists.filter(|_| stages.has_hull()) {
                     self.cmd_draw_lists(cmd, lists, (model, number), &constants, &mut bound.lattice);
                     continue;
@@ -310,14 +312,20 @@ impl Renderer {
         Ok((model, most))
     }
 
-    unsafe fn bind(&self, cmd: vk::CommandBuffer, pipeline: Option<vk::Pipeline>, bound: &mut Bound) {
+    unsafe fn bind(&self, cmd: vk::CommandBuffer, style: &Style, pipeline: Option<vk::Pipeline>, bound: &mut Bound) {
+        let device = self.context.device();
         // Every pipeline of the model was made before.
         if let Some(pipeline) = pipeline
             && bound.pipeline != pipeline
         {
             bound.pipeline = pipeline;
             // SAFETY: as the caller of `cmd_draw` promises.
-            unsafe { self.context.device().cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
+            unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
+            if style.rasterizer_discard && !bound.discards {
+                // SAFETY: as the caller of `cmd_draw` promises.
+                unsafe { device.cmd_set_rasterizer_discard_enable(cmd, true) };
+            }
+            bound.discards = style.rasterizer_discard;
         }
     }
 

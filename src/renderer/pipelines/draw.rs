@@ -193,11 +193,15 @@ impl DrawPipelines {
             _ => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
         // A lattice says what its indices are of.
-        let dynamic_states: &[_] = match key.geometry {
-            GeometryKey::Evaluated { .. } => &[vk::DynamicState::PRIMITIVE_TOPOLOGY],
-            GeometryKey::Patches(stages, _) if stages.is_instanced() => &[vk::DynamicState::PRIMITIVE_TOPOLOGY],
-            _ => &[],
+        let topology_is_dynamic = match key.geometry {
+            GeometryKey::Evaluated { .. } => true,
+            GeometryKey::Patches(stages, _) => stages.is_instanced(),
+            _ => false,
         };
+        let mut dynamic_states = Vec::new();
+        dynamic_states.extend(topology_is_dynamic.then_some(vk::DynamicState::PRIMITIVE_TOPOLOGY));
+        // Set when bound: a pipeline that always discards has no attachment formats, and fits no rendering that has attachments.
+        dynamic_states.extend(style.rasterizer_discard.then_some(vk::DynamicState::RASTERIZER_DISCARD_ENABLE));
         let desc = GraphicsPipelineDesc {
             patch_control_points: key.geometry.input_points(),
             vertex_bindings: input.bindings.as_slice(),
@@ -212,8 +216,7 @@ impl DrawPipelines {
             blend: style.blend,
             first_color_only: style.writes_first_only(target),
             samples: target.samples,
-            rasterizer_discard: style.rasterizer_discard,
-            dynamic_states,
+            dynamic_states: &dynamic_states,
             cache: self.cache,
             ..GraphicsPipelineDesc::new(name, self.layout.raw(), target.render_target(), stages)
         };
