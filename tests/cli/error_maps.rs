@@ -120,9 +120,7 @@ const GOLDENS: [(&str, &str); 3] = [
 #[test]
 fn pictures_of_errors_are_as_they_were() {
     let headless = Headless::new(&HeadlessOptions::default()).expect("a Vulkan device");
-    if !golden::is_pinned(&headless) {
-        return;
-    }
+    let Some(goldens) = golden::of(&headless) else { return };
     let folder = folder("error-goldens");
     let mut wrong = Vec::new();
     for (name, arguments) in GOLDENS {
@@ -131,7 +129,7 @@ fn pictures_of_errors_are_as_they_were() {
             let (_, pixels) =
                 picture(&path, &format!("{arguments} --size 256x256 --samples 1 --construction {construction}"));
             let (golden, writes) = (format!("cli/{name}"), construction == "two-stage");
-            wrong.extend(golden::check(&golden, construction, [256; 2], pixels.into_raw(), writes).err());
+            wrong.extend(goldens.check(&golden, construction, [256; 2], pixels.into_raw(), writes).err());
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
