@@ -1,6 +1,6 @@
 //! What every path is to the race: something that can be drawn.
 
-use super::{BenchError, Contestant, Motion, Normals, Path, Subject};
+use super::{BenchError, Contestant, Motion, Normals, Subject};
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
 use crate::renderer::{ModelOptions, TableBytes, View};
@@ -133,15 +133,6 @@ pub(super) struct Lane<'a> {
 }
 
 impl Contestant {
-    /// Makes everything that does not depend on the factor.
-    pub(super) fn open(self, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
-        Ok(match self.path {
-            Path::Bilinear => Box::new(super::floors::Bilinear::new(lane)?),
-            Path::VertexBuffer => Box::new(super::floors::VertexBuffer::new(lane)?),
-            _ => Box::new(super::surface::Surface::new(lane, self)?),
-        })
-    }
-
     /// For paths that are the renderer's own.
     pub(super) fn model_options(self, lane: Lane) -> ModelOptions {
         let evaluation = self.path.evaluation().unwrap_or_default();

@@ -1,8 +1,9 @@
 //! Everything that is raced on one mesh, drawn in turns.
 
 use super::drawable::{Drawable, Frame, Lane, Pass, VERTEX_BYTES};
-use super::floors::device_buffer;
+use super::floors::{Bilinear, VertexBuffer, device_buffer};
 use super::scene::Scene;
+use super::surface::Surface;
 use super::{BenchError, BenchOptions, Contestant, Motion, Path, Row, Series, Setup, Subject, Traffic};
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Statistics};
 use crate::measure::statistics::{Estimate, FEWEST, paired_difference};
@@ -139,7 +140,7 @@ impl<'h> Bench<'h> {
     pub fn picture(&self, subject: &Subject, contestant: Contestant, factor: f32) -> Result<Vec<u8>, BenchError> {
         let target = &self.targets[0];
         let scenes = self.scenes(subject);
-        let mut drawable = contestant.open(self.lane(subject))?;
+        let mut drawable = open(contestant, self.lane(subject))?;
         drawable.set_factor(factor)?;
         // SAFETY: the command buffer is being recorded, outside rendering; each submission is waited for.
         let frame = scenes[0].frame(factor, Pass::Pixels);
@@ -173,7 +174,7 @@ impl<'h> Bench<'h> {
     }
 
     fn runner<'a>(&self, contestant: Contestant, lane: Lane<'a>, scene: &Scene) -> Result<Runner<'a>, BenchError> {
-        let mut drawable = contestant.open(lane)?;
+        let mut drawable = open(contestant, lane)?;
         drawable.set_factor(1.0)?;
         let mut first_frame = 0.0;
         for pass in Pass::ALL {
@@ -309,6 +310,15 @@ impl<'h> Bench<'h> {
             traffic,
         })
     }
+}
+
+/// Makes everything of a contestant that does not depend on the factor.
+fn open(contestant: Contestant, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
+    Ok(match contestant.path {
+        Path::Bilinear => Box::new(Bilinear::new(lane)?),
+        Path::VertexBuffer => Box::new(VertexBuffer::new(lane)?),
+        _ => Box::new(Surface::new(lane, contestant)?),
+    })
 }
 
 fn milliseconds(time: Duration) -> f64 {

@@ -1,7 +1,8 @@
 //! The surface as the renderer draws it.
 
 use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
-use super::{BenchError, Contestant, Motion, published};
+use super::{BenchError, Contestant, Motion, Path, published};
+use crate::headless::Headless;
 use crate::measure::statistics::Summary;
 use crate::renderer::{
     Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options, Renderer,
@@ -19,6 +20,8 @@ pub(super) struct Surface {
     model: ModelId,
     setup: Setup,
     bytes: Vec<TableBytes>,
+    /// Control points that are cached, and the frames they are made of.
+    cached: [u64; 2],
     control_point_bytes: u64,
     patches: u64,
     evaluation: Evaluation,
@@ -29,78 +32,82 @@ pub(super) struct Surface {
     visible: Option<VisibleItems>,
 }
 
+/// The renderer's options for a contestant; styles are in the order of [`Pass::ALL`].
+fn renderer_options(lane: Lane, contestant: Contestant, evaluation: Evaluation) -> Options {
+    let style = |rasterizer_discard| Style { cull: lane.cull, rasterizer_discard, ..Style::default() };
+    let is_published = contestant.path.is_published_acc();
+    Options {
+        frames_in_flight: 1,
+        views_per_frame: lane.passes,
+        styles: [false, true].map(style).to_vec(),
+        evaluations: vec![evaluation],
+        shaders: if is_published { published::shaders() } else { Vec::new() },
+        visible_lists: contestant.culls_by_compute(),
+        ..Options::default()
+    }
+}
+
+/// Models of one mesh, added one after the other.
+struct Uploads<'a> {
+    headless: &'a Headless,
+    positions: Vec<[f32; 3]>,
+    options: &'a ModelOptions,
+}
+
+impl Uploads<'_> {
+    fn prepare(&self, renderer: &mut Renderer) -> Result<(), Error> {
+        // SAFETY: the command buffer is being recorded, outside rendering.
+        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })
+    }
+
+    /// The model, and the milliseconds until it can be drawn.
+    fn add(&self, renderer: &mut Renderer, tables: ModelTables) -> Result<(ModelId, f64), Error> {
+        timed(|| {
+            let model = renderer.add_tables(tables, &self.positions, self.options)?;
+            self.prepare(renderer)?;
+            Ok(model)
+        })
+    }
+}
+
 impl Surface {
     pub(super) fn new(lane: Lane, contestant: Contestant) -> Result<Self, BenchError> {
-        let Lane { headless, target, subject, cull, passes, .. } = lane;
+        let Lane { headless, target, subject, .. } = lane;
         let model_options = contestant.model_options(lane);
-        let ModelOptions { scheme, evaluation, .. } = model_options;
-        let as_published = contestant.path.is_published_acc();
+        let evaluation = model_options.evaluation;
         let (tables, tables_ms) = median_of(|| timed(|| ModelTables::new(&subject.mesh, &model_options)))?;
-        // In the order of `Pass::ALL`.
-        let styles =
-            [false, true].map(|rasterizer_discard| Style { cull, rasterizer_discard, ..Style::default() }).to_vec();
-        let evaluations = vec![evaluation];
-        let culls_by_compute = contestant.culls_by_compute();
-        let shaders = if as_published { published::shaders() } else { Vec::new() };
-        let options = Options {
-            frames_in_flight: 1,
-            views_per_frame: passes,
-            styles,
-            evaluations,
-            shaders,
-            visible_lists: culls_by_compute,
-            ..Options::default()
-        };
+        let options = renderer_options(lane, contestant, evaluation);
         let render_target = Target::dynamic(target.color, target.depth, target.samples);
-        let positions = subject.mesh.positions_f32();
-        let prepare = |renderer: &mut Renderer| {
-            // SAFETY: the command buffer is being recorded, outside rendering.
-            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })
-        };
-        let add = |renderer: &mut Renderer, tables| {
-            timed(|| {
-                let model = renderer.add_tables(tables, &positions, &model_options)?;
-                prepare(renderer)?;
-                Ok::<_, Error>(model)
-            })
-        };
+        let uploads = Uploads { headless, positions: subject.mesh.positions_f32(), options: &model_options };
         let first = tables.clone();
         let ((mut renderer, model), pipelines) = timed(|| {
             // SAFETY: no handles of ours are given; every submission is waited for, so the renderer is dropped when idle.
             let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options)? };
-            let (model, _) = add(&mut renderer, first)?;
+            let (model, _) = uploads.add(&mut renderer, first)?;
             Ok::<_, Error>((renderer, model))
         })?;
         // Others of the kind, now that the pipelines are there.
         let ((), upload) = median_of(|| {
-            let (other, time) = add(&mut renderer, tables.clone())?;
+            let (other, time) = uploads.add(&mut renderer, tables.clone())?;
             renderer.remove_model(other)?;
             // Its memory is freed here, and not in what is timed next.
-            prepare(&mut renderer)?;
+            uploads.prepare(&mut renderer)?;
             Ok::<_, Error>(((), time))
         })?;
-        let bytes = tables.bytes();
-        let patch_bytes = |kind| match kind {
-            PatchKind::IrregularQuad if as_published => published::QUAD_BYTES,
-            _ => 12 * scheme.points(kind) as u64,
-        };
-        let patches = tables.plan().patches().len() as u64;
-        let bytes_of = |kind| u64::from(tables.patch_count(kind)) * patch_bytes(kind);
-        let control_point_bytes = match evaluation {
-            Evaluation::Tessellation => PatchKind::ALL.map(bytes_of).iter().sum(),
-            _ => 0,
-        };
-        let setup = Setup { tables: tables_ms, upload, pipelines, ..Setup::default() };
         Ok(Self {
             renderer,
             model,
-            setup,
-            bytes,
-            control_point_bytes,
-            patches,
+            setup: Setup { tables: tables_ms, upload, pipelines, ..Setup::default() },
+            bytes: tables.bytes(),
+            cached: tables.kept_bytes(),
+            control_point_bytes: match evaluation {
+                Evaluation::Tessellation => passed_on(&tables, contestant.path),
+                _ => 0,
+            },
+            patches: tables.plan().patches().len() as u64,
             evaluation,
             cull: contestant.cull,
-            culls_by_compute,
+            culls_by_compute: contestant.culls_by_compute(),
             visible: None,
         })
     }
@@ -110,6 +117,15 @@ impl Surface {
         let item = DrawItem { style, cull: self.cull, ..DrawItem::new(self.model, frame.factor) };
         frame.instances.iter().map(|&transform| DrawItem { transform, ..item }).collect()
     }
+}
+
+/// Bytes of the control points of all patches, as the control stage passes them on.
+fn passed_on(tables: &ModelTables, path: Path) -> u64 {
+    let of_patch = |kind| match kind {
+        PatchKind::IrregularQuad if path.is_published_acc() => published::QUAD_BYTES,
+        _ => 12 * tables.plan().scheme().points(kind) as u64,
+    };
+    PatchKind::ALL.map(|kind| u64::from(tables.patch_count(kind)) * of_patch(kind)).iter().sum()
 }
 
 /// The last of what some work gives, with the median of the times that it tells.
@@ -178,11 +194,10 @@ impl Drawable for Surface {
     }
 
     fn moved_bytes(&self, motion: Motion) -> [u64; 2] {
-        let all = self.bytes();
-        let of = |name| all.iter().find(|(of, _)| *of == name).map_or(0, |(_, bytes)| *bytes);
-        let [points, frames, vertices] = ["control_points", "frames", "vertices"].map(of);
-        let drawn = of("indices") + of("lists");
-        let tables = all.iter().map(|(_, bytes)| bytes).sum::<u64>() - points - frames - vertices - drawn;
+        let [points, frames] = self.cached;
+        let MemoryUsage { vertices, indices, lists, .. } = self.renderer.memory_usage();
+        let drawn = indices + lists;
+        let tables = self.bytes.iter().map(|(_, bytes)| bytes).sum::<u64>() - points - frames;
         if points == 0 {
             // Compute makes the control points of all patches, too, to look which can be seen.
             let times = if self.culls_by_compute { 2 } else { 1 };

@@ -2,6 +2,7 @@
 //! samples on a grid, every evaluated vertex, and the triangles between them. For tests, `subdiv patches`, `subdiv sample` and
 //! `subdiv screen`.
 
+mod buffer;
 mod draws;
 mod watch;
 
@@ -15,8 +16,8 @@ use crate::renderer::{
 use crate::renderer::{Options, Renderer};
 use crate::table::{MAX_SEGMENTS, lattice_vertices};
 use crate::topology::PatchKind;
+use buffer::{CONTROL_POINT_WORDS, EDGES_ONLY, FACTOR_WORDS, Head, RECORD_BYTES};
 use bytemuck::{Pod, Zeroable};
-use draws::{CONTROL_POINT_WORDS, EDGES_ONLY, FACTOR_WORDS, Head, RECORD_BYTES};
 use std::ops::Range;
 #[cfg(feature = "measure")]
 pub(crate) use watch::Idle;

@@ -1,9 +1,11 @@
 //! Renderers that are kept from one use to the next: making their pipelines takes longer than most of what they are asked for.
 
-use super::draws::{HEAD_BYTES, Head, RECORD_BYTES, capture_buffer};
-use crate::gpu::{Buffer, Owned, descriptor_set_layout};
+use super::buffer::{HEAD_BYTES, Head, RECORD_BYTES, capture_buffer};
+use crate::gpu::{Buffer, DescriptorSet, Owned, descriptor_set_layout};
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
-use crate::renderer::{Capture, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, Style, Target};
+use crate::renderer::{
+    Capture, DrawItem, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, Style, Target, View,
+};
 use ash::vk;
 use bytemuck::Zeroable;
 use std::collections::VecDeque;
@@ -87,5 +89,45 @@ impl Watcher {
         // every submission is waited for.
         let renderer = unsafe { Renderer::with_capture(context, &render_target, &options, mode)? };
         Ok(Self { renderer, layout, target, idle })
+    }
+
+    /// Draws, and reads what the shaders wrote behind `head` into a buffer of `bytes` more.
+    pub fn watch(
+        &mut self,
+        headless: &Headless,
+        mode: Capture,
+        view: &View,
+        item: DrawItem,
+        head: Head,
+        bytes: u64,
+    ) -> Result<Vec<f32>, Error> {
+        let Self { renderer, layout, target, idle } = self;
+        let size = HEAD_BYTES + bytes;
+        let mut buffer = capture_buffer(headless.context(), size)?;
+        // What no shader writes is NaN.
+        buffer.write(0, &vec![f32::NAN; size as usize / 4])?;
+        buffer.write(0, &[head])?;
+        let part = |buffer: &Buffer| (vk::DescriptorType::STORAGE_BUFFER, buffer.descriptor());
+        let parts: Vec<_> = idle.iter().chain([&buffer]).map(part).collect();
+        // SAFETY: the layout is of this device, and has as many; every submission is waited for.
+        let set = unsafe { DescriptorSet::of_buffers(headless.context(), layout.raw(), "capture", &parts)? };
+        let pipeline_layout = renderer.pipeline_layout();
+        // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
+        headless.try_submit(|cmd| unsafe {
+            renderer.cmd_prepare(cmd, 0)?;
+            target.cmd_begin(cmd, [0.0; 4]);
+            let point = vk::PipelineBindPoint::GRAPHICS;
+            headless.device().cmd_bind_descriptor_sets(cmd, point, pipeline_layout, 2, &[set.raw()], &[]);
+            renderer.cmd_draw(cmd, 0, view, &[item])?;
+            target.cmd_end(cmd);
+            Ok::<(), Error>(())
+        })?;
+        let words = if matches!(mode, Capture::Vertices | Capture::Triangles) {
+            let Head { count, .. } = buffer.read::<Head>(0, 1)?[0];
+            u64::from(count) * RECORD_BYTES / 4
+        } else {
+            bytes / 4
+        };
+        Ok(buffer.read(HEAD_BYTES, words as usize)?)
     }
 }

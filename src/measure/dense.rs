@@ -1,6 +1,6 @@
 //! A surface as a dense mesh of triangles, and its point that is nearest to another.
 
-use super::error::{Parameters, parts};
+use super::surfaces::{Parameters, parts};
 use crate::topology::PatchKind;
 use glam::DVec3;
 use rstar::RTree;

@@ -1,17 +1,13 @@
 //! How far schemes are from the limit surface.
 
 use super::nearest::{self, Nearest};
-use super::sums::Sums;
-use crate::limit::{LimitSample, LimitSurface};
+use super::sums::{Deviation, Sums};
+use super::surfaces::{Parameters, SchemePatches, Surfaces, angle, drawn_faces, parts};
+use crate::limit::LimitSurface;
 use crate::mesh::{ControlMesh, MeshError};
-use crate::patch::{Fallback, Sample, Scheme, Undefined};
-use crate::table::{Patch, PatchPlan, prepare};
-use crate::topology::{PatchKind, Topology, draws_face};
-use glam::DVec3;
-use rayon::prelude::*;
-
-/// Patches measured with one limit surface, which remembers what it has refined: about 0.1 MB an irregular face.
-const CHUNK: usize = 4096;
+use crate::patch::{Fallback, Scheme, Undefined};
+use crate::table::{PatchPlan, prepare};
+use crate::topology::{PatchKind, Topology};
 
 /// How to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,17 +27,6 @@ impl Default for ErrorOptions {
     fn default() -> Self {
         Self { fallback: Fallback::Refuse, refine: 0, samples: 33, nearest: 60_000 }
     }
-}
-
-/// Size of a deviation over many samples. All are zero if there are no samples.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Deviation {
-    /// Root mean square, every sample weighted by the area of the limit surface that it stands for.
-    pub rms: f64,
-    /// Root mean square over the samples as they are.
-    pub rms_per_sample: f64,
-    /// The largest.
-    pub max: f64,
 }
 
 /// How far some faces of a scheme are from the limit surface.
@@ -146,172 +131,64 @@ pub fn surface_errors(
         schemes: defined.map(SchemePatches::new).collect(),
     };
 
-    // All distances are over the diagonal. A mesh without extent is as good as its patches, which are the same point.
-    let scale = if diagonal > 0.0 { diagonal.recip() } else { 0.0 };
-    let measured = surfaces.for_each(|limit, face| measure_face(&surfaces, limit, face, options.samples))?;
-    let areas: Vec<f64> = measured.iter().map(|face| face.area).collect();
-    let near = match options.nearest {
+    let faces = surfaces.for_each(|limit, face| measure_face(&surfaces, limit, face, options.samples))?;
+    let areas: Vec<f64> = faces.iter().map(|face| face.area).collect();
+    let nearest = match options.nearest {
         0 => None,
         samples => Some(nearest::measure(&surfaces, &areas, samples)?),
     };
-    let errors = |number: usize, only_irregular: bool| {
-        let (mut position, mut normal, mut nearest) = (Sums::default(), Sums::default(), Sums::default());
-        for (i, &(_, kind)) in surfaces.faces.iter().enumerate() {
-            if only_irregular && kind == PatchKind::Regular {
-                continue;
-            }
-            position.merge(&measured[i].schemes[number].position);
-            normal.merge(&measured[i].schemes[number].normal);
-            if let Some(near) = &near {
-                nearest.merge(&near.distances[number][i]);
-            }
-        }
-        FaceErrors {
-            position: position.deviation().scaled(scale),
-            nearest: near.as_ref().map(|_: &Nearest| nearest.deviation().scaled(scale)),
-            normal: normal.deviation(),
-        }
-    };
-    let patches = surfaces.faces.len();
-    let irregular_patches = surfaces.faces.iter().filter(|(_, kind)| *kind != PatchKind::Regular).count();
+    // A mesh without extent is as good as its patches, which are the same point.
+    let scale = if diagonal > 0.0 { diagonal.recip() } else { 0.0 };
+    let measured = Measured { kinds: surfaces.faces.iter().map(|&(_, kind)| kind).collect(), faces, nearest, scale };
+    let irregular_patches = measured.kinds.iter().filter(|kind| **kind != PatchKind::Regular).count();
     let mut number = 0..;
     let mut of_scheme = |plan: &PatchPlan| {
         let number = number.next().unwrap_or(0);
-        let irregular = (irregular_patches > 0).then(|| errors(number, true));
-        SchemeError { all: errors(number, false), irregular, fallen_back: plan.fallen_back().count() }
+        let irregular = (irregular_patches > 0).then(|| measured.errors(number, true));
+        SchemeError { all: measured.errors(number, false), irregular, fallen_back: plan.fallen_back().count() }
     };
     let schemes = plans.iter().map(|(s, plan)| (*s, plan.as_ref().map(&mut of_scheme).map_err(Clone::clone))).collect();
-    let nearest_floor = near.as_ref().map(|near| {
-        let mut sums = Sums::default();
-        near.floor.iter().for_each(|patch| sums.merge(patch));
-        sums.deviation().scaled(scale)
-    });
-    Ok(ErrorReport { diagonal, area: areas.iter().sum(), patches, irregular_patches, nearest_floor, schemes })
+    let (area, patches) = (areas.iter().sum(), measured.kinds.len());
+    Ok(ErrorReport { diagonal, area, patches, irregular_patches, nearest_floor: measured.nearest_floor(), schemes })
 }
 
-impl Deviation {
-    fn scaled(self, scale: f64) -> Self {
-        Self { rms: scale * self.rms, rms_per_sample: scale * self.rms_per_sample, max: scale * self.max }
-    }
+/// The sums of every patch.
+struct Measured {
+    kinds: Vec<PatchKind>,
+    faces: Vec<PatchErrors>,
+    nearest: Option<Nearest>,
+    /// One over the diagonal, the unit of distances.
+    scale: f64,
 }
 
-fn drawn_faces(topology: &Topology) -> Vec<(u32, PatchKind)> {
-    let faces = (0..).zip(draws_face(topology)).filter(|(_, draws)| *draws);
-    // The prepared mesh has no larger faces than these.
-    faces.filter_map(|(face, _)| Some((face, topology.patch_kind(face)?))).collect()
-}
-
-/// The patches of a scheme.
-pub(super) struct SchemePatches<'p> {
-    plan: &'p PatchPlan,
-    /// In the order of their faces.
-    patches: Vec<Patch>,
-}
-
-impl<'p> SchemePatches<'p> {
-    fn new(plan: &'p PatchPlan) -> Self {
-        let mut patches = plan.patches().to_vec();
-        patches.sort_unstable_by_key(|patch| patch.face);
-        Self { plan, patches }
-    }
-}
-
-/// The patches of all schemes that have them, and the surface they approximate.
-pub(super) struct Surfaces<'s> {
-    pub mesh: &'s ControlMesh,
-    pub topology: &'s Topology<'s>,
-    /// Those that are drawn, and what they become.
-    pub faces: Vec<(u32, PatchKind)>,
-    pub schemes: Vec<SchemePatches<'s>>,
-}
-
-impl Surfaces<'_> {
-    /// Does something for each of the faces, in parallel.
-    pub(super) fn for_each<R: Send>(
-        &self,
-        work: impl Fn(&LimitSurface, usize) -> R + Sync,
-    ) -> Result<Vec<R>, MeshError> {
-        let mut results = Vec::with_capacity(self.faces.len());
-        for start in (0..self.faces.len()).step_by(CHUNK) {
-            let limit = LimitSurface::new(self.mesh)?;
-            let chunk = start..(start + CHUNK).min(self.faces.len());
-            results.par_extend(chunk.into_par_iter().map(|face| work(&limit, face)));
-        }
-        Ok(results)
-    }
-
-    /// Those of one of the schemes over one of the faces.
-    pub(super) fn control_points(&self, scheme: usize, face: usize) -> Vec<DVec3> {
-        let SchemePatches { plan, patches } = &self.schemes[scheme];
-        patches[face].control_points(self.topology, plan.fallback_rings(), |vertex| self.mesh.position(vertex))
-    }
-
-    /// The patch at parameters of a part of the limit surface.
-    pub(super) fn evaluate(&self, scheme: usize, face: usize, points: &[DVec3], at: Parameters) -> Sample<DVec3> {
-        let Patch { kind, scheme, .. } = self.schemes[scheme].patches[face];
-        let [u, v] = at.of_patch();
-        scheme.evaluate(kind, points, u, v)
-    }
-
-    pub(super) fn limit(&self, limit: &LimitSurface, face: usize, at: Parameters) -> LimitSample {
-        limit.evaluate(self.faces[face].0, at.sub, at.u, at.v)
-    }
-}
-
-/// Where on a face, as [`LimitSurface`] counts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Parameters {
-    pub sub: i32,
-    pub u: f64,
-    pub v: f64,
-}
-
-impl Parameters {
-    /// Those of the patch over the face: (u, v) of a quad, the first two barycentric coordinates of a triangle.
-    fn of_patch(self) -> [f64; 2] {
-        let Self { sub, u, v } = self;
-        if sub < 0 {
-            return [u, v];
-        }
-        // Of corner k, of those after and before it; their sum is 1.
-        let centre = u * v / 3.0;
-        let (to_next, to_previous) = (0.5 * u * (1.0 - v) + centre, 0.5 * (1.0 - u) * v + centre);
-        let here = 1.0 - to_next - to_previous;
-        match sub {
-            0 => [here, to_next],
-            1 => [to_previous, here],
-            _ => [to_next, to_previous],
-        }
-    }
-
-    /// The other way: where the point of a patch is.
-    pub(super) fn of_point(patch: Patch, [u, v]: [f64; 2]) -> Self {
-        match patch.kind {
-            PatchKind::Regular | PatchKind::IrregularQuad => return Self { sub: -1, u, v },
-            PatchKind::Pentagon => {
-                // A piece is half of the parts at either end of its edge.
-                let (here, next) = (patch.first as i32, (patch.first as i32 + 1) % 5);
-                let centre = 1.0 - u - v;
-                return match u >= v {
-                    true => Self { sub: here, u: 2.0 * v + centre, v: centre },
-                    false => Self { sub: next, u: centre, v: 2.0 * u + centre },
-                };
+impl Measured {
+    /// The errors of one scheme, over all patches or irregular ones only.
+    fn errors(&self, scheme: usize, only_irregular: bool) -> FaceErrors {
+        let (mut position, mut normal, mut nearest) = (Sums::default(), Sums::default(), Sums::default());
+        for (i, &kind) in self.kinds.iter().enumerate() {
+            if only_irregular && kind == PatchKind::Regular {
+                continue;
             }
-            PatchKind::Triangle => {}
+            position.merge(&self.faces[i].schemes[scheme].position);
+            normal.merge(&self.faces[i].schemes[scheme].normal);
+            if let Some(near) = &self.nearest {
+                nearest.merge(&near.distances[scheme][i]);
+            }
         }
-        let corners = [u, v, 1.0 - u - v];
-        let nearest = (1..3).fold(0, |best, k| if corners[k] > corners[best] { k } else { best });
-        let (to_next, to_previous) = (corners[(nearest + 1) % 3], corners[(nearest + 2) % 3]);
-        // With d = u - v = 2 (to_next - to_previous): v^2 + (d - 3) v + 6 to_previous = 0.
-        let d = 2.0 * (to_next - to_previous);
-        let v = (3.0 - d - ((3.0 - d).powi(2) - 24.0 * to_previous).max(0.0).sqrt()) / 2.0;
-        Self { sub: nearest as i32, u: (v + d).clamp(0.0, 1.0), v: v.clamp(0.0, 1.0) }
+        FaceErrors {
+            position: position.deviation().scaled(self.scale),
+            nearest: self.nearest.as_ref().map(|_| nearest.deviation().scaled(self.scale)),
+            normal: normal.deviation(),
+        }
     }
-}
 
-/// The parts of a patch, by the `sub` of the limit surface.
-pub(super) fn parts(kind: PatchKind) -> std::ops::Range<i32> {
-    if kind == PatchKind::Triangle { 0..3 } else { -1..0 }
+    fn nearest_floor(&self) -> Option<Deviation> {
+        self.nearest.as_ref().map(|near| {
+            let mut sums = Sums::default();
+            near.floor.iter().for_each(|patch| sums.merge(patch));
+            sums.deviation().scaled(self.scale)
+        })
+    }
 }
 
 struct PatchErrors {
@@ -350,25 +227,4 @@ fn measure_face(surfaces: &Surfaces, limit: &LimitSurface, face: usize, samples:
         }
     }
     errors
-}
-
-/// Between unit vectors, in radians; `None` if one is zero.
-pub(super) fn angle(a: DVec3, b: DVec3) -> Option<f64> {
-    (a != DVec3::ZERO && b != DVec3::ZERO).then(|| a.cross(b).length().atan2(a.dot(b)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_of_triangles_are_found_in_their_parts() {
-        for (sub, i, j) in (0..3).flat_map(|sub| (0..8).flat_map(move |i| (0..8).map(move |j| (sub, i, j)))) {
-            let at = Parameters { sub, u: f64::from(i) / 8.0, v: f64::from(j) / 8.0 };
-            let patch = Patch { face: 0, kind: PatchKind::Triangle, scheme: Scheme::Gregory, first: 0 };
-            let back = Parameters::of_point(patch, at.of_patch());
-            assert_eq!(back.sub, sub);
-            assert!((back.u - at.u).abs().max((back.v - at.v).abs()) < 1e-12, "{at:?} {back:?}");
-        }
-    }
 }

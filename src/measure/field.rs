@@ -1,6 +1,6 @@
 //! The error at every point of a lattice, to be shown where it is.
 
-use super::error::{Parameters, Surfaces, angle};
+use super::surfaces::{Parameters, Surfaces, angle};
 use crate::mesh::MeshError;
 use crate::table::{CpuSurface, grid_parameters};
 use crate::topology::Topology;

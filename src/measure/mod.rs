@@ -9,10 +9,12 @@ mod nearest;
 mod screen;
 pub mod statistics;
 mod sums;
+mod surfaces;
 #[cfg(feature = "headless")]
 pub mod watertight;
 
-pub use error::{Deviation, ErrorOptions, ErrorReport, FaceErrors, SchemeError, surface_errors};
+pub use error::{ErrorOptions, ErrorReport, FaceErrors, SchemeError, surface_errors};
 pub use field::{Quantity, error_field};
 #[cfg(feature = "headless")]
 pub use screen::{PixelDeviation, ScreenError, screen_error};
+pub use sums::Deviation;

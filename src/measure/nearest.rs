@@ -1,8 +1,8 @@
 //! Distances to the nearest point of the other surface.
 
 use super::dense::{Dense, lattice};
-use super::error::{Parameters, Surfaces, angle, parts};
 use super::sums::Sums;
+use super::surfaces::{Parameters, Surfaces, angle, parts};
 use crate::mesh::MeshError;
 use crate::patch::Sample;
 use crate::topology::PatchKind;

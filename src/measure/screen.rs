@@ -1,6 +1,6 @@
 //! How far the drawn triangles are from the limit surface, in pixels of the screen.
 
-use super::error::Parameters;
+use super::surfaces::Parameters;
 use crate::capture::{CaptureDraw, Captured, CapturedVertex};
 use crate::limit::LimitSurface;
 use crate::mesh::ControlMesh;

@@ -1,6 +1,21 @@
 //! Root mean squares and maxima, summed in an order that does not depend on threads.
 
-use super::error::Deviation;
+/// Size of a deviation over many samples. All are zero if there are no samples.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Deviation {
+    /// Root mean square, every sample weighted by the area of the limit surface that it stands for.
+    pub rms: f64,
+    /// Root mean square over the samples as they are.
+    pub rms_per_sample: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+impl Deviation {
+    pub(super) fn scaled(self, scale: f64) -> Self {
+        Self { rms: scale * self.rms, rms_per_sample: scale * self.rms_per_sample, max: scale * self.max }
+    }
+}
 
 /// What [`Deviation`] is made of.
 #[derive(Debug, Clone, Copy, Default)]

@@ -2,7 +2,8 @@
 
 use super::super::error::CliError;
 use super::recorded::Recorded;
-use super::results::{GPU, Interval, Results, Row};
+use super::results::Results;
+use super::row::{GPU, Interval, Row};
 use std::io::Write;
 
 type Columns<T> = [(&'static str, fn(&T) -> String)];

@@ -1,6 +1,6 @@
 //! What goes with the rows: the device, the options, the meshes, who did not run, and the command.
 
-use super::results::{Setting, Who};
+use super::row::{Setting, Who};
 use super::unique;
 use ash_subdiv::bench::{BenchError, BenchOptions, Contestant, Subject, Subset};
 use ash_subdiv::gpu::{DeviceProperties, version_text};

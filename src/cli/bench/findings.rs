@@ -1,7 +1,7 @@
 //! What rows say together: how time grows, from how many passes on compute wins, what a view that clips costs.
 
 use super::facts::{MeshOut, original_name};
-use super::results::{GEOMETRY, GPU, Interval, NONE, Row, Setting, Who};
+use super::row::{GEOMETRY, GPU, Interval, NONE, Row, Setting, Who};
 use ash_subdiv::Construction;
 use ash_subdiv::bench::Path;
 use ash_subdiv::measure::statistics::{below_zero_from, growth, growth_by_rounds, paired_difference, paired_ratio};

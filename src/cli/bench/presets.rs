@@ -1,7 +1,7 @@
 //! What papers measured: the same measurement, and their figures.
 
-use super::facts::OptionsOut;
-use super::results::{Results, Row, Who};
+use super::facts::{MeshOut, OptionsOut};
+use super::row::{Row, Who};
 use super::unique;
 use ash_subdiv::bench::{Contestant, Path, Subset};
 use ash_subdiv::{Construction, Scheme};
@@ -238,11 +238,11 @@ impl Preset {
     }
 
     /// Each figure with each mesh measured as was published; with the mesh of its name alone, where there is one.
-    pub(super) fn beside(&self, results: &Results) -> Vec<Beside> {
-        let copied = |row: &Row| results.meshes.iter().any(|mesh| mesh.name == row.setting.mesh && mesh.copies > 1);
-        let rows: Vec<&Row> = results.rows.iter().filter(|row| row.setting.is_usual() && !copied(row)).collect();
+    pub(super) fn beside(&self, rows: &[Row], meshes: &[MeshOut], options: &OptionsOut) -> Vec<Beside> {
+        let copied = |row: &Row| meshes.iter().any(|mesh| mesh.name == row.setting.mesh && mesh.copies > 1);
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.setting.is_usual() && !copied(row)).collect();
         let mut lines = Vec::new();
-        for figures in self.published.chunk_by(|a, b| a.0 == b.0).filter(|_| self.is_of(&results.options)) {
+        for figures in self.published.chunk_by(|a, b| a.0 == b.0).filter(|_| self.is_of(options)) {
             for rows in rows.chunk_by(|a, b| a.setting.mesh == b.setting.mesh) {
                 let mesh = &rows[0].setting.mesh;
                 let known = self.published.iter().find(|published| mesh.contains(published.0));

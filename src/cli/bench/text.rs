@@ -2,11 +2,11 @@
 
 use super::super::error::CliError;
 use super::super::output::{Table, with_stdout};
-use super::compare::{Change, machine};
+use super::change::{Change, machine};
 use super::findings::{Finding, Findings};
 use super::presets::{Beside, PresetOut};
 use super::recorded::Recorded;
-use super::results::{Interval, Row, Times, Who};
+use super::row::{Interval, Row, Times, Who};
 
 /// The rows of one mesh and factor after another.
 pub(super) fn rows(rows: &[Row]) -> Result<(), CliError> {

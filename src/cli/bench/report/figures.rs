@@ -2,7 +2,8 @@
 
 use super::super::super::error::CliError;
 use super::super::findings::{any_passes, any_size};
-use super::super::results::{NONE, Results, Row, Setting, Who};
+use super::super::results::Results;
+use super::super::row::{NONE, Row, Setting, Who};
 use super::super::unique;
 use super::plots::{COLOURS, DASHES, FLOOR, Line, LineStyle, MARKS, Plot};
 use ash_subdiv::bench::{Normals, Path};

@@ -1,11 +1,12 @@
 //! The page itself.
 
 use super::super::super::error::CliError;
-use super::super::compare::machine;
+use super::super::change::machine;
 use super::super::facts::{MeshOut, left_out_by_reason};
 use super::super::findings::Findings;
 use super::super::recorded::Recorded;
-use super::super::results::{GPU, Interval, Results, Row, Times};
+use super::super::results::Results;
+use super::super::row::{GPU, Interval, Row, Times};
 use super::figures;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
