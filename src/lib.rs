@@ -141,7 +141,13 @@ pub use renderer::{
     Construction, DrawItem, Error, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check, requirements,
 };
 
-/// The README's examples, compiled as tests.
+/// The examples of the README and of the pages under `docs/`, compiled as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-pub struct ReadMe;
+mod pages {
+    #[doc = include_str!("../README.md")]
+    pub struct ReadMe;
+    #[doc = include_str!("../docs/drawing.md")]
+    pub struct Drawing;
+    #[doc = include_str!("../docs/meshes.md")]
+    pub struct Meshes;
+}
