@@ -53,7 +53,7 @@ void main() {
         put(word, surface.position);
         put(word + 3u, surface.normal);
 #ifdef TEXCOORD
-        vec2 x = INTERPOLATED(texcoord, at);
+        precise vec2 x = INTERPOLATED(texcoord, at);
         vertices[word + 6u] = x.x;
         vertices[word + 7u] = x.y;
 #endif

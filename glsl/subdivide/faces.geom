@@ -302,7 +302,8 @@ void main() {
     gather(1, fan_at(first + turned(1)));
     gather(2, fan_at(first + turned(2)));
     gather(3, fan_at(first + turned(3)));
-    vec3 fallback = cross(coarse[at(ivec2(1))] - coarse[at(ivec2(0))], coarse[at(ivec2(0, 1))] - coarse[at(ivec2(1, 0))]);
+    precise vec3 ac = coarse[at(ivec2(1))] - coarse[at(ivec2(0))], bd = coarse[at(ivec2(0, 1))] - coarse[at(ivec2(1, 0))];
+    vec3 fallback = cross(ac, bd);
 #if LEVEL == 0
     grid = coarse;
 #else
@@ -323,8 +324,9 @@ void main() {
 #ifdef CAPTURE_GRID
             uint k = turned(0);
             ivec2 q = SIDE * CORNER[k] + x * PLUS[k] + y * MINUS[k];
+            precise vec2 uv = vec2(q) / float(SIDE);
             capture_sample(draw.first_patch + patch_number[0], uint(q.y * (SIDE + 1) + q.x),
-                           uint((SIDE + 1) * (SIDE + 1)), vec3(vec2(q) / float(SIDE), 0.0), grid[at(p)],
+                           uint((SIDE + 1) * (SIDE + 1)), vec3(uv, 0.0), grid[at(p)],
                            normals[y * (DRAWN + 1) + x]);
 #endif
         }

@@ -23,6 +23,9 @@ pub fn named(constant: &str) -> Result<&'static [u32], GpuError> {
 }
 
 #[cfg(test)]
+mod contraction;
+
+#[cfg(test)]
 mod tests {
     /// Depth of one pipeline is tested against that of another.
     #[test]

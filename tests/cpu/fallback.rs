@@ -178,7 +178,8 @@ fn corner_and_edge_points_of_schemes_differ_where_the_docs_say() {
 /// The meshes of the reference vectors, whole and with some faces made triangles so that they fall back.
 #[test]
 fn meshes_of_the_vectors_join() {
-    assert!(check_joins(meshes_of_vectors()).0 > 500);
+    let (seams, _) = check_joins(meshes_of_vectors());
+    assert!(seams > 250, "{seams} edges between two schemes");
 }
 
 fn meshes_of_vectors() -> Vec<(String, ControlMesh)> {

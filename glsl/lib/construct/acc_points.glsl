@@ -9,8 +9,8 @@ void acc_points(uint k) {
     uint next = (k + 1u) & 3u;
     uint before = (k + 3u) & 3u;
     vec3 inner = in_inner(k, 0), along_plus = in_inner(k, 3), along_minus = in_inner(k, 4);
-    vec3 t_plus = 3.0 * in_plus(k);
-    vec3 t_minus = 3.0 * in_minus(k);
+    precise vec3 t_plus = 3.0 * in_plus(k);
+    precise vec3 t_minus = 3.0 * in_minus(k);
     OWNED_BY(k)[0] = in_limit(k);
     OWNED_BY(k)[1] = along_plus;
     OWNED_BY(k)[2] = along_minus;

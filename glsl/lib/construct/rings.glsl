@@ -78,7 +78,8 @@ vec3 edge_neighbour(Ring ring, uint j) {
 vec3 entry_position(uint entry) {
     if (MAY_HAVE_PENTAGONS && (entry & PENTAGON_BIT) != 0u) {
         uint at = entry & ~PENTAGON_BIT;
-        return 0.5 * (vertex_position(ring_entry(at)) + vertex_position(ring_entry(at + 1u)));
+        precise vec3 middle = 0.5 * (vertex_position(ring_entry(at)) + vertex_position(ring_entry(at + 1u)));
+        return middle;
     }
     return vertex_position(entry & ~TRIANGLE_BIT);
 }

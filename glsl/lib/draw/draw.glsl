@@ -14,6 +14,12 @@ layout(set = 0, binding = 0, std140) uniform View {
                     // distance of one is of half the height
 } view;
 
+// Written out: glslang leaves `dot` to be made of fused operations even where its result is `precise`.
+float exact_row(vec4 row, vec3 x) {
+    precise float sum = ((row.w + row.z * x.z) + row.y * x.y) + row.x * x.x;
+    return sum;
+}
+
 #ifdef MAKES_LISTS
 // What is looked at, and how it is to be drawn.
 layout(push_constant, std430) uniform Draw {
@@ -57,17 +63,15 @@ float displacement_bias() {
 }
 
 vec3 normal_to_world(vec3 normal) {
-    precise vec3 world = vec3(dot(draw.normal_transform[0].xyz, normal), dot(draw.normal_transform[1].xyz, normal),
-                              dot(draw.normal_transform[2].xyz, normal));
-    return world;
+    vec4 x = draw.normal_transform[0], y = draw.normal_transform[1], z = draw.normal_transform[2];
+    return vec3(exact_row(vec4(x.xyz, 0.0), normal), exact_row(vec4(y.xyz, 0.0), normal), exact_row(vec4(z.xyz, 0.0), normal));
 }
 #endif
 
 vec3 to_world(vec3 position) {
-    vec4 p = vec4(position, 1.0);
     // The same bits in every pipeline: patches of two kinds meet at their edges on the screen, too.
-    precise vec3 world = vec3(dot(draw.transform[0], p), dot(draw.transform[1], p), dot(draw.transform[2], p));
-    return world;
+    return vec3(exact_row(draw.transform[0], position), exact_row(draw.transform[1], position),
+                exact_row(draw.transform[2], position));
 }
 
 vec4 to_clip(vec3 world) {

@@ -11,7 +11,8 @@ float plus_factor(uint patch_number, uint k) {
     case METRIC_UNIFORM:
         return draw_factor();
     case METRIC_EDGES:
-        return draw_factor() * corner_factors[draw.first_corner + patch_number * CORNERS + k];
+        precise float factor = draw_factor() * corner_factors[draw.first_corner + patch_number * CORNERS + k];
+        return factor;
     default:
         return edge_factor(owned[k][0], CONTROL_POINT(k, 1), CONTROL_POINT(next, 2), owned[next][0]);
     }

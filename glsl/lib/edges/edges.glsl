@@ -80,8 +80,10 @@ SharedSample share(Surface own, vec3 at) {
     surface.position = own.position;
 #ifdef DISPLACED
     surface.direction = sample_of(own).normal;
-    surface.texcoord = INTERPOLATED(texcoord, at);
-    surface.lod = INTERPOLATED(shared_lod, at);
+    precise vec2 inside = INTERPOLATED(texcoord, at);
+    precise float lod_inside = INTERPOLATED(shared_lod, at);
+    surface.texcoord = inside;
+    surface.lod = lod_inside;
 #endif
     if (any(on)) {
         vec3 across = edge_across(PICK(ACROSS0), PICK(TRANSVERSAL0), PICK(TRANSVERSAL1), PICK(ACROSS1), way);

@@ -20,8 +20,9 @@
 
 // A quadratic of a tangent patch whose middle point is the derivative of the geometry's from `near` to `far`.
 vec3 tangent(vec3 x0, vec3 near, vec3 far, vec3 x2, float t) {
-    float s = 1.0 - t;
-    return (s * s) * x0 + (t * t) * x2 + (2.0 * (s * t)) * (3.0 * (far - near));
+    precise float s = 1.0 - t;
+    precise vec3 sum = (s * s) * x0 + (t * t) * x2 + (2.0 * (s * t)) * (3.0 * (far - near));
+    return sum;
 }
 
 Surface evaluate_acc(float u, float v) {
@@ -39,9 +40,9 @@ Surface evaluate_acc(float u, float v) {
     vec3 v1 = tangent(x_plus(0), inner(0), inner(3), -x_minus(3), v);
     vec3 v2 = tangent(x_minus(1), inner(1), inner(2), -x_plus(2), v);
     vec3 v3 = tangent(t_plus(1), edge_plus(1), edge_minus(2), -t_minus(2), v);
-    vec3 diagonals = cross(corner(2) - corner(0), corner(3) - corner(1));
+    precise vec3 ac = corner(2) - corner(0), bd = corner(3) - corner(1);
     return Surface(symmetric_sum(bv, c0, c1, c2, c3), symmetric_sum(bv, u0, u1, u2, u3),
-                   symmetric_sum(bu, v0, v1, v2, v3), diagonals);
+                   symmetric_sum(bu, v0, v1, v2, v3), cross(ac, bd));
 }
 
 Surface evaluate_surface(vec3 at) {

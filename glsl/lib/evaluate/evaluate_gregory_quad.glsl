@@ -6,8 +6,8 @@
 #include "evaluate/patch.glsl"
 
 Surface evaluate_gregory_quad(float u, float v) {
-    float s = 1.0 - u;
-    float t = 1.0 - v;
+    precise float s = 1.0 - u;
+    precise float t = 1.0 - v;
 #define CORNER(k, x, y) TensorCorner(owned[k][0], owned[k][1], owned[k][2], blend(owned[k][3], x, owned[k][4], y))
     return evaluate_tensor(CORNER(0, u, v), CORNER(1, v, s), CORNER(2, s, t), CORNER(3, t, u), u, v);
 #undef CORNER

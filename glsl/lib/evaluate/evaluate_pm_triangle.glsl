@@ -8,7 +8,8 @@
 
 // A sum with the weights of the sector's corner: constant indices into the inputs are much faster than varying ones.
 vec3 pick(vec3 which, vec3 x0, vec3 x1, vec3 x2) {
-    return (which.x * x0 + which.y * x1) + which.z * x2;
+    precise vec3 sum = (which.x * x0 + which.y * x1) + which.z * x2;
+    return sum;
 }
 
 #define PICK(which, n) pick(which, owned[0][n], owned[1][n], owned[2][n])

@@ -95,13 +95,15 @@ vec3 parameter() {
     i = min(i, j);
     capture_place = j * (j + 1u) / 2u + i;
     capture_places = n * (n + 1u) / 2u;
-    float w = float(i) / float(n - 1u);
-    float v = float(j - i) / float(n - 1u);
-    return vec3(1.0 - v - w, v, w);
+    precise float w = float(i) / float(n - 1u);
+    precise float v = float(j - i) / float(n - 1u);
+    precise float u = 1.0 - v - w;
+    return vec3(u, v, w);
 #else
     capture_place = j * n + i;
     capture_places = n * n;
-    return vec3(float(i) / float(n - 1u), float(j) / float(n - 1u), 0.0);
+    precise vec2 uv = vec2(float(i), float(j)) / float(n - 1u);
+    return vec3(uv, 0.0);
 #endif
 #else
     return gl_TessCoord;

@@ -18,7 +18,8 @@ float along_side(uint i, uint segments) {
     precise float step_size = 65536.0 / float(int(segments));
     precise float t = round(float(near) * (segments <= 64u ? round(step_size) : step_size)) / 65536.0;
     t = 2 * near == int(segments) ? 0.5 : t;
-    return int(i) == near ? t : 1.0 - t;
+    precise float from_end = 1.0 - t;
+    return int(i) == near ? t : from_end;
 }
 
 // Whether edges have factors of their own.
@@ -37,7 +38,7 @@ float along_edge(uint i, uint segments, uint corner) {
 // (u, v) of a quad, (u, v, w) of a triangle, whose row r has r + 1 vertices.
 vec3 lattice_parameter(uint row, uint place, uint segments, uint first_corner) {
 #ifdef TRIANGLE
-    float v = along_side(row - place, segments), w = along_side(place, segments);
+    precise float v = along_side(row - place, segments), w = along_side(place, segments);
     if (HAS_EDGE_FACTORS) {
         if (place == 0u) {
             v = along_edge(row, segments, first_corner);
@@ -53,7 +54,8 @@ vec3 lattice_parameter(uint row, uint place, uint segments, uint first_corner) {
         }
 #endif
     }
-    return vec3(1.0 - v - w, v, w);
+    precise float u = 1.0 - v - w;
+    return vec3(u, v, w);
 #else
     float u = along_side(place, segments), v = along_side(row, segments);
     if (HAS_EDGE_FACTORS) {

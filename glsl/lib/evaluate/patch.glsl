@@ -107,7 +107,7 @@ vec3 from_corner(vec3 p, vec3 vector) {
 #ifdef TRIANGLE
 #define INNER_OF(kept) kept[3]
 #else
-#define INNER_OF(kept) from_corner(kept[1] + kept[2], kept[3])
+#define INNER_OF(kept) from_corner(from_corner(kept[1], kept[2]), kept[3])
 #endif
 #if OWNED == 5
 #define LAST_OF(kept) from_corner(INNER_OF(kept), kept[4])
@@ -141,8 +141,9 @@ Surface evaluate_tensor(TensorCorner a, TensorCorner b, TensorCorner c, TensorCo
     vec3 dy = curve_slope(at_u, d.p, d.minus, c.plus, c.p);
     vec3 dx_in = curve_slope(at_u, a.minus, a.twist, b.twist, b.plus);
     vec3 dy_in = curve_slope(at_u, d.plus, d.twist, c.twist, c.minus);
+    precise vec3 ac = c.p - a.p, bd = d.p - b.p;
     return Surface(curve_point(at_v, x, x_in, y_in, y), curve_point(at_v, dx, dx_in, dy_in, dy),
-                   curve_slope(at_v, x, x_in, y_in, y), cross(c.p - a.p, d.p - b.p));
+                   curve_slope(at_v, x, x_in, y_in, y), cross(ac, bd));
 }
 
 // The face point (a f+ + b f-) / (a + b), where `change` leads from f+ to f-; at a corner, where both weights vanish, it does not

@@ -52,10 +52,10 @@ Surface evaluate_sector(PmCorner i, PmCorner j, Spoke si, Spoke sj, vec3 centre,
     precise vec3 q10 = STEP(s10, s11, s20), q11 = STEP(s11, s12, s21);
     precise vec3 q20 = STEP(s20, s21, s30);
     precise vec3 a = STEP(q00, q01, q10), b = STEP(q01, q02, q11), c = STEP(q10, q11, q20);
-    vec3 chords = cross(j.v - i.v, centre - i.v);
+    precise vec3 edge = j.v - i.v, spoke = centre - i.v;
     precise vec3 position = STEP(a, b, c), du = 4.0 * (a - c), dv = 4.0 * (b - c);
 #undef STEP
-    return Surface(position, du, dv, chords);
+    return Surface(position, du, dv, cross(edge, spoke));
 }
 
 #endif
