@@ -1,28 +1,31 @@
 //! `subdiv devices`: the Vulkan devices of this machine.
 
+use super::described::described;
 use super::error::CliError;
 use super::output::{self, with_stdout};
 use ash_subdiv::headless::{DeviceInfo, HeadlessError, devices};
 use serde::Serialize;
 
-#[derive(Serialize)]
-struct DeviceOut {
-    index: usize,
-    name: String,
-    #[serde(rename = "type")]
-    kind: &'static str,
-    vulkan: String,
-    driver: String,
-    driver_info: String,
-    max_tessellation_level: u32,
-    max_patch_size: u32,
-    samples: Vec<u32>,
-    max_image_size: u32,
-    max_storage_buffer_range: u64,
-    max_line_width: f32,
-    features: Vec<&'static str>,
-    /// What the program needs and the device lacks; it can be used if this is empty.
-    missing: Vec<String>,
+described! {
+    #[derive(Serialize)]
+    pub(super) struct DeviceOut {
+        index: usize,
+        name: String,
+        #[serde(rename = "type")]
+        kind: &'static str,
+        vulkan: String,
+        driver: String,
+        driver_info: String,
+        max_tessellation_level: u32,
+        max_patch_size: u32,
+        samples: Vec<u32>,
+        max_image_size: u32,
+        max_storage_buffer_range: u64,
+        max_line_width: f32,
+        features: Vec<&'static str>,
+        /// What the program needs and the device lacks; it can be used if this is empty.
+        missing: Vec<String>,
+    }
 }
 
 impl DeviceOut {

@@ -1,5 +1,6 @@
 //! `subdiv error`: how far schemes are from the limit surface.
 
+use super::described::{described, help};
 use super::error::CliError;
 use super::output::{self, Progress, Table};
 use super::plot::{self, Curve, CurvePoint, Figure};
@@ -14,7 +15,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-#[command(after_help = NOTES)]
+#[command(after_help = help::<ReportOut>(NOTES, EXAMPLES))]
 pub(super) struct ErrorArgs {
     #[command(flatten)]
     mesh: SourceArgs,
@@ -48,73 +49,92 @@ nearest:  distance to the nearest point of the other surface, both ways, as a de
 normal:   angle between the normals at the same (u, v), in radians.
 Distances are over the diagonal of the control mesh's bounding box; rms is weighted by area.
 
-JSON: mesh, diagonal, area, samples, nearest_samples, patches, irregular_patches,
-nearest_floor_rms (measured of the exact surface itself), undefined{name: why},
-schemes{name{position_rms, position_max, nearest_rms, nearest_max, normal_rms, normal_max,
-position_rms_per_sample, nearest_rms_per_sample, normal_rms_per_sample, irregular{the same}}};
-with --plot also refinements[{refine, samples, nearest_floor_rms, patches,
-schemes{name{the same but irregular, table_bytes}}}].
+";
+
+const EXAMPLES: &str = "\
+.
 
 Examples:
   subdiv error --shape creature
   subdiv error model.obj --scheme gregory --scheme acc --samples 17 --json
   subdiv error model.obj --plot errors";
 
-#[derive(Serialize)]
-struct ReportOut {
-    mesh: String,
-    diagonal: f64,
-    area: f64,
-    samples: u32,
-    nearest_samples: u32,
-    /// What is measured of the limit surface itself.
-    nearest_floor_rms: Option<f64>,
-    patches: usize,
-    irregular_patches: usize,
-    schemes: BTreeMap<&'static str, SchemeOut>,
-    /// Schemes that have no patches for the mesh, and why.
-    undefined: BTreeMap<&'static str, String>,
-    /// What is plotted: the mesh refined 0, 1, .. times more.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    refinements: Vec<RefinementOut>,
+described! {
+    #[derive(Serialize)]
+    struct ReportOut {
+        mesh: String,
+        diagonal: f64,
+        area: f64,
+        samples: u32,
+        nearest_samples: u32,
+        /// What is measured of the limit surface itself.
+        nearest_floor_rms: Option<f64> = "measured of the exact surface itself",
+        patches: usize,
+        irregular_patches: usize,
+        schemes: BTreeMap<&'static str, SchemeOut>,
+        /// Schemes that have no patches for the mesh, and why.
+        undefined: BTreeMap<&'static str, String> = "schemes without patches for the mesh, and why",
+        /// What is plotted: the mesh refined 0, 1, .. times more.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        refinements: Vec<RefinementOut> = "with --plot",
+    }
 }
 
-#[derive(Serialize)]
-struct RefinementOut {
-    refine: u32,
-    samples: u32,
-    nearest_floor_rms: Option<f64>,
-    patches: usize,
-    schemes: BTreeMap<&'static str, RefinedSchemeOut>,
+described! {
+    #[derive(Serialize)]
+    struct RefinementOut {
+        refine: u32,
+        samples: u32,
+        nearest_floor_rms: Option<f64>,
+        patches: usize,
+        schemes: BTreeMap<&'static str, RefinedSchemeOut>,
+    }
 }
 
-#[derive(Serialize)]
-struct RefinedSchemeOut {
-    #[serde(flatten)]
-    all: ErrorsOut,
-    table_bytes: u64,
+described! {
+    #[derive(Serialize)]
+    struct RefinedSchemeOut {
+        #[serde(flatten)]
+        all: ErrorsOut,
+        table_bytes: u64,
+    }
 }
 
-#[derive(Serialize)]
-struct SchemeOut {
-    #[serde(flatten)]
-    all: ErrorsOut,
-    irregular: Option<ErrorsOut>,
-    /// Faces measured with the patches of the fallback.
-    fallen_back: usize,
+described! {
+    #[derive(Serialize)]
+    struct SchemeOut {
+        #[serde(flatten)]
+        all: ErrorsOut,
+        irregular: Option<ErrorsOut>,
+        /// Faces measured with the patches of the fallback.
+        fallen_back: usize,
+    }
 }
 
-#[derive(Serialize)]
-struct ErrorsOut {
-    position_rms: f64,
-    position_rms_per_sample: f64,
-    position_max: f64,
-    nearest_rms: Option<f64>,
-    nearest_rms_per_sample: Option<f64>,
-    nearest_max: Option<f64>,
-    normal_rms: f64,
-    normal_rms_per_sample: f64,
-    normal_max: f64,
+described! {
+    #[derive(Serialize)]
+    struct ErrorsOut {
+        position_rms: f64,
+        position_rms_per_sample: f64,
+        position_max: f64,
+        nearest_rms: Option<f64>,
+        nearest_rms_per_sample: Option<f64>,
+        nearest_max: Option<f64>,
+        normal_rms: f64,
+        normal_rms_per_sample: f64,
+        normal_max: f64,
+    }
+}
+
+described! {
+    /// A line of comma-separated values.
+    #[derive(Serialize)]
+    struct Line {
+        scheme: &'static str,
+        faces: &'static str,
+        #[serde(flatten)]
+        errors: ErrorsOut,
+    }
 }
 
 impl From<FaceErrors> for ErrorsOut {
@@ -279,22 +299,10 @@ fn rows(report: &ErrorReport) -> impl Iterator<Item = (Scheme, &'static str, Fac
 }
 
 fn print_csv(report: &ErrorReport) -> Result<(), CliError> {
-    output::with_stdout(|out| {
-        writeln!(
-            out,
-            "scheme,faces,position_rms,position_max,nearest_rms,nearest_max,normal_rms,normal_max,\
-             position_rms_per_sample,nearest_rms_per_sample,normal_rms_per_sample"
-        )?;
-        for (scheme, faces, FaceErrors { position, nearest, normal }) in rows(report) {
-            let near =
-                |value: fn(&Deviation) -> f64| nearest.as_ref().map(|d| value(d).to_string()).unwrap_or_default();
-            let (near_rms, near_max, near_each) = (near(|d| d.rms), near(|d| d.max), near(|d| d.rms_per_sample));
-            let (name, p, n) = (scheme.name(), position, normal);
-            write!(out, "{name},{faces},{},{},{near_rms},{near_max},{},{},", p.rms, p.max, n.rms, n.max)?;
-            writeln!(out, "{},{near_each},{}", p.rms_per_sample, n.rms_per_sample)?;
-        }
-        Ok(())
-    })
+    let line =
+        |(scheme, faces, errors): (Scheme, _, FaceErrors)| Line { scheme: scheme.name(), faces, errors: errors.into() };
+    let lines: Vec<Line> = rows(report).map(line).collect();
+    output::with_stdout(|out| output::csv(&lines, out))
 }
 
 fn print_table(report: &ErrorReport) -> Result<(), CliError> {

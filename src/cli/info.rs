@@ -1,5 +1,6 @@
 //! `subdiv info`: what a mesh has, and what it becomes.
 
+use super::described::{described, help};
 use super::error::CliError;
 use super::output::{self, Progress, Table};
 use super::parse;
@@ -12,14 +13,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 #[derive(Debug, Args)]
-#[command(after_help = "\
-JSON: vertices, edges, faces, face_sizes{corners: faces}, ngons, holes, boundary_edges, creased_edges,
-sharp_corners, valence{valence: vertices}, bounds[low, high], refine, patches{regular, irregular_quad,
-triangle, pentagon}, construction, connectivity_types, bytes{table: bytes, total}, notices[text].
-
-Examples:
-  subdiv info --shape creature
-  subdiv info model.obj --construction stencil --json")]
+#[command(after_help = help::<Info>("", EXAMPLES))]
 pub(super) struct InfoArgs {
     #[command(flatten)]
     mesh: MeshArgs,
@@ -28,40 +22,51 @@ pub(super) struct InfoArgs {
     construction: Construction,
 }
 
-#[derive(Serialize)]
-struct Info {
-    vertices: usize,
-    edges: usize,
-    faces: usize,
-    /// Faces by their number of corners.
-    face_sizes: BTreeMap<u32, usize>,
-    /// Faces with five or more corners.
-    ngons: usize,
-    holes: usize,
-    boundary_edges: usize,
-    creased_edges: usize,
-    sharp_corners: usize,
-    /// Vertices by their number of edges.
-    valence: BTreeMap<u32, usize>,
-    bounds: [[f64; 3]; 2],
-    refine: u32,
-    patches: Patches,
-    construction: &'static str,
-    /// Rings (two-stage, cached) or patches (stencil) that differ in connectivity and so have weights of their own.
-    connectivity_types: usize,
-    /// By table, and `total`.
-    bytes: BTreeMap<&'static str, u64>,
-    notices: Vec<String>,
+const EXAMPLES: &str = "\
+.
+
+Examples:
+  subdiv info --shape creature
+  subdiv info model.obj --construction stencil --json";
+
+described! {
+    #[derive(Serialize)]
+    struct Info {
+        vertices: usize,
+        edges: usize,
+        faces: usize,
+        /// Faces by their number of corners.
+        face_sizes: BTreeMap<u32, usize> = "faces by their number of corners",
+        /// Faces with five or more corners.
+        ngons: usize,
+        holes: usize,
+        boundary_edges: usize,
+        creased_edges: usize,
+        sharp_corners: usize,
+        /// Vertices by their number of edges.
+        valence: BTreeMap<u32, usize> = "vertices by their number of edges",
+        bounds: [[f64; 3]; 2] = "[low, high]",
+        refine: u32,
+        patches: Patches,
+        construction: &'static str,
+        /// Rings (two-stage, cached) or patches (stencil) that differ in connectivity and so have weights of their own.
+        connectivity_types: usize,
+        /// By table, and `total`.
+        bytes: BTreeMap<&'static str, u64> = "by table, and total",
+        notices: Vec<String>,
+    }
 }
 
-/// Patches by kind.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct Patches {
-    regular: u32,
-    irregular_quad: u32,
-    triangle: u32,
-    /// Five for each face of five corners.
-    pentagon: u32,
+described! {
+    /// Patches by kind.
+    #[derive(Debug, Clone, Copy, Serialize)]
+    pub(super) struct Patches {
+        regular: u32,
+        irregular_quad: u32,
+        triangle: u32,
+        /// Five for each face of five corners.
+        pentagon: u32,
+    }
 }
 
 impl Patches {

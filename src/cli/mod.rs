@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `bench` | `bench`: what to race, results, presets, comparisons, the report |
 //! | `camera`, `displacement`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
+//! | `described` | the keys of JSON, for help and tables |
 //! | `cull` | which patches are left out |
 //! | `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
@@ -17,6 +18,7 @@ mod bench;
 mod camera;
 mod canvas;
 mod cull;
+mod described;
 mod devices;
 mod displacement;
 mod error;
@@ -42,6 +44,7 @@ mod source;
 mod watertight;
 
 use clap::{Parser, Subcommand};
+use described::help;
 use error::CliError;
 use std::io::Write;
 use std::process::ExitCode;
@@ -91,9 +94,7 @@ enum Command {
     /// List the built-in shapes, or write one as OBJ.
     Shapes(shapes::ShapesArgs),
     /// List the Vulkan devices, what they can do and what they lack.
-    #[command(
-        after_help = "JSON: [{index, name, type, vulkan, driver, driver_info, max_tessellation_level, max_patch_size,\nsamples, max_image_size, max_storage_buffer_range, max_line_width, features, missing}]."
-    )]
+    #[command(after_help = help::<Vec<devices::DeviceOut>>("", "."))]
     Devices,
 }
 

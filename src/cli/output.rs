@@ -1,8 +1,10 @@
 //! What goes out: standard output, notes, progress, files.
 
+use super::described::{Described, columns, holds};
 use super::error::CliError;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
+use serde_json::Value;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, BufWriter, Write};
@@ -10,7 +12,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Writes a small value to standard output, readable.
-pub(super) fn json_pretty(value: &impl Serialize) -> Result<(), CliError> {
+pub(super) fn json_pretty<T: Serialize + Described>(value: &T) -> Result<(), CliError> {
+    debug_assert!(serde_json::to_value(value).is_ok_and(|value| holds::<T>(&value)), "keys without description");
     with_stdout(|out| {
         serde_json::to_writer_pretty(&mut *out, value)?;
         Ok(writeln!(out)?)
@@ -23,6 +26,31 @@ pub(super) fn json(value: &impl Serialize) -> Result<(), CliError> {
         serde_json::to_writer(&mut *out, value)?;
         Ok(writeln!(out)?)
     })
+}
+
+/// Writes a line of comma-separated values for each of these: see [`columns`].
+pub(super) fn csv<T: Described + Serialize>(lines: &[T], out: &mut dyn Write) -> Result<(), CliError> {
+    let mut csv = csv::Writer::from_writer(out);
+    let columns = columns::<T>();
+    csv.write_record(columns.iter().map(|(name, _)| name))?;
+    for line in lines {
+        // By way of text, which has numbers of 32 bits as short as they are.
+        let line: Value = serde_json::from_str(&serde_json::to_string(line)?)?;
+        csv.write_record(columns.iter().map(|(_, path)| cell(path.iter().fold(&line, |value, key| &value[*key]))))?;
+    }
+    Ok(csv.flush()?)
+}
+
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        // Whole numbers have no point.
+        Value::Number(number) => {
+            number.as_f64().filter(|_| number.is_f64()).map_or(number.to_string(), |x| x.to_string())
+        }
+        other => other.to_string(),
+    }
 }
 
 /// Writes to standard output.

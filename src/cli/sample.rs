@@ -45,6 +45,8 @@ k = 0..r towards corner 2. A pentagon is five such triangles, sub k from corner 
 The limit surface has quads whole (sub -1); of any other face, triangles too, the part around each corner (sub): (0,0)
 is the corner, (1,0) the middle of the edge after it, (1,1) the centre, (0,1) the middle of the edge before it.
 
+JSON: grid, construction, faces[{face, sub, scheme, positions[[x, y, z]], normals[[x, y, z]]}].
+
 Examples:
   subdiv sample --shape torus --grid 3
   subdiv sample model.obj --grid 17 --cpu --json > samples.json

@@ -2,6 +2,7 @@
 
 use super::camera::CameraArgs;
 use super::cull::CullArgs;
+use super::described::{described, help};
 use super::error::CliError;
 use super::output::{self, Progress, Table};
 use super::parse;
@@ -18,7 +19,7 @@ use std::fmt::Display;
 const UNIFORM: [f32; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 
 #[derive(Debug, Args)]
-#[command(after_help = NOTES)]
+#[command(after_help = help::<ScreenOut>(NOTES, EXAMPLES))]
 pub(super) struct ScreenArgs {
     #[command(flatten)]
     mesh: MeshArgs,
@@ -55,56 +56,66 @@ rms and 99 % are over the area on the screen, that of closed meshes where they f
 something in front counts. Triangles are counted as the device makes them. Equal is the first uniform factor of
 1, 2, 4, 8, 16, 32 whose 99 % is no more than 5 % or 0.001 pixels larger.
 
-JSON: mesh, device, size[width, height], spacing, construction,
-rows[{metric (pixels, bend or uniform), value, triangles, samples, shift{rms, p99, max}, shape{the same},
-facets{the same}, equal{shift, shape, facets} (null for uniform; each {factor, triangles}, or null if no factor
-up to 32 is as good)}].
+";
+
+const EXAMPLES: &str = "\
+.
 
 Examples:
   subdiv screen --shape creature
   subdiv screen model.obj --pixels 4,8 --bend 0.25 --cull back --size 1920x1080 --zoom 4 --json";
 
-#[derive(Serialize)]
-struct ScreenOut<'a> {
-    mesh: String,
-    device: &'a str,
-    size: [u32; 2],
-    spacing: &'static str,
-    construction: &'static str,
-    rows: &'a [Row],
+described! {
+    #[derive(Serialize)]
+    struct ScreenOut<'a> {
+        mesh: String,
+        device: &'a str,
+        size: [u32; 2] = "[width, height]",
+        spacing: &'static str,
+        construction: &'static str,
+        rows: &'a [Row],
+    }
 }
 
-#[derive(Serialize)]
-struct Row {
-    metric: &'static str,
-    value: f32,
-    triangles: u64,
-    samples: u64,
-    shift: DeviationOut,
-    shape: DeviationOut,
-    facets: DeviationOut,
-    equal: Option<EqualOut>,
+described! {
+    #[derive(Serialize)]
+    struct Row {
+        metric: &'static str = "pixels, bend or uniform",
+        value: f32,
+        triangles: u64,
+        samples: u64,
+        shift: DeviationOut,
+        shape: DeviationOut,
+        facets: DeviationOut,
+        equal: Option<EqualOut> = "null for uniform",
+    }
 }
 
-#[derive(Clone, Copy, Serialize)]
-struct DeviationOut {
-    rms: f64,
-    p99: f64,
-    max: f64,
+described! {
+    #[derive(Clone, Copy, Serialize)]
+    struct DeviationOut {
+        rms: f64,
+        p99: f64,
+        max: f64,
+    }
 }
 
-/// The coarsest uniform factors that are as good.
-#[derive(Serialize)]
-struct EqualOut {
-    shift: Option<LevelOut>,
-    shape: Option<LevelOut>,
-    facets: Option<LevelOut>,
+described! {
+    /// The coarsest uniform factors that are as good.
+    #[derive(Serialize)]
+    struct EqualOut {
+        shift: Option<LevelOut> = "null if no factor up to 32 is as good",
+        shape: Option<LevelOut>,
+        facets: Option<LevelOut>,
+    }
 }
 
-#[derive(Clone, Copy, Serialize)]
-struct LevelOut {
-    factor: f32,
-    triangles: u64,
+described! {
+    #[derive(Clone, Copy, Serialize)]
+    struct LevelOut {
+        factor: f32,
+        triangles: u64,
+    }
 }
 
 impl From<PixelDeviation> for DeviationOut {

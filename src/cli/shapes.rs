@@ -1,5 +1,6 @@
 //! `subdiv shapes`: the built-in meshes.
 
+use super::described::{described, help};
 use super::error::CliError;
 use super::obj;
 use super::output::{self, Table, write_file};
@@ -11,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "JSON: [{name, summary, vertices, faces}].\n\nExamples:\n  subdiv shapes\n  subdiv shapes torus\n  subdiv shapes machine-part --obj machine-part.obj"
+    after_help = help::<Vec<ShapeOut>>("", EXAMPLES)
 )]
 pub(super) struct ShapesArgs {
     /// Only this shape.
@@ -21,18 +22,30 @@ pub(super) struct ShapesArgs {
     obj: Option<PathBuf>,
 }
 
-#[derive(Serialize)]
-struct ShapeOut {
-    name: &'static str,
-    summary: &'static str,
-    vertices: usize,
-    faces: usize,
+const EXAMPLES: &str = "\
+; with --obj {shape, file}.
+
+Examples:
+  subdiv shapes
+  subdiv shapes torus
+  subdiv shapes machine-part --obj machine-part.obj";
+
+described! {
+    #[derive(Serialize)]
+    struct ShapeOut {
+        name: &'static str,
+        summary: &'static str,
+        vertices: usize,
+        faces: usize,
+    }
 }
 
-#[derive(Serialize)]
-struct WrittenOut<'a> {
-    shape: &'a str,
-    file: String,
+described! {
+    #[derive(Serialize)]
+    struct WrittenOut<'a> {
+        shape: &'a str,
+        file: String,
+    }
 }
 
 pub(super) fn run(args: &ShapesArgs, json: bool) -> Result<(), CliError> {

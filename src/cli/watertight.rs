@@ -1,5 +1,6 @@
 //! `subdiv watertight`: whether neighbouring patches meet, to the bit.
 
+use super::described::{described, help};
 use super::displacement::{diagonal, scales, texture};
 use super::error::CliError;
 use super::output::{self, Progress, Table};
@@ -17,7 +18,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+#[command(after_help = help::<WatertightOut>(NOTES, EXAMPLES), allow_negative_numbers = true)]
 pub(super) struct WatertightArgs {
     #[command(flatten)]
     source: SourceArgs,
@@ -37,16 +38,17 @@ pub(super) struct WatertightArgs {
     device: DeviceArgs,
 }
 
-const EXAMPLES: &str = "\
+const NOTES: &str = "\
 What is compared: every vertex on an edge or a corner, as each of its patches evaluates it, bit for bit:
 positions always, normals where the mesh shares them and has no crease. With uniform, random and adaptive
 factors, all spacings, all constructions, with and without displacement. A mesh without texture coordinates
 gets some in which every edge is a seam. Then closed meshes are drawn, and pixels counted in which not as many
 layers face the eye as face away.
 
-JSON: edges, samples, position_mismatches, normal_mismatches, leaked_pixels (null for a mesh with a boundary),
-configurations[{construction, spacing, factors, shared_normals, displaced, culled, samples,
-position_mismatches, normal_mismatches, leaked_pixels}].
+";
+
+const EXAMPLES: &str = "\
+.
 
 Exit code 1 if anything differs; the first edge that does is named.
 
@@ -54,31 +56,35 @@ Examples:
   subdiv watertight --shape creature
   subdiv watertight model.glb --samples 1e8 --json";
 
-/// One way to draw the mesh.
-#[derive(Debug, Clone, Serialize)]
-struct Configuration {
-    construction: &'static str,
-    spacing: &'static str,
-    factors: String,
-    shared_normals: bool,
-    displaced: bool,
-    culled: bool,
-    samples: u64,
-    position_mismatches: u64,
-    normal_mismatches: u64,
-    leaked_pixels: Option<u64>,
+described! {
+    /// One way to draw the mesh.
+    #[derive(Debug, Clone, Serialize)]
+    struct Configuration {
+        construction: &'static str,
+        spacing: &'static str,
+        factors: String,
+        shared_normals: bool,
+        displaced: bool,
+        culled: bool,
+        samples: u64,
+        position_mismatches: u64,
+        normal_mismatches: u64,
+        leaked_pixels: Option<u64>,
+    }
 }
 
-#[derive(Serialize)]
-struct WatertightOut<'a> {
-    mesh: String,
-    device: &'a str,
-    edges: usize,
-    samples: u64,
-    position_mismatches: u64,
-    normal_mismatches: u64,
-    leaked_pixels: Option<u64>,
-    configurations: &'a [Configuration],
+described! {
+    #[derive(Serialize)]
+    struct WatertightOut<'a> {
+        mesh: String,
+        device: &'a str,
+        edges: usize,
+        samples: u64,
+        position_mismatches: u64,
+        normal_mismatches: u64,
+        leaked_pixels: Option<u64> = "null for a mesh with a boundary",
+        configurations: &'a [Configuration],
+    }
 }
 
 /// Factors of a draw, and what they are called.

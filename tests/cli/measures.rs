@@ -48,7 +48,7 @@ fn error_writes_tables() {
     let csv = String::from_utf8(run("error --shape tetrahedron --samples 3 --nearest 0 --csv").stdout).unwrap();
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
-    assert_eq!((lines.len(), &lines[1][..2], lines[1][4]), (7, &["gregory", "all"][..], ""));
+    assert_eq!((lines.len(), &lines[1][..2], lines[1][5]), (7, &["gregory", "all"][..], ""));
 }
 
 #[test]

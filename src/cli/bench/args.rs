@@ -1,11 +1,13 @@
 //! What is asked for.
 
 use super::super::cull::{CullArg, cull};
+use super::super::described::help;
 use super::super::error::CliError;
 use super::super::parse;
 use super::super::source::DeviceArgs;
 use super::facts::MeshOut;
 use super::presets::{self, Preset};
+use super::results::Results;
 use super::unique;
 use ash_subdiv::bench::{Camera, Contestant, CullBy, Motion, Normals, Path, Subject, Subset};
 use ash_subdiv::mesh::{ReadOptions, read, replicate, shape};
@@ -15,7 +17,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
-#[command(after_help = NOTES, allow_negative_numbers = true)]
+#[command(after_help = help::<Results>(NOTES, EXAMPLES), allow_negative_numbers = true)]
 pub(in super::super) struct BenchArgs {
     /// Control meshes: files ending in .obj, .gltf or .glb.
     mesh: Vec<PathBuf>,
@@ -151,19 +153,10 @@ several counts of passes, `compute wins from so many passes on` says where its t
 tessellating in every pass cross. Of copies of a mesh (--replicate), `time grows as` says by which
 power of patches. `more` is more than what was measured can tell.
 
-JSON: program, command, measured, device{name, driver, driver_info, vulkan, timestamp_period,
-processors}, options{size, single_sided, instances, passes[], frames, warm_up, patches, refine},
-meshes[{name, of, copies, vertices, faces, patches{kind}}], left_out[{setting, who, factor, why}],
-rows[{setting, who, factor, patches, tes_invocations, compute_invocations, triangles,
-visible_triangles, gpu_ms{median, min, max, mad}, geometry_ms{..}, setup_ms, bytes{name},
-gpu_ratio{value, low, high}, geometry_ratio{..}, construction_ms{..}, tables_ms, upload_ms,
-pipelines_ms, first_frame_ms, traffic_bytes{name}, fence_ms{gpu{..}, geometry{..}},
-frames_ms{gpu[], geometry[]}}], growth[{setting, who, factor, geometry{value, low, high}, gpu{..},
-bytes}], break_even[{.., geometry{value, low, high, least}, ..}], views[{..}], preset{name, title,
-note}, published[], changes[{setting, who, factor, what, old_ms, new_ms, ratio{value, low, high},
-confidence, machine{low, high}}], recording[{mesh, who, crowd, models, prepare_ms{median, min,
-max, mad}, draw_ms{..}, frame_ms{..}}];
-setting: mesh, spacing, motion, view, passes; who: scheme, construction, path, normals, cull.
+";
+
+const EXAMPLES: &str = "\
+.
 
 Examples:
   subdiv bench --shape creature --factors 8,16

@@ -1,34 +1,39 @@
 //! How rows changed between two days.
 
+use super::super::described::described;
 use super::row::{GEOMETRY, GPU, Interval, Row, Setting, Who};
 use ash_subdiv::measure::statistics::{CONFIDENCE, change};
 use serde::Serialize;
 
-/// How a row changed, with pixels or without.
-#[derive(Debug, Serialize)]
-pub(super) struct Change {
-    #[serde(flatten)]
-    pub setting: Setting,
-    #[serde(flatten)]
-    pub who: Who,
-    pub factor: f32,
-    /// `gpu` or `geometry`.
-    pub what: String,
-    pub old_ms: f64,
-    pub new_ms: f64,
-    /// New over old.
-    pub ratio: Interval,
-    /// That there is a difference between the frames of the two runs, from 0 to 1; whatever made it.
-    pub confidence: f64,
-    /// What the machine did between the two runs: new over old of all floors. From 1 to 1 if there are none, and for floors.
-    pub machine: Range,
+described! {
+    /// How a row changed, with pixels or without.
+    #[derive(Debug, Serialize)]
+    pub(super) struct Change {
+        #[serde(flatten)]
+        pub setting: Setting,
+        #[serde(flatten)]
+        pub who: Who,
+        pub factor: f32,
+        /// `gpu` or `geometry`.
+        pub what: String,
+        pub old_ms: f64,
+        pub new_ms: f64,
+        /// New over old.
+        pub ratio: Interval,
+        /// That there is a difference between the frames of the two runs, from 0 to 1; whatever made it.
+        pub confidence: f64,
+        /// What the machine did between the two runs: new over old of all floors. From 1 to 1 if there are none, and for floors.
+        pub machine: Range,
+    }
 }
 
-/// Of ratios; always with 1 in it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(super) struct Range {
-    pub low: f64,
-    pub high: f64,
+described! {
+    /// Of ratios; always with 1 in it.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+    pub(super) struct Range {
+        pub low: f64,
+        pub high: f64,
+    }
 }
 
 impl Range {

@@ -1,5 +1,6 @@
 //! What goes with the rows: the device, the options, the meshes, who did not run, and the command.
 
+use super::super::described::described;
 use super::row::{Setting, Who};
 use super::unique;
 use ash_subdiv::bench::{BenchError, BenchOptions, Contestant, Subject, Subset};
@@ -9,61 +10,69 @@ use ash_subdiv::topology::PatchKind;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct DeviceOut {
-    pub name: String,
-    pub driver: String,
-    pub driver_info: String,
-    pub vulkan: String,
-    /// Nanoseconds a tick.
-    pub timestamp_period: f32,
-    /// Of this machine, for drivers that draw on the CPU.
-    pub processors: usize,
+described! {
+    #[derive(Debug, Serialize, Deserialize)]
+    pub(super) struct DeviceOut {
+        pub name: String,
+        pub driver: String,
+        pub driver_info: String,
+        pub vulkan: String,
+        /// Nanoseconds a tick.
+        pub timestamp_period: f32,
+        /// Of this machine, for drivers that draw on the CPU.
+        pub processors: usize,
+    }
 }
 
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct OptionsOut {
-    pub size: [u32; 2],
-    #[serde(default)]
-    pub single_sided: bool,
-    pub instances: u32,
-    pub passes: Vec<u32>,
-    pub frames: u32,
-    pub warm_up: u32,
-    pub patches: String,
-    #[serde(default)]
-    pub refine: u32,
+described! {
+    #[derive(Debug, Serialize, Deserialize)]
+    pub(super) struct OptionsOut {
+        pub size: [u32; 2] = "[width, height]",
+        #[serde(default)]
+        pub single_sided: bool,
+        pub instances: u32,
+        pub passes: Vec<u32>,
+        pub frames: u32,
+        pub warm_up: u32,
+        pub patches: String,
+        #[serde(default)]
+        pub refine: u32,
+    }
 }
 
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct MeshOut {
-    pub name: String,
-    /// The mesh that this is so many copies of: by its own name, if one.
-    #[serde(default)]
-    pub of: String,
-    #[serde(default)]
-    pub copies: u32,
-    pub vertices: usize,
-    pub faces: usize,
-    /// Those that are drawn, by kind.
-    pub patches: BTreeMap<String, u32>,
-    /// Of each scheme: root mean square of the angle to the limit surface's normal, in radians. Measured for reports.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub normal_error: BTreeMap<String, f64>,
-    /// A picture as a `data:` address. Made for reports.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub thumbnail: Option<String>,
+described! {
+    #[derive(Debug, Serialize, Deserialize)]
+    pub(super) struct MeshOut {
+        pub name: String,
+        /// The mesh that this is so many copies of: by its own name, if one.
+        #[serde(default)]
+        pub of: String,
+        #[serde(default)]
+        pub copies: u32,
+        pub vertices: usize,
+        pub faces: usize,
+        /// Those that are drawn, by kind.
+        pub patches: BTreeMap<String, u32>,
+        /// Of each scheme: root mean square of the angle to the limit surface's normal, in radians. Measured for reports.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        pub normal_error: BTreeMap<String, f64>,
+        /// A picture as a `data:` address. Made for reports.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub thumbnail: Option<String>,
+    }
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct LeftOut {
-    #[serde(flatten)]
-    pub setting: Setting,
-    #[serde(flatten)]
-    pub who: Who,
-    /// All if none.
-    pub factor: Option<f32>,
-    pub why: String,
+described! {
+    #[derive(Debug, Clone, Serialize, Deserialize)]
+    pub(super) struct LeftOut {
+        #[serde(flatten)]
+        pub setting: Setting,
+        #[serde(flatten)]
+        pub who: Who,
+        /// All if none.
+        pub factor: Option<f32>,
+        pub why: String,
+    }
 }
 
 impl OptionsOut {

@@ -1,5 +1,6 @@
 //! What rows say together: how time grows, from how many passes on compute wins, what a view that clips costs.
 
+use super::super::described::described;
 use super::facts::{MeshOut, original_name};
 use super::row::{GEOMETRY, GPU, Interval, NONE, Row, Setting, Who};
 use ash_subdiv::Construction;
@@ -8,45 +9,51 @@ use ash_subdiv::measure::statistics::{below_zero_from, growth, growth_by_rounds,
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Lists are empty where the rows do not say anything of it.
-#[derive(Debug, Default, Serialize, Deserialize)]
-pub(super) struct Findings {
-    /// The powers of patches by which time and bytes grow, over copies of one mesh.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub growth: Vec<Finding>,
-    /// The passes from which on evaluation by compute is faster than this contestant, on straight lines between the
-    /// counts that were measured.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub break_even: Vec<Finding>,
-    /// The time of a triangle that clipping leaves, over that in the first view.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub views: Vec<Finding>,
+described! {
+    /// Lists are empty where the rows do not say anything of it.
+    #[derive(Debug, Default, Serialize, Deserialize)]
+    pub(super) struct Findings {
+        /// The powers of patches by which time and bytes grow, over copies of one mesh.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub growth: Vec<Finding>,
+        /// The passes from which on evaluation by compute is faster than this contestant, on straight lines between the
+        /// counts that were measured.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub break_even: Vec<Finding>,
+        /// The time of a triangle that clipping leaves, over that in the first view.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub views: Vec<Finding>,
+    }
 }
 
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Finding {
-    /// Of growth with the mesh that the others are copies of; of the counts of passes together with none.
-    #[serde(flatten)]
-    pub setting: Setting,
-    #[serde(flatten)]
-    pub who: Who,
-    pub factor: f32,
-    pub geometry: Bounds,
-    pub gpu: Bounds,
-    /// Of growth: the power of patches by which bytes grow.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bytes: Option<f64>,
+described! {
+    #[derive(Debug, Serialize, Deserialize)]
+    pub(super) struct Finding {
+        /// Of growth with the mesh that the others are copies of; of the counts of passes together with none.
+        #[serde(flatten)]
+        pub setting: Setting,
+        #[serde(flatten)]
+        pub who: Who,
+        pub factor: f32,
+        pub geometry: Bounds,
+        pub gpu: Bounds,
+        /// Of growth: the power of patches by which bytes grow.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub bytes: Option<f64>,
+    }
 }
 
-/// An estimate with its interval of 95 %; `None` where it is more than what was measured can tell.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub(super) struct Bounds {
-    pub value: Option<f64>,
-    pub low: Option<f64>,
-    pub high: Option<f64>,
-    /// The least that what was measured can tell, if it is not the least there is: a number that is no more may be less.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub least: Option<f64>,
+described! {
+    /// An estimate with its interval of 95 %; `None` where it is more than what was measured can tell.
+    #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+    pub(super) struct Bounds {
+        pub value: Option<f64>,
+        pub low: Option<f64>,
+        pub high: Option<f64>,
+        /// The least that what was measured can tell, if it is not the least there is: a number that is no more may be less.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub least: Option<f64>,
+    }
 }
 
 impl fmt::Display for Bounds {

@@ -5,7 +5,6 @@
 //! | `args`, `together` | what is asked for, and what of it goes together |
 //! | `measuring` | the measurement |
 //! | `results`, `row`, `facts` | what was measured, and on what, as it is written and read |
-//! | `columns` | the same as comma-separated values |
 //! | `findings` | what rows say together |
 //! | `text` | all of it as tables |
 //! | `recorded` | what the host takes to record a frame |
@@ -15,7 +14,6 @@
 
 mod args;
 mod change;
-mod columns;
 mod compare;
 mod facts;
 mod findings;
@@ -53,7 +51,7 @@ pub(super) fn run(args: &BenchArgs, json: bool) -> Result<(), CliError> {
         return output::json_pretty(&results);
     }
     if args.csv {
-        return output::with_stdout(|out| columns::write_csv(&results, out));
+        return output::with_stdout(|out| results.write_csv(out));
     }
     if args.results.is_some() {
         text::rows(&results.rows)?;

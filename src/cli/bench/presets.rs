@@ -1,5 +1,6 @@
 //! What papers measured: the same measurement, and their figures.
 
+use super::super::described::described;
 use super::facts::{MeshOut, OptionsOut};
 use super::row::{Row, Who};
 use super::unique;
@@ -185,30 +186,34 @@ pub(super) fn parser() -> impl TypedValueParser<Value = &'static Preset> {
     })
 }
 
-/// What is told of a preset.
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct PresetOut {
-    pub name: String,
-    pub title: String,
-    /// What the figures are, and why there are none.
-    pub note: String,
+described! {
+    /// What is told of a preset.
+    #[derive(Debug, Serialize, Deserialize)]
+    pub(super) struct PresetOut {
+        pub name: String,
+        pub title: String,
+        /// What the figures are, and why there are none.
+        pub note: String,
+    }
 }
 
-/// A published figure and what was measured in its place.
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Beside {
-    pub published_mesh: String,
-    pub scheme: String,
-    pub construction: String,
-    pub factor: f32,
-    pub figure: f64,
-    pub unit: String,
-    /// Of times, to the first figure of the mesh that something stands beside.
-    pub published_ratio: f64,
-    pub mesh: String,
-    pub ms: f64,
-    /// Of medians, to the row in place of that figure.
-    pub ratio: f64,
+described! {
+    /// A published figure and what was measured in its place.
+    #[derive(Debug, Serialize, Deserialize)]
+    pub(super) struct Beside {
+        pub published_mesh: String,
+        pub scheme: String,
+        pub construction: String,
+        pub factor: f32,
+        pub figure: f64,
+        pub unit: String,
+        /// Of times, to the first figure of the mesh that something stands beside.
+        pub published_ratio: f64,
+        pub mesh: String,
+        pub ms: f64,
+        /// Of medians, to the row in place of that figure.
+        pub ratio: f64,
+    }
 }
 
 impl Preset {

@@ -1,21 +1,24 @@
 //! What the host takes to record a frame of many models.
 
+use super::super::described::described;
 use super::row::{Times, Who};
 use ash_subdiv::bench::{Contestant, Path, Recording, Subject};
 use serde::{Deserialize, Serialize};
 
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Recorded {
-    pub mesh: String,
-    #[serde(flatten)]
-    pub who: Who,
-    /// What the models are: see `Crowd`.
-    pub crowd: String,
-    pub models: u32,
-    pub prepare_ms: Times,
-    pub draw_ms: Times,
-    /// Both together.
-    pub frame_ms: Times,
+described! {
+    #[derive(Debug, Serialize, Deserialize)]
+    pub(super) struct Recorded {
+        pub mesh: String,
+        #[serde(flatten)]
+        pub who: Who,
+        /// What the models are: see `Crowd`.
+        pub crowd: String,
+        pub models: u32,
+        pub prepare_ms: Times,
+        pub draw_ms: Times,
+        /// Both together.
+        pub frame_ms: Times,
+    }
 }
 
 impl Recorded {

@@ -1,6 +1,8 @@
 //! What was measured, as it is written to JSON and read again.
 
+use super::super::described::described;
 use super::super::error::CliError;
+use super::super::output;
 use super::change::Change;
 use super::facts::{DeviceOut, LeftOut, MeshOut, OptionsOut, command_line, left_out_by_reason};
 use super::findings::Findings;
@@ -8,33 +10,36 @@ use super::presets::{Beside, PresetOut};
 use super::recorded::Recorded;
 use super::row::{GEOMETRY, GPU, Row, Times};
 use serde::{Deserialize, Serialize};
+use std::io::Write;
 use std::path::Path;
 use std::time::SystemTime;
 
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Results {
-    pub program: String,
-    /// As it was typed.
-    pub command: String,
-    /// When the measurement began, RFC 3339.
-    pub measured: String,
-    pub device: DeviceOut,
-    pub options: OptionsOut,
-    pub meshes: Vec<MeshOut>,
-    pub rows: Vec<Row>,
-    #[serde(default)]
-    pub left_out: Vec<LeftOut>,
-    #[serde(flatten)]
-    pub findings: Findings,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub recording: Vec<Recorded>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub preset: Option<PresetOut>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub published: Vec<Beside>,
-    /// Of these to others: not read again.
-    #[serde(default, skip_deserializing, skip_serializing_if = "Option::is_none")]
-    pub changes: Option<Vec<Change>>,
+described! {
+    #[derive(Debug, Serialize, Deserialize)]
+    pub(super) struct Results {
+        pub program: String,
+        /// As it was typed.
+        pub command: String,
+        /// When the measurement began, RFC 3339.
+        pub measured: String,
+        pub device: DeviceOut,
+        pub options: OptionsOut,
+        pub meshes: Vec<MeshOut>,
+        pub rows: Vec<Row>,
+        #[serde(default)]
+        pub left_out: Vec<LeftOut>,
+        #[serde(flatten)]
+        pub findings: Findings,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub recording: Vec<Recorded>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub preset: Option<PresetOut>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub published: Vec<Beside>,
+        /// Of these to others: not read again.
+        #[serde(default, skip_deserializing, skip_serializing_if = "Option::is_none")]
+        pub changes: Option<Vec<Change>>,
+    }
 }
 
 impl Results {
@@ -59,6 +64,14 @@ impl Results {
     /// What a user is told of those that are left out, from the `told`th on.
     pub(super) fn left_out_notes(&self, told: usize) -> Vec<String> {
         left_out_by_reason(&self.left_out, told, 3)
+    }
+
+    /// Writes a line of comma-separated values for each row, or for each recording if that was measured.
+    pub(super) fn write_csv(&self, out: &mut dyn Write) -> Result<(), CliError> {
+        match self.recording.as_slice() {
+            [] => output::csv(&self.rows, out),
+            recording => output::csv(recording, out),
+        }
     }
 
     /// Reads what was written as JSON.

@@ -1,38 +1,45 @@
 //! The rows: who was raced in which setting, and what that took.
 
 use super::super::cull;
+use super::super::described::described;
 use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, CullBy, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use ash_subdiv::renderer::Cull;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub(super) struct Times {
-    pub median: f64,
-    pub min: f64,
-    pub max: f64,
-    pub mad: f64,
+described! {
+    #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+    pub(super) struct Times {
+        pub median: f64,
+        pub min: f64,
+        pub max: f64,
+        pub mad: f64,
+    }
 }
 
-/// An estimate with its interval of 95 %.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub(super) struct Interval {
-    pub value: f64,
-    pub low: f64,
-    pub high: f64,
+described! {
+    /// An estimate with its interval of 95 %.
+    #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+    pub(super) struct Interval {
+        pub value: f64,
+        pub low: f64,
+        pub high: f64,
+    }
 }
 
-/// In what those of one table are raced, but for the factor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Setting {
-    pub mesh: String,
-    pub spacing: String,
-    #[serde(default = "moving")]
-    pub motion: String,
-    pub view: String,
-    /// Nought in what several counts say together.
-    pub passes: u32,
+described! {
+    /// In what those of one table are raced, but for the factor.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub(super) struct Setting {
+        pub mesh: String,
+        pub spacing: String,
+        #[serde(default = "moving")]
+        pub motion: String,
+        pub view: String,
+        /// Nought in what several counts say together.
+        pub passes: u32,
+    }
 }
 
 /// Results of before there was a choice.
@@ -40,49 +47,73 @@ fn moving() -> String {
     Motion::Moving.name().to_owned()
 }
 
-/// Who is raced.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Who {
-    pub scheme: String,
-    pub construction: String,
-    pub path: String,
-    pub normals: String,
-    /// And by what, if that is not what usually does.
-    pub cull: String,
+described! {
+    /// Who is raced.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub(super) struct Who {
+        pub scheme: String,
+        pub construction: String,
+        pub path: String,
+        pub normals: String,
+        /// And by what, if that is not what usually does.
+        pub cull: String,
+    }
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Row {
-    #[serde(flatten)]
-    pub setting: Setting,
-    #[serde(flatten)]
-    pub who: Who,
-    pub factor: f32,
-    pub patches: u64,
-    pub tes_invocations: Option<u64>,
-    pub compute_invocations: Option<u64>,
-    pub triangles: Option<u64>,
-    /// What clipping left of them.
-    pub visible_triangles: Option<u64>,
-    pub gpu_ms: Times,
-    pub geometry_ms: Times,
-    pub setup_ms: f64,
-    pub bytes: BTreeMap<String, u64>,
-    /// To the first row of the setting and factor, frame by frame.
-    pub gpu_ratio: Option<Interval>,
-    pub geometry_ratio: Option<Interval>,
-    pub construction_ms: Option<Interval>,
-    pub tables_ms: f64,
-    pub upload_ms: f64,
-    pub pipelines_ms: f64,
-    pub first_frame_ms: f64,
-    pub traffic_bytes: BTreeMap<String, u64>,
-    pub fence_ms: BTreeMap<String, Times>,
-    /// Every frame that counts.
-    pub frames_ms: BTreeMap<String, Vec<f64>>,
+described! {
+    #[derive(Debug, Clone, Serialize, Deserialize)]
+    pub(super) struct Row {
+        #[serde(flatten)]
+        pub setting: Setting,
+        #[serde(flatten)]
+        pub who: Who,
+        pub factor: f32,
+        pub patches: u64,
+        pub tes_invocations: Option<u64>,
+        pub compute_invocations: Option<u64>,
+        pub triangles: Option<u64>,
+        /// What clipping left of them.
+        pub visible_triangles: Option<u64>,
+        pub gpu_ms: Times,
+        pub geometry_ms: Times,
+        pub setup_ms: f64,
+        pub bytes: BTreeMap<String, u64>,
+        /// To the first row of the setting and factor, frame by frame.
+        pub gpu_ratio: Option<Interval>,
+        pub geometry_ratio: Option<Interval>,
+        pub construction_ms: Option<Interval>,
+        pub tables_ms: f64,
+        pub upload_ms: f64,
+        pub pipelines_ms: f64,
+        pub first_frame_ms: f64,
+        pub traffic_bytes: BTreeMap<String, u64>,
+        pub fence_ms: Fences,
+        /// Every frame that counts.
+        #[serde(default)]
+        pub frames_ms: Frames,
+    }
 }
 
-/// The keys of `frames_ms` and `fence_ms`.
+described! {
+    /// On the host's clock.
+    #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+    pub(super) struct Fences {
+        pub geometry: Times,
+        pub gpu: Times,
+    }
+}
+
+described! {
+    /// Frame by frame.
+    #[derive(Debug, Clone, Default, Serialize, Deserialize)]
+    #[serde(default)]
+    pub(super) struct Frames {
+        pub geometry: Vec<f64>,
+        pub gpu: Vec<f64>,
+    }
+}
+
+/// What is timed: frames with pixels, and geometry alone.
 pub(super) const GPU: &str = "gpu";
 pub(super) const GEOMETRY: &str = "geometry";
 
@@ -205,7 +236,6 @@ impl Row {
             ("vertices", row.traffic.vertices),
         ];
         let fence = |series: &Series| Times::of(&series.host);
-        let frames = |series: &Series| series.device.clone();
         Some(Self {
             setting: Setting::new(&subject.name, options, row.camera),
             who: Who::new(row.contestant),
@@ -227,8 +257,8 @@ impl Row {
             pipelines_ms: row.setup.pipelines,
             first_frame_ms: row.setup.first_frame,
             traffic_bytes: with_total(&traffic),
-            fence_ms: [(GPU.to_owned(), fence(&row.gpu)?), (GEOMETRY.to_owned(), fence(&row.geometry)?)].into(),
-            frames_ms: [(GPU.to_owned(), frames(&row.gpu)), (GEOMETRY.to_owned(), frames(&row.geometry))].into(),
+            fence_ms: Fences { geometry: fence(&row.geometry)?, gpu: fence(&row.gpu)? },
+            frames_ms: Frames { geometry: row.geometry.device.clone(), gpu: row.gpu.device.clone() },
         })
     }
 
@@ -246,7 +276,7 @@ impl Row {
 
     /// Frame by frame: [`GPU`] or [`GEOMETRY`].
     pub(super) fn frames(&self, what: &str) -> &[f64] {
-        self.frames_ms.get(what).map_or(&[], Vec::as_slice)
+        if what == GPU { &self.frames_ms.gpu } else { &self.frames_ms.geometry }
     }
 
     /// Whether both are of one table.

@@ -2,12 +2,14 @@
 
 use super::super::camera::CameraArgs;
 use super::super::cull::CullArgs;
+use super::super::described::help;
 use super::super::displacement::DisplacementArgs;
 use super::super::error::CliError;
 use super::super::evaluation::EvaluationArgs;
 use super::super::parse::{self, Colour};
 use super::super::shading::Shading;
 use super::super::source::{DeviceArgs, MeshArgs};
+use super::RenderOut;
 use ash_subdiv::renderer::{Cull, Evaluation, Factor};
 use ash_subdiv::{Construction, Spacing};
 use clap::Args;
@@ -57,7 +59,7 @@ impl FactorArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+#[command(after_help = help::<RenderOut>("", EXAMPLES), allow_negative_numbers = true)]
 pub(in super::super) struct RenderArgs {
     #[command(flatten)]
     pub(super) mesh: MeshArgs,
@@ -96,11 +98,7 @@ pub(in super::super) struct RenderArgs {
 }
 
 const EXAMPLES: &str = "\
-JSON: file, size[width, height], patches{regular, irregular_quad, triangle, pentagon}, evaluation, construction,
-factor (null unless one for all), pixels, bend, level (null unless given), spacing, shading, samples, device,
-error{top, largest} (null unless an error is shown),
-statistics{patches_drawn, patches_culled, largest_factor, factors_clamped}: factors_clamped tells whether an
-edge asked for more segments than the device has.
+.
 
 Examples:
   subdiv render --shape creature -o creature.png

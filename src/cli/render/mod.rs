@@ -3,6 +3,7 @@
 mod args;
 mod draw;
 
+use super::described::described;
 use super::error::CliError;
 use super::error_map::ErrorMap;
 use super::info::Patches;
@@ -21,38 +22,44 @@ use draw::Picture;
 use glam::DVec3;
 use serde::Serialize;
 
-#[derive(Serialize)]
-struct RenderOut<'a> {
-    file: &'a str,
-    size: [u32; 2],
-    patches: Patches,
-    evaluation: &'static str,
-    construction: &'static str,
-    factor: Option<f32>,
-    pixels: Option<f32>,
-    bend: Option<f32>,
-    level: Option<u32>,
-    spacing: &'static str,
-    shading: String,
-    samples: u32,
-    device: &'a str,
-    error: Option<ErrorOut>,
-    statistics: Option<StatisticsOut>,
+described! {
+    #[derive(Serialize)]
+    struct RenderOut<'a> {
+        file: &'a str,
+        size: [u32; 2] = "[width, height]",
+        patches: Patches,
+        evaluation: &'static str,
+        construction: &'static str,
+        factor: Option<f32> = "null unless one for all",
+        pixels: Option<f32>,
+        bend: Option<f32>,
+        level: Option<u32> = "null unless given",
+        spacing: &'static str,
+        shading: String,
+        samples: u32,
+        device: &'a str,
+        error: Option<ErrorOut> = "null unless an error is shown",
+        statistics: Option<StatisticsOut>,
+    }
 }
 
-/// What the control shader made of the factors.
-#[derive(Clone, Copy, Serialize)]
-struct StatisticsOut {
-    patches_drawn: usize,
-    patches_culled: usize,
-    largest_factor: f32,
-    factors_clamped: bool,
+described! {
+    /// What the control shader made of the factors.
+    #[derive(Clone, Copy, Serialize)]
+    struct StatisticsOut {
+        patches_drawn: usize,
+        patches_culled: usize,
+        largest_factor: f32,
+        factors_clamped: bool = "whether an edge asked for more segments than the device has",
+    }
 }
 
-#[derive(Serialize)]
-struct ErrorOut {
-    top: f64,
-    largest: f64,
+described! {
+    #[derive(Serialize)]
+    struct ErrorOut {
+        top: f64,
+        largest: f64,
+    }
 }
 
 pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {

@@ -102,9 +102,9 @@ fn bench_writes_tables_and_csv() {
     let csv = String::from_utf8(run(&format!("bench {SMALL} {few} --replicate 1,4 --csv")).stdout).unwrap();
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
-    assert_eq!((lines.len(), lines[0][..3].join(" ")), (9, "mesh scheme construction".into()));
+    assert_eq!((lines.len(), lines[0][..3].join(" ")), (9, "mesh spacing motion".into()));
     assert_eq!((lines[5][0], lines[5][11]), ("cube x4", "24"));
-    for name in ["gpu_ms_mad", "gpu_ratio_low", "geometry_ratio_high", "fence_ms_median", "upload_ms"] {
+    for name in ["gpu_ms_mad", "gpu_ratio_low", "geometry_ratio_high", "fence_ms_gpu_median", "upload_ms"] {
         let column = lines[0].iter().position(|other| *other == name).unwrap();
         assert!(lines[1..].iter().all(|line| line[column].parse::<f64>().is_ok()), "{name}: {csv}");
     }
@@ -207,7 +207,7 @@ fn bench_draws_subsets_and_files() {
     let output = command.args(SMALL.split(' ')).arg(&cube).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     // Commas in names are quoted.
-    assert!(text.lines().nth(1).unwrap().starts_with("\"a cube, of mine.obj\",acc,stencil"), "{text}");
+    assert!(text.lines().nth(1).unwrap().starts_with("\"a cube, of mine.obj\",equal,moving,"), "{text}");
     let alone = folder("bench-isolated").join("alone.obj");
     fs::write(&alone, fs::read_to_string(&cube).unwrap() + "v 9 9 9\n").unwrap();
     let few = format!("bench {SMALL} --factors 1 --paths bilinear {}", alone.display());

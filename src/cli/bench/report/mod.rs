@@ -9,7 +9,6 @@ pub(super) use thumbnail::thumbnail;
 
 use super::super::error::CliError;
 use super::super::output::Part;
-use super::columns::write_csv;
 use super::results::Results;
 use std::path::{Path, PathBuf};
 
@@ -47,7 +46,7 @@ impl<'f> Folder<'f> {
     /// Writes `results.json`, `results.csv` and `index.html`, each whole, and none before all could be written.
     pub(super) fn write(self, results: &Results) -> Result<(), CliError> {
         let mut csv = Vec::new();
-        write_csv(results, &mut csv)?;
+        results.write_csv(&mut csv)?;
         let json = serde_json::to_string_pretty(results)?;
         let page = page::page(results, &csv, &json)?;
         let paths = paths(self.folder);

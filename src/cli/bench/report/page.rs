@@ -6,7 +6,7 @@ use super::super::facts::{MeshOut, left_out_by_reason};
 use super::super::findings::Findings;
 use super::super::recorded::Recorded;
 use super::super::results::Results;
-use super::super::row::{GPU, Interval, Row, Times};
+use super::super::row::{Interval, Row, Times};
 use super::figures;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -135,7 +135,7 @@ fn rows(results: &Results) -> Markup {
                     th scope="row" { (row.who.label()) }
                     (time(row.gpu_ms)) (ratio(row.gpu_ratio))
                     (time(row.geometry_ms)) (ratio(row.geometry_ratio))
-                    @if let Some(&fence) = row.fence_ms.get(GPU) { (time(fence)) } @else { td {} }
+                    (time(row.fence_ms.gpu))
                     td { (row.construction_ms.map_or_else(String::new, |i| format!("{:.2}", i.value))) }
                 } } }
             } }
