@@ -3,8 +3,7 @@
 // whose place it runs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#define ACC
-#define KEPT_FRAMES
+#define KEPT_FRAMES true
 #define MAKES_POINTS
 #include "construct/cached.glsl"
 #include "construct/corner.glsl"

@@ -3,10 +3,10 @@
 // glsl/construct/acc.tesc, in whose place it is drawn.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define CORNERS 4
 #define OWNED 6
 // The others are tangents.
 #define HULL 4
-#define INNER 5
 #include "construct/control.glsl"
 #include "construct/frames.glsl"
 

@@ -8,11 +8,11 @@
 vec3 owned[CORNERS][OWNED];
 float cosines[CORNERS];
 
-#include "evaluate/acc.glsl"
+#include "acc.glsl"
 #define x_plus(k) across(k, edge_plus(k), edge_minus((k + 1) & 3), t_plus(k), (k + 1) & 3)
 #define x_minus(k) across(k, edge_minus(k), edge_plus((k + 3) & 3), t_minus(k), (k + 3) & 3)
 #define across(k, near, far, tangent, end) acc_across(inner(k), near, near, far, tangent, cosines[k], cosines[end])
-#include "evaluate/evaluate_acc.glsl"
+#include "scheme_evaluate.glsl"
 // A kind of patch of its own.
 #define KINDS_GLSL
 #include "evaluate/lattice.glsl"

@@ -3,6 +3,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define OWNED 1
+#ifdef TRIANGLE
+#define CORNERS 3
+#else
+#define CORNERS 4
+#endif
 #include "evaluate/evaluation.glsl"
 
 void main() {

@@ -1,13 +1,11 @@
 // The cached construction, once a frame, after glsl/compute/frames.comp: what the corners of a patch own and share. The two stages
 // of the two-stage construction in one invocation for each patch.
-// variants: GREGORY, GREGORY+TRIANGLE, ACC, PM, PM+TRIANGLE, PM+PENTAGON
-// variants: SHARED, GREGORY+SHARED, GREGORY+TRIANGLE+SHARED, DISPLACED, GREGORY+DISPLACED, GREGORY+TRIANGLE+DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef DISPLACED
 #define SHARED
 #endif
-#define KEPT_FRAMES
+#define KEPT_FRAMES true
 #define MAKES_POINTS
 #include "construct/cached.glsl"
 #include "draw/invocation.glsl"

@@ -2,30 +2,21 @@
 // cached are read; others are made, as in a draw of the two-stage or the stencil construction, for nothing but this. Each workgroup
 // lists those of its patches that can be seen, and writes the indirect draws of them; for instances to have what is kept of them as
 // attributes, it also copies that, one after the other as on the list.
-// variants: GREGORY, GREGORY+TRIANGLE, ACC
-// variants: TWO_STAGE, GREGORY+TWO_STAGE, GREGORY+TRIANGLE+TWO_STAGE, ACC+TWO_STAGE
-// variants: STENCIL, GREGORY+STENCIL, GREGORY+TRIANGLE+STENCIL, ACC+STENCIL
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MAKES_LISTS
 #include "draw/draw.glsl"
 #include "draw/patch_kind.glsl"
 #include "draw/visible.glsl"
-#ifdef TWO_STAGE
+#include "draw/construction.glsl"
 #include "construct/two_stages.glsl"
-#elif defined(STENCIL)
 #include "construct/stencils.glsl"
-#else
-#define CACHED
 #include "construct/cached.glsl"
-#endif
 
-#ifdef CACHED
-// Whether what is kept of patches is copied. Set in src/renderer/lists.rs.
+// Whether what is kept of patches is copied. Set in src/renderer/frame/lists.rs.
 layout(constant_id = 11) const bool COPIES = false;
-#endif
 
-// Patches of a workgroup. Rust twin: `REGION` in src/renderer/lists.rs.
+// Patches of a workgroup. Rust twin: `REGION` in src/renderer/frame/lists.rs.
 const uint REGION = 128u;
 layout(local_size_x = REGION) in;
 
@@ -49,21 +40,21 @@ vec4 pixel_box[CORNERS];
 // Has the control points of a patch in `owned`, by its number within the draw.
 void find_points(uint patch_number) {
     uint first = draw.first_corner + patch_number * CORNERS;
-#ifdef TWO_STAGE
 #define BEGIN(k) corners[k] = corner_of_patch(first + k)
-    CORNER_BY_CORNER(BEGIN)
-    second_stage();
-#elif defined(STENCIL)
 #define MAKE(k) stencil_points(draw.first_patch + patch_number, k, CORNERS, owned[k])
-    CORNER_BY_CORNER(MAKE)
-#else
-    for (uint k = 0u; k < CORNERS; ++k) {
-        vec4 texels[KEPT_TEXELS] = kept_texels(first + k);
-        for (int i = 0; i < OWNED; ++i) {
-            owned[k][i] = kept_vector(texels, i);
+    if (CONSTRUCTION == TWO_STAGE) {
+        CORNER_BY_CORNER(BEGIN)
+        second_stage();
+    } else if (CONSTRUCTION == STENCIL) {
+        CORNER_BY_CORNER(MAKE)
+    } else {
+        for (uint k = 0u; k < CORNERS; ++k) {
+            vec4 texels[KEPT_TEXELS] = kept_texels(first + k);
+            for (int i = 0; i < OWNED; ++i) {
+                owned[k][i] = kept_vector(texels, i);
+            }
         }
     }
-#endif
 }
 
 // How much of a patch there is to see: nothing, some of it, or all that faces the eye.
@@ -136,7 +127,6 @@ void main() {
         visible.words[start + before] = patch_number;
         listed[before] = patch_number;
     }
-#ifdef CACHED
     if (!COPIES) {
         return;
     }
@@ -146,5 +136,4 @@ void main() {
         uvec4 texel = floatBitsToUint(kept_texel(draw.first_corner + listed[i / TEXELS] * CORNERS, i % TEXELS));
         write_words(draw.copies + 4u * (start * TEXELS + i), texel);
     }
-#endif
 }

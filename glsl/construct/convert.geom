@@ -1,11 +1,7 @@
 // Conversion by the geometry shader, the first of two passes (Ni et al. 2008): the control points that each corner of each patch
 // owns, with the weights of the stencil table, to where the cached construction keeps them. Draws nothing.
-// variants: OWNED=4, OWNED=5, OWNED=6, OWNED=8
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#ifndef OWNED
-#define OWNED 4
-#endif
 #define MAKES_POINTS
 #include "construct/stencils.glsl"
 #include "construct/cached.glsl"
@@ -13,7 +9,7 @@
 layout(points) in;
 layout(points, max_vertices = 1) out;
 
-// The patches of one kind. Rust twin: `Patches` in src/renderer/conversion.rs.
+// The patches of one kind. Rust twin: `Patches` in src/renderer/construct/conversion.rs.
 layout(push_constant, std430) uniform Patches {
     uint first_patch;
     uint first_corner;

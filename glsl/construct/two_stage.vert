@@ -1,6 +1,5 @@
 // First stage of the two-stage construction: a control vertex and its one-ring become what a corner of a patch takes from
 // them (Loop et al. 2009, section 4): see corner_numbers.glsl. One invocation for each corner of each patch.
-// variants: GREGORY, ACC, PM, SHARED, DISPLACED, GREGORY+SHARED, GREGORY+DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef DISPLACED

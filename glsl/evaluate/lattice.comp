@@ -1,13 +1,8 @@
 // Evaluation by compute: the vertices of each patch on a lattice, for draws to share. A workgroup takes some of the vertices
-// of one patch. Rust twin: `Dispatch` in src/renderer/lattice.rs.
-// variants: BICUBIC, GREGORY_QUAD, GREGORY_TRIANGLE, ACC, PM_QUAD, PM_TRIANGLE, PM_PENTAGON
-// variants: BICUBIC+TEXCOORD, GREGORY_QUAD+TEXCOORD, GREGORY_TRIANGLE+TEXCOORD, ACC+TEXCOORD
-// variants: PM_QUAD+TEXCOORD, PM_TRIANGLE+TEXCOORD, PM_PENTAGON+TEXCOORD
-// variants: BICUBIC+SHARED, GREGORY_QUAD+SHARED, GREGORY_TRIANGLE+SHARED
-// variants: BICUBIC+SHARED+TEXCOORD, GREGORY_QUAD+SHARED+TEXCOORD, GREGORY_TRIANGLE+SHARED+TEXCOORD
-// variants: BICUBIC+DISPLACED, GREGORY_QUAD+DISPLACED, GREGORY_TRIANGLE+DISPLACED
+// of one patch. Rust twin: `Dispatch` in src/renderer/evaluate/lattice.rs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define TEXCOORD
 #include "evaluate/lattice.glsl"
 #include "construct/read_cached.glsl"
 
@@ -16,13 +11,13 @@ layout(local_size_x = 32) in;
 // Vertices of a patch that a workgroup takes: enough that reading the control points is little beside them.
 const uint GROUP_VERTICES = 256u;
 
-// Rust twin: `vertex_bytes` in src/renderer/lattice.rs.
+// Rust twin: `vertex_bytes` in src/renderer/pipelines/vertex_input.rs.
 #ifdef DISPLACED
 const uint VERTEX_WORDS = 14u;
-#elif defined(TEXCOORD)
-const uint VERTEX_WORDS = 8u;
 #else
-const uint VERTEX_WORDS = 6u;
+// Whether vertices have texture coordinates.
+layout(constant_id = 13) const bool HAS_TEXCOORDS = false;
+const uint VERTEX_WORDS = HAS_TEXCOORDS ? 8u : 6u;
 #endif
 layout(set = 2, binding = 0, std430) writeonly buffer Vertices { float vertices[]; };
 
@@ -52,11 +47,14 @@ void main() {
         uint word = VERTEX_WORDS * (first_vertex + i);
         put(word, surface.position);
         put(word + 3u, surface.normal);
-#ifdef TEXCOORD
+#ifndef DISPLACED
+        if (!HAS_TEXCOORDS) {
+            continue;
+        }
+#endif
         precise vec2 x = INTERPOLATED(texcoord, at);
         vertices[word + 6u] = x.x;
         vertices[word + 7u] = x.y;
-#endif
 #ifdef DISPLACED
         put(word + 8u, surface.direction);
         put(word + 11u, vec3(surface.texcoord, surface.lod));

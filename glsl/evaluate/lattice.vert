@@ -1,5 +1,4 @@
 // A vertex that was evaluated by compute: see glsl/evaluate/lattice.comp.
-// variants: TEXCOORD, DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef DISPLACED

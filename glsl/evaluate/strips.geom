@@ -1,31 +1,13 @@
 // The geometry shader evaluates: a point is a tile of a patch's lattice, which comes out as strips of triangles, as the indices
 // of src/table/lattice.rs have them. In one pass it makes the control points, too, with the weights of the stencil table; with
-// CACHED they are there.
-// variants: BICUBIC, GREGORY_QUAD, GREGORY_TRIANGLE, ACC, PM_QUAD, PM_TRIANGLE, PM_PENTAGON
-// variants: BICUBIC+TEXCOORD, GREGORY_QUAD+TEXCOORD, GREGORY_TRIANGLE+TEXCOORD, ACC+TEXCOORD
-// variants: PM_QUAD+TEXCOORD, PM_TRIANGLE+TEXCOORD, PM_PENTAGON+TEXCOORD
-// variants: BICUBIC+CAPTURE, GREGORY_QUAD+CAPTURE, GREGORY_TRIANGLE+CAPTURE, ACC+CAPTURE
-// variants: PM_QUAD+CAPTURE, PM_TRIANGLE+CAPTURE, PM_PENTAGON+CAPTURE
-// variants: BICUBIC+CACHED, GREGORY_QUAD+CACHED, GREGORY_TRIANGLE+CACHED, ACC+CACHED
-// variants: PM_QUAD+CACHED, PM_TRIANGLE+CACHED, PM_PENTAGON+CACHED
-// variants: BICUBIC+CACHED+TEXCOORD, GREGORY_QUAD+CACHED+TEXCOORD, GREGORY_TRIANGLE+CACHED+TEXCOORD, ACC+CACHED+TEXCOORD
-// variants: PM_QUAD+CACHED+TEXCOORD, PM_TRIANGLE+CACHED+TEXCOORD, PM_PENTAGON+CACHED+TEXCOORD
-// variants: BICUBIC+CACHED+CAPTURE, GREGORY_QUAD+CACHED+CAPTURE, GREGORY_TRIANGLE+CACHED+CAPTURE, ACC+CACHED+CAPTURE
-// variants: PM_QUAD+CACHED+CAPTURE, PM_TRIANGLE+CACHED+CAPTURE, PM_PENTAGON+CACHED+CAPTURE
-// variants: BICUBIC+CACHED+SHARED, GREGORY_QUAD+CACHED+SHARED, GREGORY_TRIANGLE+CACHED+SHARED
-// variants: BICUBIC+CACHED+SHARED+TEXCOORD, GREGORY_QUAD+CACHED+SHARED+TEXCOORD, GREGORY_TRIANGLE+CACHED+SHARED+TEXCOORD
-// variants: BICUBIC+CACHED+DISPLACED, GREGORY_QUAD+CACHED+DISPLACED, GREGORY_TRIANGLE+CACHED+DISPLACED
-// variants: BICUBIC+CACHED+SHARED+CAPTURE, GREGORY_QUAD+CACHED+SHARED+CAPTURE, GREGORY_TRIANGLE+CACHED+SHARED+CAPTURE
-// variants: BICUBIC+CACHED+DISPLACED+CAPTURE, GREGORY_QUAD+CACHED+DISPLACED+CAPTURE, GREGORY_TRIANGLE+CACHED+DISPLACED+CAPTURE
+// the cached construction they are there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "evaluate/lattice.glsl"
 #include "draw/draw.glsl"
-#ifdef CACHED
+#include "draw/construction.glsl"
 #include "construct/read_cached.glsl"
-#else
 #include "construct/stencils.glsl"
-#endif
 #ifdef DISPLACED
 #include "displace/displaced.glsl"
 #endif
@@ -128,6 +110,16 @@ void emit_row(uint row, uint first, uint end) {
     EndPrimitive();
 }
 
+// The control points of the patch, by stencils; what corners share is kept by the cached construction alone.
+void sum_points() {
+    for (uint k = 0u; k < CORNERS; ++k) {
+        stencil_points(draw.first_patch + patch_number, k, CORNERS, owned[k]);
+#ifdef TEXCOORD
+        texcoord[k] = texcoords[draw.first_corner + patch_number * CORNERS + k];
+#endif
+    }
+}
+
 void main() {
     segments = uint(draw_factor());
     uvec2 size = tile_size(segments);
@@ -142,16 +134,11 @@ void main() {
         return;
     }
 #endif
-#ifdef CACHED
-    read_cached(draw.first_corner + patch_number * CORNERS, segments);
-#else
-    for (uint k = 0u; k < CORNERS; ++k) {
-        stencil_points(draw.first_patch + patch_number, k, CORNERS, owned[k]);
-#ifdef TEXCOORD
-        texcoord[k] = texcoords[draw.first_corner + patch_number * CORNERS + k];
-#endif
+    if (IS_CACHED) {
+        read_cached(draw.first_corner + patch_number * CORNERS, segments);
+    } else {
+        sum_points();
     }
-#endif
     for (uint row = first.y; row < end.y; ++row) {
 #ifdef TRIANGLE
         emit_row(row, first.x, min(end.x, row + 1u));

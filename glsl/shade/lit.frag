@@ -1,5 +1,4 @@
 // The smooth surface under one light and the sky.
-// variants: DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define FRAGMENT_STAGE

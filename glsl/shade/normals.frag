@@ -1,5 +1,4 @@
 // The direction of the normal as a colour: x red, y green, z blue, from -1 at 0 to 1 at full.
-// variants: DISPLACED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define FRAGMENT_STAGE

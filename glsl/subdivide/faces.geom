@@ -6,7 +6,6 @@
 // beside each edge; beyond the corners it is only where the lattice is regular, and not used: what the rules make of a corner
 // and of the vertices next to it along edges comes from the fan around the corner.
 //
-// variants: TEXCOORD, CAPTURE_GRID, LEVEL=1, LEVEL=1+TEXCOORD, LEVEL=1+CAPTURE_GRID, LEVEL=2, LEVEL=2+TEXCOORD, LEVEL=2+CAPTURE_GRID, LEVEL=3, LEVEL=3+TEXCOORD, LEVEL=3+CAPTURE_GRID
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

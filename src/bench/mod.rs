@@ -29,6 +29,10 @@ mod race;
 mod recording;
 mod row;
 mod scene;
+mod shaders {
+    //! Compiled from `glsl/bench`.
+    include!(concat!(env!("OUT_DIR"), "/bench_shaders.rs"));
+}
 mod subject;
 mod surface;
 

@@ -10,7 +10,8 @@ use crate::gpu::{Domain, PatchBatch, tessellated_vertices};
 use crate::headless::Headless;
 use crate::mesh::ControlMesh;
 use crate::renderer::{
-    Capture, Cull, DisplacementId, DisplacementMap, Error, Evaluation, Factor, ModelOptions, ModelTables, View,
+    Capture, Cull, DisplacementId, DisplacementMap, Error, Evaluation, Factor, ModelOptions, ModelTables, ShaderId,
+    View,
 };
 #[cfg(doc)]
 use crate::renderer::{Options, Renderer};
@@ -94,7 +95,7 @@ pub struct Captured<'h> {
     tables: ModelTables,
     positions: Vec<[f32; 3]>,
     displacement: Option<DisplacementMap>,
-    shaders: Vec<(String, Vec<u32>)>,
+    shaders: Vec<(ShaderId, Vec<u32>)>,
 }
 
 impl<'h> Captured<'h> {
@@ -139,7 +140,7 @@ impl<'h> Captured<'h> {
     }
 
     /// With shaders in the place of the crate's own: see [`Options::shaders`].
-    pub fn with_shaders(self, shaders: Vec<(String, Vec<u32>)>) -> Self {
+    pub fn with_shaders(self, shaders: Vec<(ShaderId, Vec<u32>)>) -> Self {
         Self { shaders, ..self }
     }
 

@@ -4,7 +4,7 @@ use super::buffer::{HEAD_BYTES, Head, RECORD_BYTES, capture_buffer};
 use crate::gpu::{Buffer, DescriptorSet, Owned, descriptor_set_layout};
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::renderer::{
-    Capture, DrawItem, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, Style, Target, View,
+    Capture, DrawItem, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, ShaderId, Style, Target, View,
 };
 use ash::vk;
 use bytemuck::Zeroable;
@@ -62,7 +62,7 @@ impl Watcher {
         headless: &Headless,
         mode: Capture,
         evaluation: Evaluation,
-        shaders: &[(String, Vec<u32>)],
+        shaders: &[(ShaderId, Vec<u32>)],
     ) -> Result<Self, Error> {
         let context = headless.context();
         let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, STAGES)];

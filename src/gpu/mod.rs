@@ -4,7 +4,7 @@
 //! * [`DeviceContext`] is the device all objects are made from, with its [`DeviceProperties`], its allocator and its
 //!   debug names. Its constructor is where the one safety contract of this layer is stated.
 //! * [`Buffer`], [`Image`] and [`Owned`] handles destroy themselves when dropped, and keep their context alive.
-//! * [`GraphicsPipelineDesc`] and [`ComputePipelineDesc`] make pipelines; [`shaders`] holds the SPIR-V.
+//! * [`GraphicsPipelineDesc`] and [`ComputePipelineDesc`] make pipelines.
 //! * [`PatchBatch`] says how many patches one draw instance may hold, which some drivers limit.
 
 mod allocator;
@@ -17,7 +17,6 @@ mod image;
 mod layout;
 mod owned;
 mod pipeline;
-pub mod shaders;
 mod stages;
 
 pub use allocator::{Allocation, AllocationRequest, Allocator, AllocatorError, Dedicated, MemoryLocation};

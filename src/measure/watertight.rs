@@ -1,7 +1,7 @@
 //! Whether neighbouring patches meet: to the last bit in their evaluated vertices, and in every pixel.
 
 use crate::capture::{CaptureDraw, Captured, CapturedVertex, Idle, Which};
-use crate::gpu::{Blend, shaders};
+use crate::gpu::Blend;
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Texture};
 use crate::mesh::{ControlMesh, FaceVarying, MeshData};
 use crate::renderer::{
@@ -11,6 +11,11 @@ use crate::table::{Patch, prepare};
 use crate::topology::{PatchKind, Topology};
 use ash::vk;
 use rayon::prelude::*;
+
+mod shaders {
+    //! Compiled from `glsl/measure`.
+    include!(concat!(env!("OUT_DIR"), "/measure_shaders.rs"));
+}
 
 /// What was compared, and what differs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -299,7 +304,7 @@ impl Layers {
     fn new(headless: &Headless, side: u32) -> Result<Self, Error> {
         let desc = OffscreenDesc { color: vk::Format::R8G8B8A8_UNORM, ..OffscreenDesc::new(side, side) };
         let style = Style {
-            fragment: Fragment::Spirv(shaders::SHADE_LAYERS_FRAG.to_vec()),
+            fragment: Fragment::Spirv(shaders::LAYERS_FRAG.to_vec()),
             blend: Blend::Add,
             depth: None,
             ..Style::default()

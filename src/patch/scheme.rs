@@ -1,9 +1,8 @@
 //! The schemes, each a way to approximate the Catmull-Clark surface by patches, one a face.
 //!
-//! A scheme is three things: a file beside this one with its construction and evaluation, its shaders
-//! (`glsl/lib/NAME_points.glsl` with `glsl/construct/NAME.tesc`, what its corners take from their rings in `glsl/lib/construct/corner.glsl`,
-//! `glsl/lib/evaluate_NAME.glsl` with `glsl/evaluate/NAME.tese`, and variants of `glsl/compute/control_points.comp` and
-//! `glsl/lib/draw/kinds.glsl`), and its arms in the `match`es of this file and of `renderer/stages.rs`. Regular faces are bicubic patches in every scheme.
+//! A scheme is three things: a file beside this one with its construction and evaluation, a folder `glsl/schemes/NAME` with the same
+//! as shaders, and its registration: its arms in this file, and its patches in `renderer/shader/axes.rs`. Regular faces are
+//! bicubic patches in every scheme.
 
 use super::fitted::Fit;
 use super::gregory::PatchCorner;

@@ -57,6 +57,7 @@ pub use options::{
     MemoryUsage, ModelId, ModelOptions, Options, Pass, Style, Target, View,
 };
 pub use pipelines::{Requirements, check, requirements};
+pub use shader::ShaderId;
 
 #[cfg(feature = "headless")]
 pub(crate) use shader::Capture;

@@ -15,20 +15,21 @@ mod plan;
 mod prepare;
 mod rings;
 mod shared;
+mod sharing;
 mod stencils;
 mod subdivision;
 
 pub use cpu::{CpuSurface, grid_parameters};
 pub use error::TableError;
 pub(crate) use lattice::{LatticeIndices, MAX_SEGMENTS, TILE_VERTICES, lattice_tiles, lattice_vertices};
+pub(crate) use model::TEXEL_BYTES;
 pub use model::{Edges, ModelTables, TableBytes};
-pub(crate) use model::{TEXEL_BYTES, kept_texels};
-pub(crate) use options::Sharing;
 pub use options::{Construction, Evaluation, TableOptions};
 pub use plan::{Patch, PatchGroup, PatchPlan};
 pub use prepare::{FaceOrigin, Notice, Prepared, prepare, prepare_patches, prepare_quads};
 pub use rings::RingTable;
 pub use shared::{SharedCorner, SharedTable, SharedTexcoord};
+pub(crate) use sharing::Sharing;
 pub use stencils::StencilTable;
 pub use subdivision::SubdivisionTable;
 

@@ -70,13 +70,6 @@ pub(crate) const TEXEL_BYTES: u64 = 16;
 /// Bytes of a frame of a ring. GLSL twin: `glsl/lib/construct/kept_frames.glsl`.
 const FRAME_BYTES: u64 = 4 * 12;
 
-/// Texels of four numbers for the vectors that a corner owns and shares, and whether its plus edge is sharp. GLSL twin:
-/// `KEPT_TEXELS` in `glsl/lib/construct/cached.glsl`.
-pub(crate) fn kept_texels(owned: usize, sharing: Sharing) -> u32 {
-    let sharp = u32::from(sharing != Sharing::Positions);
-    (3 * (owned as u32 + sharing.vectors()) + sharp).div_ceil(4)
-}
-
 /// Bytes of a table by its name.
 pub type TableBytes = (&'static str, u64);
 
@@ -196,7 +189,7 @@ impl ModelTables {
             return 0;
         }
         let owned = self.plan.groups().iter().map(|group| group.scheme.owned(group.kind)).max().unwrap_or(0);
-        kept_texels(owned, self.sharing())
+        self.sharing().kept_texels(owned)
     }
 
     /// How many rings have frames that are kept between draws.

@@ -1,5 +1,6 @@
 //! What tables are built for.
 
+use super::Sharing;
 use crate::named::named;
 use crate::patch::{Fallback, Scheme};
 #[cfg(doc)]
@@ -84,26 +85,6 @@ impl Evaluation {
     /// Whether [`Renderer::set_segments`](crate::renderer::Renderer::set_segments) has to say how many segments edges have.
     pub fn needs_segments(self) -> bool {
         matches!(self, Self::Compute | Self::Instanced | Self::GeometryTwoPass)
-    }
-}
-
-/// What patches share along edges and at corners.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Sharing {
-    Positions,
-    Normals,
-    /// Normals and where the displacement is looked up.
-    Displacement,
-}
-
-impl Sharing {
-    /// How many vectors a corner shares. GLSL twin: `SHARED_VECTORS` in `glsl/lib/edges/shared_bits.glsl`.
-    pub(crate) fn vectors(self) -> u32 {
-        match self {
-            Self::Positions => 0,
-            Self::Normals => 5,
-            Self::Displacement => 6,
-        }
     }
 }
 

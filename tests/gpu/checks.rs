@@ -3,7 +3,7 @@
 use crate::common::stage::Stage;
 use ash::vk;
 use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError, Features};
-use ash_subdiv::renderer::{Fragment, Pass};
+use ash_subdiv::renderer::{Fragment, Pass, ShaderId};
 use ash_subdiv::{ContextOptions, DeviceContext, Error, Options, Renderer, Style, Target, check, requirements};
 use std::sync::Arc;
 
@@ -55,23 +55,13 @@ fn what_a_device_lacks_is_named_at_once() {
     let told = |target: &Target, options| unsafe { check(instance, device, target, &options) }.unwrap_err().to_string();
     let code = shaders::TEXCOORD_FRAG;
     let no_spirv = "give whole modules, as words in this machine's order of bytes (the first is 0x07230203)";
-    for (name, code, expected) in [
-        (
-            "EVALUATE_ACC",
-            code,
-            ": there is no such shader to replace: gpu::shaders::ALL names those that there are".to_owned(),
-        ),
-        (
-            "SHADE_LIT_FRAG",
-            code,
-            ": there is no such shader to replace: fragment shaders are those of styles: set Style::fragment to \
-             Fragment::Spirv"
-                .to_owned(),
-        ),
-        ("EVALUATE_ACC_TESE", &[], format!(" is no SPIR-V: {no_spirv}")),
+    let of_style = "fragment shaders are those of styles: set Style::fragment to Fragment::Spirv";
+    for (id, code, expected) in [
+        (ShaderId::ShadeLitFrag, code, format!(": {of_style}")),
+        (ShaderId::EvaluateTessellationTeseAccQuad, &[], format!(" is no SPIR-V: {no_spirv}")),
     ] {
-        let options = Options { shaders: vec![(name.into(), code.to_vec())], ..Options::default() };
-        assert_eq!(told(&target(&stage), options), format!("Options::shaders: {name}{expected}"));
+        let options = Options { shaders: vec![(id, code.to_vec())], ..Options::default() };
+        assert_eq!(told(&target(&stage), options), format!("Options::shaders: {}{expected}", id.name()));
     }
     let swapped: Vec<u32> = code.iter().map(|word| word.swap_bytes()).collect();
     for bad in [Vec::new(), code[..5].to_vec(), swapped] {

@@ -8,7 +8,7 @@ use ash_subdiv::capture::{CaptureDraw, Captured, Which};
 use ash_subdiv::headless::{Headless, Texels, Texture};
 use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
 use ash_subdiv::mesh::{FaceVarying, ShapeInfo};
-use ash_subdiv::renderer::{Cull, Evaluation, Factor};
+use ash_subdiv::renderer::{Cull, Evaluation, Factor, ShaderId};
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, ReadOptions, Spacing, View, read, shape, shapes};
 use glam::Vec3;
 use std::path::Path;
@@ -231,9 +231,9 @@ fn closed_shapes_have_no_holes_in_pictures() {
 }
 
 /// A shader compiled with one thing left out.
-fn faulty(file: &str, defines: &[&str]) -> Vec<u32> {
-    let code = compiled(file, defines, &[]);
-    if defines.contains(&"precise=") { without_invariance(&code) } else { code }
+fn faulty(id: ShaderId, fault: &str) -> Vec<u32> {
+    let code = compiled(id, &[fault], &[]);
+    if fault == "precise=" { without_invariance(&code) } else { code }
 }
 
 /// Without what keeps `gl_Position`, and all that it is made of, the same.
@@ -254,45 +254,54 @@ fn without_invariance(code: &[u32]) -> Vec<u32> {
     kept
 }
 
-/// A shader of ours compiled with macros, and with folders in which includes are looked for first.
-fn compiled(file: &str, defines: &[&str], folders: &[&str]) -> Vec<u32> {
+/// A shader of ours compiled with more macros, and with folders in which includes are looked for first.
+fn compiled(id: ShaderId, defines: &[&str], folders: &[&str]) -> Vec<u32> {
     let compiler = std::env::var("GLSLANG").unwrap_or_else(|_| "glslangValidator".into());
-    let output =
-        Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}{}.spv", file.replace('/', "_"), defines.concat()));
+    let output = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}{}.spv", id.name(), defines.concat()));
     let status = Command::new(compiler)
-        .args(["-V", "--target-env", "vulkan1.2", "--quiet"])
-        .args(folders.iter().map(|folder| format!("-I{folder}")))
-        .args(["-Iglsl/lib", "-o"])
+        .args(["-V", "--target-env", "vulkan1.2", "--quiet", "-o"])
         .arg(&output)
+        .args(folders.iter().map(|folder| format!("-I{folder}")))
+        .args(id.arguments())
         .args(defines.iter().map(|define| format!("-D{define}")))
-        .arg(format!("glsl/{file}"))
+        .arg(id.source())
         .status();
-    assert!(status.expect("glslang runs").success(), "{file} {defines:?}");
+    assert!(status.expect("glslang runs").success(), "{id:?} {defines:?}");
     let bytes = std::fs::read(&output).expect("SPIR-V");
     bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().expect("four bytes"))).collect()
 }
 
-const EVALUATIONS: [&str; 3] = ["bicubic", "gregory_quad", "gregory_triangle"];
+/// The shaders of a source that evaluate for a capture, of the patches that share their edges; `sharing` is the macro of what else
+/// they share.
+fn evaluations(source: &str, sharing: Option<&str>) -> Vec<ShaderId> {
+    let is_wanted = |id: &&ShaderId| {
+        let has = |argument: &str| id.arguments().contains(&argument);
+        let shares = ["-DSHARED", "-DDISPLACED"].into_iter().find(|&argument| has(argument));
+        id.source() == source && has("-DCAPTURE") && has("-DKEEPS_FRAME") && shares == sharing && !has("-DATTRIBUTES")
+    };
+    let ids: Vec<ShaderId> = ShaderId::ALL.iter().filter(is_wanted).copied().collect();
+    assert_eq!(ids.len(), 3, "{ids:?}");
+    ids
+}
 
-/// What differs when the evaluation shaders are compiled with these macros.
+const TESSELLATION: &str = "glsl/evaluate/tessellation.tese";
+
+/// What differs when the evaluation shaders are compiled with this macro.
 fn tally_with(headless: &Headless, texture: &Texture, shared_normals: bool, displaced: bool, fault: &str) -> Tally {
     let mesh = shape("creature-mixed").expect("built in");
     let options = ModelOptions { shared_normals, edge_factors: true, ..ModelOptions::default() };
-    let (variant, suffix): (&[&str], _) = match (displaced, shared_normals) {
-        (true, _) => (&["DISPLACED", "CAPTURE"], "_DISPLACED_CAPTURE"),
-        (false, true) => (&["SHARED", "CAPTURE"], "_SHARED_CAPTURE"),
-        (false, false) => (&["CAPTURE"], "_CAPTURE"),
+    let sharing = match (displaced, shared_normals) {
+        (true, _) => Some("-DDISPLACED"),
+        (false, true) => Some("-DSHARED"),
+        (false, false) => None,
     };
-    let shader = |file: &str| {
-        let name = format!("EVALUATE_{}_TESE{suffix}", file.to_uppercase());
-        (name, faulty(&format!("evaluate/{file}.tese"), &[variant, &[fault]].concat()))
-    };
+    let shaders = evaluations(TESSELLATION, sharing).into_iter().map(|id| (id, faulty(id, fault)));
     let captured = match displaced {
         // SAFETY: the texture outlives what is captured.
         true => unsafe { Captured::displaced(headless, &mesh, &options, texture.into()) },
         false => Captured::new(headless, &mesh, &options),
     };
-    let captured = captured.expect("a model").with_shaders(EVALUATIONS.map(shader).into());
+    let captured = captured.expect("a model").with_shaders(shaders.collect());
     let seams = Seams::new(&mesh, 0, captured.tables()).expect("small");
     let displacement = if displaced { [DISPLACEMENT * diagonal(&mesh), 0.0] } else { [0.0; 2] };
     let draw = CaptureDraw { displacement, ..CaptureDraw::new(7.0) };
@@ -325,38 +334,28 @@ fn every_rule_is_needed() {
     headless.finish_silent();
 }
 
-/// A shader with the tests' own displacement.
-fn own(file: &str, defines: &[&str]) -> Vec<u32> {
-    let defines: Vec<&str> = ["DISPLACED", "CAPTURE", "OWN_DISPLACE"].iter().chain(defines).copied().collect();
-    compiled(file, &defines, &["tests/glsl/own"])
-}
-
 /// As `glsl/lib/displace/displace.glsl` says.
 #[test]
 fn callers_displace_as_they_like() {
     let headless = common::headless();
     let texture = scales(&headless);
     let mesh = shape("creature-mixed").expect("built in");
-    let tessellated = |file: &str| {
-        let name = format!("EVALUATE_{}_TESE_DISPLACED_CAPTURE", file.to_uppercase());
-        (name, own(&format!("evaluate/{file}.tese"), &[]))
-    };
     // Those for control points as attributes may be left away.
-    let instanced = |file: &str| {
-        let kind = file.to_uppercase();
-        let name = format!("EVALUATE_INSTANCED_VERT_{kind}_DISPLACED_CAPTURE");
-        (name, own("evaluate/instanced.vert", &[&kind]))
+    let own = |source| {
+        let ids = evaluations(source, Some("-DDISPLACED")).into_iter();
+        ids.map(|id| (id, compiled(id, &["OWN_DISPLACE"], &["tests/glsl/own"]))).collect()
     };
     let cached = ModelOptions {
         evaluation: Evaluation::Instanced,
         construction: Construction::Cached,
         ..ModelOptions::default()
     };
-    let ways = [(ModelOptions::default(), EVALUATIONS.map(tessellated)), (cached, EVALUATIONS.map(instanced))];
+    let ways: [(_, Vec<_>); 2] =
+        [(ModelOptions::default(), own(TESSELLATION)), (cached, own("glsl/evaluate/instanced.vert"))];
     for (options, shaders) in ways {
         // SAFETY: the texture outlives what is captured.
         let displaced = unsafe { Captured::displaced(&headless, &mesh, &options, (&texture).into()) };
-        let displaced = displaced.expect("a model").with_shaders(shaders.into());
+        let displaced = displaced.expect("a model").with_shaders(shaders);
         let plain = Captured::new(&headless, &mesh, &ModelOptions { shared_normals: true, ..options });
         let [moved, plain] = [&displaced, &plain.expect("a model")].map(|captured| {
             let mut vertices = captured.vertices(3.0).expect("a capture");

@@ -1,5 +1,5 @@
 // What the cached construction keeps of each corner: the control points that it owns and, after them, what it shares and whether its
-// plus edge is sharp; number by number without gaps, up to whole texels of four. Rust twin: `kept_texels` in src/renderer/tables.rs.
+// plus edge is sharp; number by number without gaps, up to whole texels of four. Rust twin: `Sharing::kept_texels` in src/table/sharing.rs.
 #ifndef CACHED_GLSL
 #define CACHED_GLSL
 

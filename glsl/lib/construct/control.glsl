@@ -16,16 +16,9 @@
 #include "capture/capture.glsl"
 #endif
 
-#ifdef TRIANGLE
-const uint CORNERS = 3u;
-layout(vertices = 3) out;
-#elif defined(PENTAGON)
-const uint CORNERS = 5u;
-layout(vertices = 5) out;
-#else
-const uint CORNERS = 4u;
-layout(vertices = 4) out;
-#endif
+#include "scheme.glsl"
+
+layout(vertices = CORNERS) out;
 
 #include "draw/handed_on.glsl"
 // Outputs of a vertex end at location 13: every Vulkan device has 16.
@@ -33,7 +26,7 @@ layout(location = 0) out vec4 handed_on[][HANDED_ROWS];
 // What is to be handed on of the corner of this invocation.
 float numbers[4 * HANDED_ROWS];
 
-#ifndef OWNED_IS_SHARED
+#if !defined(OWNED_IS_SHARED) || !defined(CONTROL_STAGE)
 // The control points of the corner of this invocation, to write to; then, those of all corners.
 vec3 own[OWNED];
 #define OWNED_BY(k) own
@@ -61,7 +54,7 @@ void finish_patch(uint patch_number) {
     if (gl_InvocationID != 0) {
         return;
     }
-#ifndef OWNED_IS_SHARED
+#if !defined(OWNED_IS_SHARED) || !defined(CONTROL_STAGE)
     for (uint k = 0u; k < CORNERS; ++k) {
         for (int i = 0; i < OWNED; ++i) {
             owned[k][i] = PACKED_VECTOR(handed_on[k], 3 * i);

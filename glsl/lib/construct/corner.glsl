@@ -5,13 +5,8 @@
 
 #include "construct/corner_faces.glsl"
 #include "construct/framed_ring.glsl"
-#ifdef GREGORY
-#define INNER 2
-#elif defined(ACC)
-#include "construct/corner_acc.glsl"
-#elif defined(PM)
-#include "construct/corner_pm.glsl"
-#endif
+#include "scheme.glsl"
+#include "scheme_corner.glsl"
 #ifdef SHARED
 #include "edges/shared.glsl"
 #endif
@@ -47,15 +42,13 @@ Corner corner_of_patch(uint number) {
 #if defined(INNER) || defined(SHARED)
     CornerFaces faces = corner_faces(ring, place.y, minus_edge, centre, here, next);
 #endif
-#if defined(GREGORY) || defined(SHARED)
+#if defined(NEEDS_TRANSVERSALS) || defined(SHARED)
     vec3 r[2] = transversals(ring, place.y, minus_edge, faces, a, b);
+#elif defined(INNER)
+    const vec3 r[2] = vec3[2](vec3(0.0), vec3(0.0));
 #endif
-#ifdef GREGORY
-    corner.inner = r;
-#elif defined(ACC)
-    corner.inner = acc_corner(ring, faces, own.p, corner.plus, corner.minus);
-#elif defined(PM)
-    corner.inner = pm_corner(faces);
+#ifdef INNER
+    corner.inner = scheme_corner(ring, faces, own.p, corner.plus, corner.minus, r);
 #endif
 #ifdef SHARED
     vec3 e_before = edge_vector(ring, edge_before(ring, place.y), centre, faces.before, a, b);

@@ -3,6 +3,7 @@
 #define CORNER_NUMBERS_GLSL
 
 #include "draw/packed.glsl"
+#include "scheme.glsl"
 #ifdef SHARED
 #include "edges/shared_bits.glsl"
 #endif

@@ -1,4 +1,4 @@
-// A ring with its limit point and tangent frame: made from the control vertices or, with KEPT_FRAMES, read from where
+// A ring with its limit point and tangent frame: made from the control vertices or, where KEPT_FRAMES holds, read from where
 // glsl/compute/frames.comp keeps them.
 #ifndef FRAMED_RING_GLSL
 #define FRAMED_RING_GLSL
@@ -25,22 +25,26 @@ FramedRing framed_ring(uint index) {
     framed.ring = ring_at(index);
     framed.centre = vertex_position(framed.ring.vertex);
 #ifdef KEPT_FRAMES
-    KeptFrame kept = kept_frame(index);
-    framed.p = kept.p;
-    framed.a = kept.a;
-    framed.b = kept.b;
-    framed.normal = kept.normal;
-#else
-    ring_frame(framed.ring, framed.centre, framed.p, framed.a, framed.b);
+    if (KEPT_FRAMES) {
+        KeptFrame kept = kept_frame(index);
+        framed.p = kept.p;
+        framed.a = kept.a;
+        framed.b = kept.b;
+        framed.normal = kept.normal;
+        return framed;
+    }
 #endif
+    ring_frame(framed.ring, framed.centre, framed.p, framed.a, framed.b);
     return framed;
 }
 
 // The normal at the vertex of a ring; without a tangent plane, the mean normal of the faces around it.
 vec3 ring_normal(FramedRing at) {
 #ifdef KEPT_FRAMES
-    return at.normal;
-#else
+    if (KEPT_FRAMES) {
+        return at.normal;
+    }
+#endif
     vec3 normal = unit_normal(at.a, at.b, vec3(0.0));
     if (normal != vec3(0.0)) {
         return normal;
@@ -55,7 +59,6 @@ vec3 ring_normal(FramedRing at) {
         before = next;
     }
     return unit(sum);
-#endif
 }
 
 #endif

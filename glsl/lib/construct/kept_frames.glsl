@@ -1,5 +1,5 @@
 // Where the cached construction keeps what glsl/compute/frames.comp makes of each ring: three vectors, and the fourth in what the
-// others leave. Rust twin: `FRAME_BYTES` in src/renderer/tables.rs.
+// others leave. Rust twin: `FRAME_BYTES` in src/table/model.rs.
 #ifndef KEPT_FRAMES_GLSL
 #define KEPT_FRAMES_GLSL
 

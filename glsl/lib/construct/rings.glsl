@@ -21,7 +21,7 @@ const uint FITTED_BIT = 1u << 28;
 const uint FALLBACK_BIT = 1u << 29;
 
 // What no ring of the scheme has need not be looked for. Rust twin: `PatchStages::specialization` in
-// src/renderer/stages.rs.
+// src/renderer/shader/key.rs.
 layout(constant_id = 5) const bool MAY_BE_FITTED = true;
 layout(constant_id = 6) const bool MAY_HAVE_PENTAGONS = true;
 

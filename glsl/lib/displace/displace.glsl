@@ -1,18 +1,15 @@
 // Where a displaced surface goes: the one function to write anew for a displacement of your own.
 //
 // The evaluation shaders call `displace` with what all patches at a point share, so whatever it makes of these alone is
-// without cracks. To have your own, write a file `own_displace.glsl` with a function like the one below, and
+// without cracks. To have your own, write a file `own_displace.glsl` with a function like the one below. Then compile, of
+// `ShaderId::ALL` in the library, those that you draw with: of the source `glsl/evaluate/tessellation.tese` (or `instanced.vert`,
+// `lattice.vert` or `strips.geom` without the tessellation stages) those whose arguments have `-DDISPLACED`, such as
 //
-//     glslangValidator -V --target-env vulkan1.2 -DDISPLACED -DOWN_DISPLACE -I. -I$ash_subdiv/glsl/lib
-//         $ash_subdiv/glsl/evaluate/gregory_quad.tese -o gregory_quad.spv     (one line)
+//     glslangValidator -V --target-env vulkan1.2 -I. ARGUMENTS -DOWN_DISPLACE SOURCE -o shader.spv
 //
-// and give the SPIR-V to the renderer as `Options::shaders` under the name "EVALUATE_GREGORY_QUAD_TESE_DISPLACED"; the same
-// for `bicubic` and `gregory_triangle`. Without the tessellation stages it is `lattice.vert` alone (evaluation by compute;
-// "EVALUATE_LATTICE_VERT_DISPLACED"), or with one of -DBICUBIC, -DGREGORY_QUAD, -DGREGORY_TRIANGLE `instanced.vert`
-// ("EVALUATE_INSTANCED_VERT_BICUBIC_DISPLACED"; for control points as vertex attributes, which is faster, with -DATTRIBUTES
-// besides, under that name and "_ATTRIBUTES") or, with -DCACHED besides, `strips.geom`
-// ("EVALUATE_STRIPS_GEOM_BICUBIC_CACHED_DISPLACED"). For the map include `displacement_map.glsl`. Light knows nothing of it: bring a
-// fragment shader of your own.
+// with `ShaderId::arguments` and `ShaderId::source`, in the folder of the crate, and give the SPIR-V to the renderer as
+// `Options::shaders` (of `instanced.vert`, those with `-DATTRIBUTES` are faster, and may be left away). For the map include
+// `displace/displacement_map.glsl`. Light knows nothing of your displacement: bring a fragment shader of your own.
 #ifndef DISPLACE_GLSL
 #define DISPLACE_GLSL
 

@@ -1,5 +1,5 @@
 // What every shader of a draw knows: the view and the draw's own constants.
-// Rust twins: `ViewData` and `DrawConstants` in src/renderer/gpu_data.rs, `ListConstants` in src/renderer/lists.rs.
+// Rust twins: `ViewData` and `DrawConstants` in src/renderer/shader/gpu_data.rs, `ListConstants` in src/renderer/frame/lists.rs.
 #ifndef DRAW_GLSL
 #define DRAW_GLSL
 

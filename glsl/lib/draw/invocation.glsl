@@ -4,7 +4,7 @@
 
 layout(local_size_x = 64) in;
 
-// Rust twin: `Invocations` in src/renderer/cached.rs.
+// Rust twin: `Invocations` in src/renderer/construct/cached.rs.
 layout(push_constant, std430) uniform Invocations {
     uint count;
     uint first_corner;  // of the patches

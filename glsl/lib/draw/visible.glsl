@@ -1,4 +1,4 @@
-// The patches of a draw that can be seen, which glsl/compute/cull.comp lists. Rust twin: `ListLayout` in src/renderer/lists.rs.
+// The patches of a draw that can be seen, which glsl/compute/cull.comp lists. Rust twin: `ListLayout` in src/renderer/frame/lists.rs.
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL
 

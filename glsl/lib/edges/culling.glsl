@@ -1,22 +1,9 @@
 // Patches that cannot be seen. All tests are conservative: a picture is the same with and without.
 //
 // To be included where CORNERS and the `owned` control points are known, and where there are `outside` and `pixel_box` for what
-// `examine` finds at each corner.
+// `examine` finds at each corner. HULL of a corner's control points enclose the patch, with those of the others; 0 if they need not.
 #ifndef CULLING_GLSL
 #define CULLING_GLSL
-
-// How many of a corner's control points enclose the patch, with those of the others. Rust twin: `PatchStages::has_hull`.
-#ifndef HULL
-#if OWNED == 8
-// Of ACC patches the others are tangents.
-#define HULL 4
-#elif OWNED == 6
-// The spokes of Pm-patches may leave the hull of what corners own.
-#define HULL 0
-#else
-#define HULL OWNED
-#endif
-#endif
 
 #include "edges/factors.glsl"
 
@@ -176,7 +163,7 @@ bool faces_away(float step) {
     vec3 p2[4] = { AT(3, 1), AT(3, 3), AT(2, 3), AT(2, 2) };
     vec3 p3[4] = { (owned[3][0] - centre) * axes, AT(3, 2), AT(2, 1), (owned[2][0] - centre) * axes };
     float squared = 0.0;
-#if HULL == 5
+#ifdef TWO_FACE_POINTS
     vec3 others[4] = { AT(0, 4), AT(1, 4), AT(2, 4), AT(3, 4) };
     vec3 half_way[4] = { 0.5 * (others[0] - p1[1]), 0.5 * (others[1] - p1[2]), 0.5 * (others[2] - p2[2]),
                          0.5 * (others[3] - p2[1]) };
@@ -195,7 +182,7 @@ bool faces_away(float step) {
     }
     float lean = size / (away - size);
     vec4 moved = vec4(0.0);
-#if HULL == 5
+#ifdef TWO_FACE_POINTS
     for (int k = 0; k < 4; ++k) {
         moved[k] = extent(half_way[k], lean);
     }

@@ -13,7 +13,7 @@ layout(constant_id = 2) const float MAX_FACTOR = 64.0;
 layout(set = 1, binding = 11, std430) readonly buffer CornerFactors { float corner_factors[]; };
 
 // How factors are found and which patches are left out: what a draw does not ask for is not in its pipeline. Rust twin:
-// `Cut` in src/renderer/factor.rs.
+// `Cut` in src/renderer/shader/cut.rs.
 layout(constant_id = 4) const uint DRAW_FLAGS = 0u;
 
 const uint METRIC_MASK = 3u;

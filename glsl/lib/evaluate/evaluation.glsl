@@ -3,6 +3,11 @@
 #ifndef EVALUATION_GLSL
 #define EVALUATION_GLSL
 
+#ifdef PENTAGON
+// A piece of it.
+#define TRIANGLE
+#endif
+
 // Displacement needs all that is shared.
 #ifdef DISPLACED
 #define SHARED
@@ -12,7 +17,7 @@
 #include "draw/draw.glsl"
 #include "evaluate/patch.glsl"
 
-// The renderer puts other spacings in the place of this one (`spaced` in src/renderer/stages.rs).
+// The renderer puts other spacings in the place of this one (`spaced` in src/renderer/shader/spirv.rs).
 // Clockwise in the parameter domain, whose v points down in Vulkan: counter-clockwise seen from outside.
 // A captured grid of a triangle is laid over a quad domain: the tessellator's own triangles are no grid.
 #if defined(TRIANGLE) && !defined(CAPTURE_GRID)
@@ -21,13 +26,6 @@ layout(triangles, equal_spacing, cw) in;
 layout(quads, equal_spacing, cw) in;
 #endif
 
-#ifdef PENTAGON
-#define CORNERS 5
-#elif defined(TRIANGLE)
-#define CORNERS 3
-#else
-#define CORNERS 4
-#endif
 #include "draw/handed_on.glsl"
 layout(location = 0) in vec4 handed_on[][HANDED_ROWS];
 // The control points that each corner owns.

@@ -6,7 +6,9 @@
 
 #ifdef DISPLACED
 #define SHARED
+#ifndef TEXCOORD
 #define TEXCOORD
+#endif
 #endif
 #include "evaluate/lattice_sample.glsl"
 

@@ -101,7 +101,7 @@ vec3 from_corner(vec3 p, vec3 vector) {
 // - the points along the plus and the minus edge, as seen from the corner;
 // - of quads, the inner point as seen from where these two lead to one after the other; of triangles, as seen from the corner;
 // - of Gregory patches, the way from there (f+) to f-.
-#if defined(OWNED) && OWNED != 4 && OWNED != 5
+#ifndef KEEPS_FRAME
 #define POINT_OF(kept, i) kept[i]
 #else
 #ifdef TRIANGLE
@@ -109,7 +109,7 @@ vec3 from_corner(vec3 p, vec3 vector) {
 #else
 #define INNER_OF(kept) from_corner(from_corner(kept[1], kept[2]), kept[3])
 #endif
-#if OWNED == 5
+#ifdef TWO_FACE_POINTS
 #define LAST_OF(kept) from_corner(INNER_OF(kept), kept[4])
 #else
 #define LAST_OF(kept) INNER_OF(kept)

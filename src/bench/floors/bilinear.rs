@@ -3,7 +3,8 @@
 use super::{Input, Kit, device_buffer};
 use crate::bench::BenchError;
 use crate::bench::drawable::{Drawable, Frame, Lane, Setup, timed};
-use crate::gpu::{Buffer, Domain, Owned, Shader, Spacing, Specialization, shaders, tessellated_vertices};
+use crate::bench::shaders;
+use crate::gpu::{Buffer, Domain, Owned, Shader, Spacing, Specialization, tessellated_vertices};
 use crate::patch::{Fallback, Scheme};
 use crate::renderer::{DrawConstants, TableBytes, reads_texels, spaced};
 use crate::table::{PatchPlan, TableError, prepare};
@@ -60,7 +61,7 @@ impl Bilinear {
                 let [control, evaluation] = stages(kind);
                 let evaluation = spaced(evaluation, spacing);
                 let stages = [
-                    Shader::vertex(shaders::BENCH_BILINEAR_VERT).specialized(&specialization),
+                    Shader::vertex(shaders::BILINEAR_VERT).specialized(&specialization),
                     Shader::tess_control(control),
                     Shader::tess_evaluation(&evaluation),
                 ];
@@ -79,8 +80,8 @@ impl Bilinear {
 fn stages(kind: PatchKind) -> [&'static [u32]; 2] {
     use shaders::*;
     match kind {
-        PatchKind::Triangle => [BENCH_BILINEAR_TESC_TRIANGLE, BENCH_BILINEAR_TESE_TRIANGLE],
-        _ => [BENCH_BILINEAR_TESC, BENCH_BILINEAR_TESE],
+        PatchKind::Triangle => [BILINEAR_TESC_TRIANGLE, BILINEAR_TESE_TRIANGLE],
+        _ => [BILINEAR_TESC, BILINEAR_TESE],
     }
 }
 

@@ -11,10 +11,10 @@ use super::BenchError;
 use super::drawable::{Frame, Lane, Pass};
 use crate::gpu::{
     Buffer, BufferDesc, DepthState, DescriptorSet, DeviceContext, GpuError, GraphicsPipelineDesc, MemoryLocation,
-    Owned, RenderTarget, Shader, descriptor_set_layout, pipeline_layout, shaders,
+    Owned, RenderTarget, Shader, descriptor_set_layout, pipeline_layout,
 };
 use crate::headless::Headless;
-use crate::renderer::{DrawConstants, STAGES, View, ViewData};
+use crate::renderer::{DrawConstants, STAGES, ShaderId, View, ViewData};
 use ash::vk;
 use bytemuck::NoUninit;
 use std::sync::Arc;
@@ -103,7 +103,7 @@ impl Kit {
         let pipeline = |pass: Pass| {
             let (mut stages, mut dynamic_states) = (stages.to_vec(), input.dynamic_states.to_vec());
             match pass {
-                Pass::Pixels => stages.push(Shader::fragment(shaders::SHADE_LIT_FRAG)),
+                Pass::Pixels => stages.push(Shader::fragment(ShaderId::ShadeLitFrag.code())),
                 // As the styles of a renderer.
                 Pass::Geometry => dynamic_states.push(vk::DynamicState::RASTERIZER_DISCARD_ENABLE),
             }

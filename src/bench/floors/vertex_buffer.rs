@@ -3,9 +3,9 @@
 use super::{Input, Kit, device_buffer};
 use crate::bench::BenchError;
 use crate::bench::drawable::{Drawable, Frame, Lane, Setup, timed};
-use crate::gpu::{Buffer, GpuError, Owned, Shader, shaders};
+use crate::gpu::{Buffer, GpuError, Owned, Shader};
 use crate::patch::Scheme;
-use crate::renderer::{DrawConstants, TableBytes, topology};
+use crate::renderer::{DrawConstants, ShaderId, TableBytes, topology};
 use crate::table::{CpuSurface, LatticeIndices, lattice_vertices};
 use crate::topology::PatchKind;
 use ash::vk;
@@ -53,7 +53,7 @@ impl<'a> VertexBuffer<'a> {
         let attributes = [attribute(0, 0), attribute(1, 12)];
         let dynamic_states = &[vk::DynamicState::PRIMITIVE_TOPOLOGY];
         let input = Input { patch_control_points: 0, bindings: &bindings, attributes: &attributes, dynamic_states };
-        let stages = [Shader::vertex(shaders::EVALUATE_LATTICE_VERT)];
+        let stages = [Shader::vertex(ShaderId::EvaluateLatticeVert.code())];
         let (pipelines, pipelines_ms) = timed(|| kit.pipelines(lane, &stages, &input))?;
         let setup = Setup { pipelines: pipelines_ms, ..Setup::default() };
         Ok(Self { lane, kit, pipelines, surface, points, drawn: None, setup, _nothing: nothing })

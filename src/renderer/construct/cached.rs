@@ -3,6 +3,7 @@
 use crate::gpu::{DeviceContext, GpuError, MAX_WORKGROUPS};
 use crate::renderer::pipelines::ComputePipelines;
 use crate::renderer::shader::{Cut, PatchStages, ShaderCode};
+use crate::renderer::shader::{ShaderKey, Source};
 use crate::table::PatchPlan;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -54,8 +55,8 @@ impl CachedPipelines {
     pub(crate) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
         let stages = stages.for_control_points();
         let constants = stages.specialization(Cut::default(), self.0.context().properties());
-        self.0.make(Step::frames(stages), "COMPUTE_FRAMES_COMP", code, &constants)?;
-        self.0.make(Step::Points(stages), &stages.control_points(), code, &constants)
+        self.0.make(Step::frames(stages), ShaderKey::of(Source::FramesComp), code, &constants)?;
+        self.0.make(Step::Points(stages), stages.control_points(), code, &constants)
     }
 
     /// Records the dispatch for so many rings of a model, whose set this is.

@@ -5,6 +5,7 @@ use crate::gpu::{
     pipeline_layout,
 };
 use crate::renderer::shader::{PatchStages, ShaderCode, reads_texels};
+use crate::renderer::shader::{ShaderKey, Source};
 use crate::table::PatchPlan;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -69,12 +70,11 @@ impl Conversion {
         if self.made.contains_key(&key) {
             return Ok(());
         }
-        let [owned, stride] = key;
-        let name = format!("CONSTRUCT_CONVERT_GEOM_OWNED_{owned}");
+        let [_, stride] = key;
         let constants = [Specialization::uint(3, stride), reads_texels(self.context.properties())];
         let shaders = [
-            Shader::vertex(code.find("CONSTRUCT_CONVERT_VERT")?),
-            Shader::geometry(code.find(&name)?).specialized(&constants),
+            Shader::vertex(code.find(ShaderKey::of(Source::ConvertVert))?),
+            Shader::geometry(code.find(stages.conversion())?).specialized(&constants),
         ];
         let target = RenderTarget::RenderPass { render_pass: self.pass.raw(), subpass: 0, color_attachments: 0 };
         let desc = GraphicsPipelineDesc {

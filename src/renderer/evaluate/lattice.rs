@@ -1,6 +1,7 @@
 //! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
 
 use super::indices::{IndexCache, LatticeShape, PatchIndices, SharedIndices};
+use crate::gpu::Specialization;
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, descriptor_set_layout};
 use crate::renderer::options::{EVALUATED_VERTICES, Error, MemoryUsage, ModelId};
 use crate::renderer::pipelines::{ComputePipelines, vertex_bytes};
@@ -55,7 +56,9 @@ impl LatticePipelines {
     /// Makes what patches need.
     pub(crate) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
         let constants = stages.specialization(Cut::default(), self.pipelines.context().properties());
-        self.pipelines.make(stages, &stages.evaluation(Capture::Off, self.texcoords), code, &constants)
+        let texcoords = Specialization::bool(13, self.texcoords);
+        let constants: Vec<_> = constants.into_iter().chain([texcoords]).collect();
+        self.pipelines.make(stages, stages.evaluation(Capture::Off, self.texcoords), code, &constants)
     }
 }
 

@@ -168,7 +168,7 @@ impl ListPipelines {
         let stages = stages.for_culling();
         let constants = stages.specialization(cut, self.0.context().properties());
         let constants: Vec<_> = constants.into_iter().chain([Specialization::bool(11, stages.attributes)]).collect();
-        self.0.make((stages, cut), &stages.culling(), code, &constants)
+        self.0.make((stages, cut), stages.culling(), code, &constants)
     }
 
     /// Records the dispatch that makes a list.

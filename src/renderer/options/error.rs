@@ -1,7 +1,6 @@
 use super::displacement::DisplacementId;
 use super::factor::Factor;
 use super::id::ModelId;
-use super::style::STYLE_SHADERS;
 use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 use crate::table::TableError;
@@ -93,8 +92,8 @@ pub enum Error {
     OtherSegments { id: ModelId, factor: Factor, segments: u32 },
     #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
     BadGrid { given: u32, max: u32 },
-    #[error("Options::shaders: {name}: there is no such shader to replace: {}", instead(name))]
-    NoSuchShader { name: String },
+    #[error("Options::shaders: {name}: fragment shaders are those of styles: set Style::fragment to Fragment::Spirv")]
+    ShaderOfStyle { name: &'static str },
     #[error(
         "{what} is no SPIR-V: give whole modules, as words in this machine's order of bytes (the first is 0x07230203)"
     )]
@@ -110,14 +109,6 @@ pub(crate) const EVALUATED_VERTICES: &str = "evaluated vertices";
 
 fn smaller(table: &str) -> &'static str {
     if table == EVALUATED_VERTICES { "have fewer segments, or split the mesh" } else { "split the mesh" }
-}
-
-fn instead(shader: &str) -> &'static str {
-    if shader.starts_with(STYLE_SHADERS) {
-        "fragment shaders are those of styles: set Style::fragment to Fragment::Spirv"
-    } else {
-        "gpu::shaders::ALL names those that there are"
-    }
 }
 
 fn constructions(evaluation: Evaluation) -> String {

@@ -26,5 +26,4 @@ pub use target::{ColorEncoding, Pass, Target};
 pub use view::{MeasuredFrom, View};
 
 pub(crate) use error::EVALUATED_VERTICES;
-pub(crate) use style::STYLE_SHADERS;
 pub(crate) use view::is_size;

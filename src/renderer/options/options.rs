@@ -3,6 +3,7 @@
 use super::style::Style;
 #[cfg(doc)]
 use crate::renderer::requirements;
+use crate::renderer::shader::ShaderId;
 use crate::table::Evaluation;
 use ash::vk;
 
@@ -26,10 +27,9 @@ pub struct Options {
     pub visible_lists: bool,
     /// The caller's descriptor set layouts, from set 2 on.
     pub set_layouts: Vec<vk::DescriptorSetLayout>,
-    /// SPIR-V to use in the place of the crate's own, by the name of what it replaces (as in [`crate::gpu::shaders`]), but for
-    /// fragment shaders, which [`Style::fragment`] names: such as evaluation shaders with a `displace` function of your own, see
-    /// `glsl/lib/displace/displace.glsl`.
-    pub shaders: Vec<(String, Vec<u32>)>,
+    /// SPIR-V in the place of the crate's own shaders, but for fragment shaders, which [`Style::fragment`] names: such as evaluation
+    /// shaders with a `displace` function of your own, see `glsl/lib/displace/displace.glsl`.
+    pub shaders: Vec<(ShaderId, Vec<u32>)>,
     /// Used for all pipelines; null for none.
     pub pipeline_cache: vk::PipelineCache,
 }

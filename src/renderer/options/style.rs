@@ -8,9 +8,6 @@ use crate::{gpu::Features, renderer::Options};
 use ash::vk;
 use glam::Mat4;
 
-/// How the names of shaders start that [`Style::fragment`] chooses from.
-pub(crate) const STYLE_SHADERS: &str = "SHADE_";
-
 /// What of a model a [`Style`] draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Geometry {

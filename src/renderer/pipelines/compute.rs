@@ -2,6 +2,7 @@
 
 use crate::gpu::{ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout};
 use crate::renderer::shader::ShaderCode;
+use crate::renderer::shader::{ShaderId, ShaderKey};
 use ash::vk;
 use bytemuck::Pod;
 use rustc_hash::FxHashMap;
@@ -41,7 +42,7 @@ impl<K: Eq + Hash, P: Pod> ComputePipelines<K, P> {
     pub(crate) fn make(
         &mut self,
         key: K,
-        shader: &str,
+        shader: ShaderKey,
         code: &ShaderCode,
         constants: &[Specialization],
     ) -> Result<(), GpuError> {
@@ -49,7 +50,7 @@ impl<K: Eq + Hash, P: Pod> ComputePipelines<K, P> {
             return Ok(());
         }
         let desc = ComputePipelineDesc {
-            name: &format!("subdiv {shader}"),
+            name: &format!("subdiv {}", shader.id().map_or("shader", ShaderId::name)),
             layout: self.layout.raw(),
             shader: Shader::compute(code.find(shader)?).specialized(constants),
             cache: self.cache,

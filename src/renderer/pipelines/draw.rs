@@ -2,14 +2,16 @@
 
 use super::vertex_input::VertexInput;
 use crate::gpu::{
-    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Spacing, Specialization, pipeline_layout, shaders,
+    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Spacing, Specialization, pipeline_layout,
 };
 use crate::renderer::options::{ColorEncoding, Fragment, Geometry, Options, Style, Target};
 use crate::renderer::shader::{
     Capture, Cut, GeometryKey, PatchStages, PipelineKey, STAGES, ShaderCode, model_layout, names, reads_texels, spaced,
     subdivision_shader, view_layout,
 };
+use crate::renderer::shader::{Output, ShaderId, ShaderKey, Source};
 use crate::table::Evaluation;
+use crate::table::Sharing;
 use ash::vk;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -61,8 +63,8 @@ impl DrawPipelines {
     /// Whether instances have their control points as vertex attributes: where they fit, unless the caller has a shader of its own
     /// for texels only.
     pub(crate) fn has_attributes(&self, stages: PatchStages) -> bool {
-        let name = |attributes| PatchStages { attributes, ..stages }.evaluation(self.capture, self.texcoords);
-        let [texels, attributes] = [false, true].map(|attributes| self.shaders.is_own(&name(attributes)));
+        let key = |attributes| PatchStages { attributes, ..stages }.evaluation(self.capture, self.texcoords);
+        let [texels, attributes] = [false, true].map(|attributes| self.shaders.is_own(key(attributes)));
         stages.fit_attributes(self.context.properties()) && (attributes || !texels)
     }
 
@@ -112,25 +114,21 @@ impl DrawPipelines {
         let (constants, code);
         let (name, mut stages) = match key.geometry {
             GeometryKey::Control => {
-                let vertex = Shader::vertex(self.shaders.find("CONSTRUCT_CONTROL_MESH_VERT")?);
+                let vertex = Shader::vertex(self.shaders.find(ShaderKey::of(Source::ControlMeshVert))?);
                 ("control mesh".to_owned(), vec![vertex.specialized(&reads_texels)])
             }
             GeometryKey::Evaluated { displaced } => {
-                let vertex = match (displaced, self.texcoords) {
-                    (true, _) => "EVALUATE_LATTICE_VERT_DISPLACED",
-                    (false, true) => "EVALUATE_LATTICE_VERT_TEXCOORD",
-                    (false, false) => "EVALUATE_LATTICE_VERT",
-                };
+                let vertex = evaluated_vertices(displaced, self.texcoords);
                 ("evaluated vertices".to_owned(), vec![Shader::vertex(self.shaders.find(vertex)?)])
             }
             GeometryKey::Subdivision(level) => {
-                let vertex = Shader::vertex(self.shaders.find("CONSTRUCT_PATCH_NUMBER_VERT")?);
-                let geometry = self.shaders.find(&subdivision_shader(level, self.capture, self.texcoords))?;
+                let vertex = Shader::vertex(self.shaders.find(ShaderKey::of(Source::PatchNumberVert))?);
+                let geometry = self.shaders.find(subdivision_shader(level, self.capture, self.texcoords))?;
                 let stages = vec![vertex, Shader::geometry(geometry).specialized(&reads_texels)];
                 (format!("faces subdivided {level} times"), stages)
             }
             GeometryKey::Patches(patch, cut) => {
-                let evaluation = self.shaders.find(&patch.evaluation(self.capture, self.texcoords))?;
+                let evaluation = self.shaders.find(patch.evaluation(self.capture, self.texcoords))?;
                 constants = patch.specialization(cut, properties);
                 let stages = match patch.evaluation {
                     Evaluation::Tessellation => {
@@ -139,7 +137,7 @@ impl DrawPipelines {
                         self.tessellating(patch, &constants, &code)?
                     }
                     Evaluation::Geometry => {
-                        let tile = Shader::vertex(self.shaders.find("CONSTRUCT_PATCH_NUMBER_VERT")?);
+                        let tile = Shader::vertex(self.shaders.find(ShaderKey::of(Source::PatchNumberVert))?);
                         vec![tile, Shader::geometry(evaluation).specialized(&constants)]
                     }
                     _ => vec![Shader::vertex(evaluation).specialized(&constants)],
@@ -162,15 +160,15 @@ impl DrawPipelines {
         constants: &'s [Specialization],
         evaluation: &'s [u32],
     ) -> Result<Vec<Shader<'s>>, GpuError> {
-        let vertex = self.shaders.find(&patch.vertex(self.capture))?;
-        let control = self.shaders.find(&patch.control(self.capture, self.texcoords))?;
+        let vertex = self.shaders.find(patch.vertex())?;
+        let control = self.shaders.find(patch.control(self.capture, self.texcoords))?;
         let mut stages = vec![
             Shader::vertex(vertex).specialized(constants),
             Shader::tess_control(control).specialized(constants),
             Shader::tess_evaluation(evaluation),
         ];
         if self.capture == Capture::Triangles {
-            stages.push(Shader::geometry(shaders::CAPTURE_TRIANGLES_GEOM));
+            stages.push(Shader::geometry(self.shaders.find(ShaderKey::of(Source::TrianglesGeom))?));
         }
         Ok(stages)
     }
@@ -227,16 +225,23 @@ impl DrawPipelines {
 
 /// The fragment shader, if there is anything for it to do; `ours` are the constants of those that are ours.
 fn fragment<'a>(style: &'a Style, target: &Target, displaced: bool, ours: &'a [Specialization]) -> Option<Shader<'a>> {
-    let code = match (&style.fragment, style.geometry) {
+    let id = match (&style.fragment, style.geometry) {
         _ if style.rasterizer_discard => return None,
         (Fragment::Spirv(code), _) => return Some(Shader::fragment(code)),
         _ if target.render_target().color_attachments() == 0 => return None,
-        (Fragment::Lit, Geometry::Surface) if displaced => shaders::SHADE_LIT_FRAG_DISPLACED,
-        (Fragment::Normals, Geometry::Surface) if displaced => shaders::SHADE_NORMALS_FRAG_DISPLACED,
-        (Fragment::Lit, Geometry::Surface) => shaders::SHADE_LIT_FRAG,
-        (Fragment::Lit, Geometry::ControlFaces) => shaders::SHADE_FACETS_FRAG,
-        (Fragment::Normals, Geometry::Surface) => shaders::SHADE_NORMALS_FRAG,
-        _ => shaders::SHADE_FLAT_FRAG,
+        (Fragment::Lit, Geometry::Surface) if displaced => ShaderId::ShadeLitFragDisplaced,
+        (Fragment::Normals, Geometry::Surface) if displaced => ShaderId::ShadeNormalsFragDisplaced,
+        (Fragment::Lit, Geometry::Surface) => ShaderId::ShadeLitFrag,
+        (Fragment::Lit, Geometry::ControlFaces) => ShaderId::ShadeFacetsFrag,
+        (Fragment::Normals, Geometry::Surface) => ShaderId::ShadeNormalsFrag,
+        _ => ShaderId::ShadeFlatFrag,
     };
-    Some(Shader::fragment(code).specialized(ours))
+    Some(Shader::fragment(id.code()).specialized(ours))
+}
+
+/// The vertex shader of vertices that compute evaluated.
+fn evaluated_vertices(displaced: bool, texcoords: bool) -> ShaderKey {
+    let sharing = if displaced { Sharing::Displacement } else { Sharing::Positions };
+    let output = if texcoords { Output::Texcoords } else { Output::Surface };
+    ShaderKey { sharing, output, ..ShaderKey::of(Source::LatticeVert) }.canonical()
 }

@@ -1,7 +1,7 @@
 //! What a device must have for what the caller asks.
 
-use crate::gpu::{ContextOptions, DeviceProperties, Features, shaders};
-use crate::renderer::options::{Error, Fragment, Options, Pass, STYLE_SHADERS, Target};
+use crate::gpu::{ContextOptions, DeviceProperties, Features};
+use crate::renderer::options::{Error, Fragment, Options, Pass, Target};
 use crate::renderer::shader::{MODEL_BUFFERS, ViewData, is_spirv};
 use ash::vk;
 
@@ -60,7 +60,7 @@ impl Options {
 ///
 /// # Errors
 /// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::ViewsTooLarge`],
-/// [`Error::BadSamples`], [`Error::NoSuchShader`], [`Error::NotSpirv`].
+/// [`Error::BadSamples`], [`Error::ShaderOfStyle`], [`Error::NotSpirv`].
 ///
 /// # Safety
 /// `physical_device` comes from `instance`, whose version is at least 1.1.
@@ -92,9 +92,10 @@ fn check_options(target: &Target, options: &Options) -> Result<(), Error> {
     if let Some(given) = samples.find(|samples| samples.as_raw().count_ones() != 1) {
         return Err(Error::BadSamples { given });
     }
-    for (name, code) in &options.shaders {
-        if shaders::find(name).is_none() || name.starts_with(STYLE_SHADERS) {
-            return Err(Error::NoSuchShader { name: name.clone() });
+    for (id, code) in &options.shaders {
+        let name = id.name();
+        if id.is_of_style() {
+            return Err(Error::ShaderOfStyle { name });
         }
         if !is_spirv(code) {
             return Err(Error::NotSpirv { what: format!("Options::shaders: {name}") });

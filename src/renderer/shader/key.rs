@@ -1,9 +1,10 @@
-//! Which shaders a patch is drawn with: found by name, so that a scheme adds files and its arm in [`files`].
+//! The shaders and the pipelines of a patch, by what tells them apart.
 
+use super::axes::{Output, Patch, ShaderKey, Source};
 use super::cut::Cut;
 use crate::gpu::{DeviceProperties, Spacing, Specialization};
 use crate::patch::Scheme;
-use crate::table::{Construction, Evaluation, Sharing, TEXEL_BYTES, kept_texels};
+use crate::table::{Construction, Evaluation, Sharing, TEXEL_BYTES};
 use crate::topology::PatchKind;
 
 /// What the tessellation stages do besides drawing: nothing, or write down what they computed.
@@ -80,30 +81,29 @@ pub(crate) struct PatchStages {
     pub attributes: bool,
 }
 
-impl Sharing {
-    /// At the end of a shader's name.
-    fn suffix(self, capture: Capture) -> &'static str {
-        match self {
-            // Control points are the same in all.
-            _ if capture == Capture::Points => "",
-            Self::Positions => "",
-            Self::Normals => "_SHARED",
-            Self::Displacement => "_DISPLACED",
-        }
+/// The patch that a scheme's shaders are compiled for.
+fn patch(scheme: Scheme, kind: PatchKind) -> Patch {
+    match (kind, scheme) {
+        (PatchKind::Regular, _) => Patch::Bicubic,
+        (PatchKind::IrregularQuad, Scheme::Gregory | Scheme::GregoryFitted) => Patch::GregoryQuad,
+        (PatchKind::Triangle, Scheme::Gregory | Scheme::GregoryFitted) => Patch::GregoryTriangle,
+        (_, Scheme::Acc) => Patch::AccQuad,
+        (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => Patch::PmQuad,
+        (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => Patch::PmTriangle,
+        (PatchKind::Pentagon, _) => Patch::PmPentagon,
     }
 }
 
-/// The files `glsl/construct/_.tesc` and `glsl/evaluate/_.tese` of a kind of patch; the latter is also its name in
-/// `glsl/lib/draw/kinds.glsl`.
-fn files(scheme: Scheme, kind: PatchKind) -> [&'static str; 2] {
-    match (kind, scheme) {
-        (PatchKind::Regular, _) => ["REGULAR", "BICUBIC"],
-        (PatchKind::IrregularQuad, Scheme::Gregory | Scheme::GregoryFitted) => ["GREGORY", "GREGORY_QUAD"],
-        (PatchKind::Triangle, Scheme::Gregory | Scheme::GregoryFitted) => ["GREGORY", "GREGORY_TRIANGLE"],
-        (_, Scheme::Acc) => ["ACC", "ACC"],
-        (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_QUAD"],
-        (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => ["PM", "PM_TRIANGLE"],
-        (PatchKind::Pentagon, _) => ["PM", "PM_PENTAGON"],
+impl Capture {
+    /// What shaders hand on then.
+    fn output(self, texcoords: bool) -> Output {
+        match self {
+            Self::Off if texcoords => Output::Texcoords,
+            Self::Off => Output::Surface,
+            Self::Points => Output::CapturePoints,
+            Self::Vertices | Self::Triangles => Output::CaptureVertices,
+            Self::Grid => Output::CaptureGrid,
+        }
     }
 }
 
@@ -143,7 +143,7 @@ impl PatchStages {
 
     /// Where the attributes of an instance are in what is kept of a patch, in bytes.
     pub(crate) fn attribute_offsets(self) -> impl Iterator<Item = u32> {
-        let texels = kept_texels(self.scheme.owned(self.kind), self.sharing);
+        let texels = self.sharing.kept_texels(self.scheme.owned(self.kind));
         let of_corner = move |k| (0..texels).map(move |i| TEXEL_BYTES as u32 * (k * self.stride + i));
         (0..self.kind.corners() as u32).flat_map(of_corner)
     }
@@ -153,41 +153,34 @@ impl PatchStages {
         TEXEL_BYTES as u32 * self.stride * self.kind.corners() as u32
     }
 
-    /// The name of the shader that makes control points for all draws of a frame.
-    pub(crate) fn control_points(self) -> String {
-        let sharing = self.sharing.suffix(Capture::Off);
-        format!("COMPUTE_CONTROL_POINTS_COMP{}{}{sharing}", self.scheme_suffix(), self.domain_suffix())
+    /// The key of one of its shaders.
+    fn shader(self, source: Source, output: Output) -> ShaderKey {
+        let (patch, sharing, attributes) = (patch(self.scheme, self.kind), self.sharing, self.attributes);
+        ShaderKey { source, patch, sharing, output, attributes, level: 0 }.canonical()
     }
 
-    /// Of shaders that make control points and are not of regular patches.
-    fn scheme_suffix(self) -> String {
-        match files(self.scheme, self.kind) {
-            ["REGULAR", _] => String::new(),
-            [file, _] => format!("_{file}"),
+    /// The shader that makes control points for all draws of a frame.
+    pub(crate) fn control_points(self) -> ShaderKey {
+        self.shader(Source::ControlPointsComp, Output::Surface)
+    }
+
+    /// The shader that makes them in a pass of its own.
+    pub(crate) fn conversion(self) -> ShaderKey {
+        self.shader(Source::ConvertGeom, Output::Surface)
+    }
+
+    /// The vertex shader.
+    pub(crate) fn vertex(self) -> ShaderKey {
+        match self.construction {
+            Construction::TwoStage => self.shader(Source::TwoStageVert, Output::Surface),
+            Construction::Stencil | Construction::Cached => ShaderKey::of(Source::PatchNumberVert),
         }
     }
 
-    /// Of shaders that are not of quads.
-    fn domain_suffix(self) -> &'static str {
-        match self.kind {
-            PatchKind::Triangle => "_TRIANGLE",
-            PatchKind::Pentagon => "_PENTAGON",
-            PatchKind::Regular | PatchKind::IrregularQuad => "",
-        }
-    }
-
-    /// The name of the vertex shader.
-    pub(crate) fn vertex(self, capture: Capture) -> String {
-        if self.construction != Construction::TwoStage {
-            return "CONSTRUCT_PATCH_NUMBER_VERT".to_owned();
-        }
-        format!("CONSTRUCT_TWO_STAGE_VERT{}{}", self.scheme_suffix(), self.sharing.suffix(capture))
-    }
-
-    /// Whether its control points enclose it, so that they tell whether it can be seen. GLSL twin: `HULL` in
+    /// Whether its control points enclose it, so that they tell whether it can be seen. See
     /// `glsl/lib/edges/culling.glsl`.
     pub(crate) fn has_hull(self) -> bool {
-        !matches!(files(self.scheme, self.kind)[0], "PM")
+        patch(self.scheme, self.kind).shaders().hull > 0
     }
 
     /// What tells apart the pipelines that list which patches can be seen.
@@ -200,18 +193,13 @@ impl PatchStages {
         }
     }
 
-    /// The name of the shader that lists which patches can be seen.
-    pub(crate) fn culling(self) -> String {
-        let construction = match self.construction {
-            Construction::TwoStage => "_TWO_STAGE",
-            Construction::Stencil => "_STENCIL",
-            Construction::Cached => "",
-        };
-        format!("COMPUTE_CULL_COMP{}{}{construction}", self.scheme_suffix(), self.domain_suffix())
+    /// The shader that lists which patches can be seen.
+    pub(crate) fn culling(self) -> ShaderKey {
+        self.shader(Source::CullComp, Output::Surface)
     }
 
     /// What the shaders of draws that are cut so are specialized to, but for those that evaluate and shade.
-    pub(crate) fn specialization(self, cut: Cut, device: &DeviceProperties) -> [Specialization; 10] {
+    pub(crate) fn specialization(self, cut: Cut, device: &DeviceProperties) -> [Specialization; 11] {
         [
             Specialization::uint(0, self.kind.corners() as u32),
             Specialization::float(2, device.max_tessellation_level as f32),
@@ -223,54 +211,37 @@ impl PatchStages {
             Specialization::bool(8, self.edge_factors),
             reads_texels(device),
             Specialization::bool(10, cut.is_listed()),
+            Specialization::uint(12, self.construction as u32),
         ]
     }
 
-    /// The name of the control shader.
-    pub(crate) fn control(self, capture: Capture, texcoords: bool) -> String {
-        let [file, _] = files(self.scheme, self.kind);
-        let mut name = match self.construction {
-            Construction::TwoStage => format!("CONSTRUCT_{file}_TESC"),
-            Construction::Stencil => format!("CONSTRUCT_STENCIL_TESC_OWNED_{}", self.scheme.owned(self.kind)),
-            Construction::Cached => format!("CONSTRUCT_CACHED_TESC_OWNED_{}", self.scheme.owned(self.kind)),
+    /// The control shader.
+    pub(crate) fn control(self, capture: Capture, texcoords: bool) -> ShaderKey {
+        let source = match self.construction {
+            Construction::TwoStage => Source::TwoStageTesc,
+            Construction::Stencil | Construction::Cached => Source::TablesTesc,
         };
-        name += self.domain_suffix();
-        name += self.sharing.suffix(capture);
-        name += match capture {
-            Capture::Points => "_CAPTURE_POINTS",
-            Capture::Vertices | Capture::Grid | Capture::Triangles => "_CAPTURE",
-            // Displacement comes with texture coordinates.
-            Capture::Off if texcoords && self.sharing != Sharing::Displacement => "_TEXCOORD",
-            Capture::Off => "",
+        let output = match capture {
+            Capture::Grid => Output::CaptureVertices,
+            capture => capture.output(texcoords),
         };
-        name
+        self.shader(source, output)
     }
 
-    /// The name of the shader that evaluates.
-    pub(crate) fn evaluation(self, capture: Capture, texcoords: bool) -> String {
-        let [_, file] = files(self.scheme, self.kind);
-        let mut name = match self.evaluation {
-            // Subdivision has no patches: see `subdivision::shader`.
-            Evaluation::Tessellation | Evaluation::Subdivision => format!("EVALUATE_{file}_TESE"),
-            Evaluation::Compute => format!("EVALUATE_LATTICE_COMP_{file}"),
-            Evaluation::Instanced | Evaluation::GeometryTwoPass => format!("EVALUATE_INSTANCED_VERT_{file}"),
-            Evaluation::Geometry => format!("EVALUATE_STRIPS_GEOM_{file}"),
+    /// The shader that evaluates.
+    pub(crate) fn evaluation(self, capture: Capture, texcoords: bool) -> ShaderKey {
+        let source = match self.evaluation {
+            // Subdivision has no patches: see `subdivision_shader`.
+            Evaluation::Tessellation | Evaluation::Subdivision => Source::TessellationTese,
+            Evaluation::Compute => Source::LatticeComp,
+            Evaluation::Instanced | Evaluation::GeometryTwoPass => Source::InstancedVert,
+            Evaluation::Geometry => Source::StripsGeom,
         };
-        if (self.evaluation, self.construction) == (Evaluation::Geometry, Construction::Cached) {
-            name += "_CACHED";
-        }
-        name += self.sharing.suffix(capture);
-        name += match capture {
-            Capture::Grid => "_CAPTURE_GRID",
-            Capture::Vertices | Capture::Triangles => "_CAPTURE",
-            // Displacement comes with texture coordinates.
-            Capture::Off if texcoords && self.sharing != Sharing::Displacement => "_TEXCOORD",
-            Capture::Off | Capture::Points => "",
+        let output = match capture {
+            Capture::Points => Output::Surface,
+            capture => capture.output(texcoords),
         };
-        if self.attributes {
-            name += "_ATTRIBUTES";
-        }
-        name
+        self.shader(source, output)
     }
 }
 
@@ -279,71 +250,30 @@ pub(crate) fn reads_texels(device: &DeviceProperties) -> Specialization {
     Specialization::bool(9, device.reads_texels)
 }
 
-/// The name of the geometry shader that subdivides faces.
-pub(crate) fn subdivision_shader(level: u32, capture: Capture, texcoords: bool) -> String {
-    let mut name = String::from("SUBDIVIDE_FACES_GEOM");
-    if level > 0 {
-        name += &format!("_LEVEL_{level}");
-    }
-    name += match capture {
-        Capture::Off if texcoords => "_TEXCOORD",
-        Capture::Off => "",
-        Capture::Grid => "_CAPTURE_GRID",
-        // There is none: what else is captured is of patches.
-        _ => "_CAPTURE",
-    };
-    name
+/// The geometry shader that subdivides faces.
+pub(crate) fn subdivision_shader(level: u32, capture: Capture, texcoords: bool) -> ShaderKey {
+    let output = capture.output(texcoords);
+    ShaderKey { level: level as u8, output, ..ShaderKey::of(Source::FacesGeom) }.canonical()
 }
 
 #[cfg(all(test, feature = "headless"))]
 mod tests {
     use super::*;
-    use crate::gpu::shaders;
 
     #[test]
-    fn every_patch_has_its_shaders() {
-        let modes = [Capture::Off, Capture::Points, Capture::Vertices, Capture::Grid, Capture::Triangles];
-        for (scheme, kind) in Scheme::ALL.into_iter().flat_map(|scheme| PatchKind::ALL.map(|kind| (scheme, kind))) {
-            if matches!(scheme, Scheme::Acc | Scheme::CPatch) && kind == PatchKind::Triangle
-                || kind == PatchKind::Pentagon && !scheme.has_pentagons()
-            {
-                continue;
-            }
-            let ways = Evaluation::ALL.into_iter().flat_map(|e| e.constructions().iter().map(move |&c| (e, c)));
-            for ((evaluation, construction), sharing) in
-                ways.flat_map(|way| [Sharing::Positions, Sharing::Normals, Sharing::Displacement].map(|s| (way, s)))
-            {
-                let tessellates = evaluation == Evaluation::Tessellation;
-                if sharing != Sharing::Positions && !(scheme.is_watertight() && evaluation.shares(construction)) {
+    fn shaders_are_of_the_scheme_that_is_registered() {
+        for scheme in Scheme::ALL {
+            for kind in PatchKind::ALL {
+                let lacks = matches!((scheme, kind), (Scheme::Acc | Scheme::CPatch, PatchKind::Triangle));
+                if lacks || kind == PatchKind::Pentagon && !scheme.has_pentagons() {
                     continue;
                 }
-                let spacing = Spacing::Equal;
-                let attributes = matches!(evaluation, Evaluation::Instanced | Evaluation::GeometryTwoPass);
-                let stages = PatchStages {
-                    scheme,
-                    kind,
-                    construction,
-                    evaluation,
-                    spacing,
-                    sharing,
-                    has_speakers: true,
-                    edge_factors: false,
-                    stride: 9,
-                    attributes,
-                };
-                for (capture, texcoords) in modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]) {
-                    let made = [stages.vertex(capture), stages.control(capture, texcoords), stages.control_points()];
-                    let culling = stages.has_hull().then(|| stages.culling());
-                    let watched = match evaluation {
-                        Evaluation::Tessellation => true,
-                        Evaluation::Compute => capture == Capture::Off,
-                        _ => matches!(capture, Capture::Off | Capture::Vertices),
-                    };
-                    let evaluation = watched.then(|| stages.evaluation(capture, texcoords));
-                    for name in made.into_iter().filter(|_| tessellates).chain(culling).chain(evaluation) {
-                        assert!(shaders::find(&name).is_some(), "{name}");
-                    }
-                }
+                let shaders = patch(scheme, kind).shaders();
+                assert_eq!(
+                    (shaders.corners, shaders.owned, shaders.keeps_frame),
+                    (kind.corners(), scheme.owned(kind), scheme.shares_frame(kind)),
+                    "{scheme:?} {kind:?}"
+                );
             }
         }
     }

@@ -1,16 +1,25 @@
 //! The border to the shaders: which one draws a patch, what it reads, and the bytes of that.
 
+use crate::table::Sharing;
+
+#[allow(dead_code, reason = "what is left is for build.rs")]
+mod axes;
 mod code;
+#[cfg(test)]
+mod contraction;
 mod cut;
 mod gpu_data;
+mod ids;
 mod key;
 mod layout;
 pub(crate) mod names;
 mod spirv;
 
+pub(crate) use axes::{Output, ShaderKey, Source};
 pub(crate) use code::ShaderCode;
 pub(crate) use cut::Cut;
 pub(crate) use gpu_data::{COUNTER_CLOCKWISE_FLAG, DrawConstants, ViewData, displacement_flags};
+pub use ids::ShaderId;
 pub(crate) use key::{Capture, GeometryKey, PatchStages, PipelineKey, reads_texels, subdivision_shader};
 pub(crate) use layout::{FRAMES_BINDING, MODEL_BUFFERS, POINTS_BINDING, STAGES, TEXELS, model_layout, view_layout};
 pub(crate) use spirv::{is_spirv, spaced};

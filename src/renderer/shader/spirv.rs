@@ -36,11 +36,11 @@ pub(crate) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::shaders;
+    use crate::renderer::ShaderId;
 
     #[test]
     fn spacing_is_one_word() {
-        let equal = shaders::find("EVALUATE_BICUBIC_TESE").unwrap();
+        let equal = ShaderId::EvaluateTessellationTeseBicubic.code();
         assert_eq!(spaced(equal, Spacing::Equal), equal);
         for (spacing, mode) in [(Spacing::FractionalEven, 2), (Spacing::FractionalOdd, 3)] {
             let code = spaced(equal, spacing);

@@ -3,7 +3,7 @@
 #ifndef ACC_POINTS_GLSL
 #define ACC_POINTS_GLSL
 
-#include "evaluate/acc.glsl"
+#include "acc.glsl"
 
 void acc_points(uint k) {
     uint next = (k + 1u) & 3u;
@@ -22,5 +22,7 @@ void acc_points(uint k) {
     OWNED_BY(k)[7] =
         acc_across(inner, in_inner(k, 2), along_minus, in_inner(before, 3), t_minus, cosine, in_cosine(before));
 }
+
+#define POINT_STEPS STEP(acc_points)
 
 #endif

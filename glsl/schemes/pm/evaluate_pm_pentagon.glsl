@@ -4,7 +4,7 @@
 #define EVALUATE_PM_PENTAGON_GLSL
 
 #include "evaluate/patch.glsl"
-#include "evaluate/pm.glsl"
+#include "pm.glsl"
 
 PmCorner corner_of(uint k) {
     return PmCorner(owned[k][0], owned[k][1], owned[k][2], owned[k][3], owned[k][4], owned[k][5]);

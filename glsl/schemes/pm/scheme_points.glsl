@@ -3,7 +3,18 @@
 #ifndef PM_POINTS_GLSL
 #define PM_POINTS_GLSL
 
-#include "evaluate/pm_mu.glsl"
+#include "pm_mu.glsl"
+
+// What each corner gives to the centre of the patch; of a pentagon, the sum of b112 of sectors i - 1 and i.
+#ifdef CONTROL_STAGE
+layout(location = 14) patch out vec3 centre_share[CORNERS];
+#ifdef PENTAGON
+layout(location = 19) patch out vec3 b112_sum[CORNERS];
+#endif
+#else
+vec3 centre_share[CORNERS];
+vec3 b112_sum[CORNERS];
+#endif
 
 // b211 at the near end of an edge, or b121 at its far end, seen from there; `across` is f - e.
 vec3 pm_beside(vec3 v, vec3 t0, vec3 t1, vec3 across, float cos_near, float cos_far) {
@@ -89,5 +100,12 @@ void pm_point_inside(uint k) {
         (1.0 / 16.0) * (owned[next][3] + owned[k][4] - owned[before][4] - owned[opposite][3]);
 #endif
 }
+
+// Each step needs what the corners made in the one before.
+#ifdef PENTAGON
+#define POINT_STEPS STEP(pm_outer_points) BETWEEN STEP(pm_points_beside) BETWEEN STEP(pm_sum_inside) BETWEEN STEP(pm_point_inside)
+#else
+#define POINT_STEPS STEP(pm_outer_points) BETWEEN STEP(pm_points_beside) BETWEEN STEP(pm_point_inside)
+#endif
 
 #endif

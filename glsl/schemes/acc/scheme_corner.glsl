@@ -5,8 +5,6 @@
 
 #include "construct/corner_faces.glsl"
 
-#define INNER 5
-
 // The number of edges around the vertex, were it inside.
 float acc_valence(Ring ring) {
     return float(ring.faces) * (ring.open ? (ring.cone ? 4.0 : 2.0) : 1.0);
@@ -34,6 +32,10 @@ vec3[INNER] acc_corner(Ring ring, CornerFaces at, vec3 p, vec3 plus, vec3 minus)
     inner[3] = ring.fallback ? p + plus : inner[1];
     inner[4] = ring.fallback ? p + minus : inner[2];
     return inner;
+}
+
+vec3[INNER] scheme_corner(Ring ring, CornerFaces faces, vec3 p, vec3 plus, vec3 minus, vec3 transversal[2]) {
+    return acc_corner(ring, faces, p, plus, minus);
 }
 
 #endif

@@ -1,16 +1,17 @@
-// Second stage of the two-stage construction: an ACC patch from its corners' rings.
-// variants: CAPTURE, CAPTURE_POINTS, TEXCOORD
+// Second stage of the two-stage construction: the control points of a patch from what its corners took from their rings.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#define OWNED 8
-#define INNER 5
+#define CONTROL_STAGE
 #include "construct/control.glsl"
 #include "construct/frames.glsl"
-#include "construct/acc_points.glsl"
+#include "scheme_points.glsl"
+
+#define STEP(f) f(k);
+#define BETWEEN barrier();
 
 void main() {
     uint k = uint(gl_InvocationID);
-    acc_points(k);
+    POINT_STEPS
     finish_framed_corner(k);
     barrier();
     finish_patch(in_patch_number[0]);

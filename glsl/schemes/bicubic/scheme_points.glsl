@@ -14,4 +14,6 @@ void bicubic_points(uint k) {
     OWNED_BY(k)[3] = inner - (plus + minus);
 }
 
+#define POINT_STEPS STEP(bicubic_points)
+
 #endif

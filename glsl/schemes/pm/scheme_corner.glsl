@@ -4,8 +4,6 @@
 
 #include "construct/corner_faces.glsl"
 
-#define INNER 3
-
 // f_i of a ring face; `first` and `second` are the ends of its edges.
 vec3 pm_face(Face face, vec3 centre, vec3 first, vec3 second) {
     vec3 diagonal = face.triangle ? 0.5 * (first + second) : face.diagonal;
@@ -16,6 +14,10 @@ vec3[INNER] pm_corner(CornerFaces at) {
     vec3 f = pm_face(at.face, at.centre, at.here, at.next);
     return vec3[INNER](f, 0.5 * (f + pm_face(at.face_before, at.centre, at.before, at.here)),
                        0.5 * (f + pm_face(at.face_after, at.centre, at.next, at.after)));
+}
+
+vec3[INNER] scheme_corner(Ring ring, CornerFaces faces, vec3 p, vec3 plus, vec3 minus, vec3 transversal[2]) {
+    return pm_corner(faces);
 }
 
 #endif

@@ -26,4 +26,6 @@ void gregory_points(uint k) {
     OWNED_BY(k)[4] = f_minus - f_plus;
 }
 
+#define POINT_STEPS STEP(gregory_points)
+
 #endif

@@ -5,7 +5,7 @@
 //! come from, through variables and calls, and wants every sum and product on the way decorated `NoContraction`: what
 //! `precise` in GLSL comes to, where glslang carries it. What is compared and what becomes an integer ends the way.
 
-use super::ALL;
+use super::ShaderId;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// Functions whose sums and products may be fused, and why.
@@ -197,20 +197,16 @@ impl<'c> Module<'c> {
     }
 }
 
-/// Not of a patch's vertices: what colours pixels, and benchmarks of surfaces that are not watertight.
-fn makes_vertices(name: &str) -> bool {
-    !name.contains("_FRAG") && !name.starts_with("BENCH_")
-}
-
 #[test]
 fn nothing_shared_is_fused() {
     let (mut functions, mut wrong, mut unused) = (BTreeSet::new(), Vec::new(), EXCEPTIONS.to_vec());
-    for (shader, code) in ALL.iter().filter(|(name, _)| makes_vertices(name)) {
-        for (function, fused) in Module::new(code).functions() {
+    // What colours pixels makes no vertices.
+    for shader in ShaderId::ALL.iter().filter(|shader| !shader.is_of_style()) {
+        for (function, fused) in Module::new(shader.code()).functions() {
             if fused > 0 {
                 unused.retain(|(name, _)| *name != function);
                 if EXCEPTIONS.iter().all(|(name, _)| *name != function) {
-                    wrong.push(format!("{fused} in {function} of {shader}"));
+                    wrong.push(format!("{fused} in {function} of {}", shader.name()));
                 }
             }
             functions.insert(function);
@@ -224,7 +220,7 @@ fn nothing_shared_is_fused() {
 /// `precise` taken away from one function.
 #[test]
 fn what_may_be_fused_is_found() {
-    let code = super::EVALUATE_GREGORY_QUAD_TESE;
+    let code = ShaderId::EvaluateTessellationTeseGregoryQuad.code();
     assert!(Module::new(code).functions().values().all(|&fused| fused == 0));
     for name in ["curve_point", "curve_basis", "exact_cross", "exact_row", "blend"] {
         let mut module = Module::new(code);

@@ -2,7 +2,7 @@
 #ifndef PM_GLSL
 #define PM_GLSL
 
-#include "evaluate/pm_mu.glsl"
+#include "pm_mu.glsl"
 
 const float C = 1.0 - MU;
 

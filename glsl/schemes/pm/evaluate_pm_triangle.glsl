@@ -4,7 +4,7 @@
 #define EVALUATE_PM_TRIANGLE_GLSL
 
 #include "evaluate/patch.glsl"
-#include "evaluate/pm.glsl"
+#include "pm.glsl"
 
 // A sum with the weights of the sector's corner: constant indices into the inputs are much faster than varying ones.
 vec3 pick(vec3 which, vec3 x0, vec3 x1, vec3 x2) {
