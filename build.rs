@@ -15,6 +15,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{env, fs, thread};
 
+#[allow(dead_code, reason = "what is left is for the renderer")]
 #[path = "src/renderer/shader/axes.rs"]
 mod axes;
 #[path = "src/table/sharing.rs"]

@@ -4,17 +4,6 @@ use crate::gpu::{Features, Spacing};
 use crate::renderer::options::{Error, ModelId, ModelOptions};
 use crate::table::{Evaluation, ModelTables, Sharing};
 
-impl Evaluation {
-    /// What the device must have for it, besides what everything needs.
-    pub fn features(self) -> Features {
-        Features {
-            geometry: matches!(self, Self::Geometry | Self::GeometryTwoPass | Self::Subdivision),
-            vertex_stores: self == Self::GeometryTwoPass,
-            ..Features::NONE
-        }
-    }
-}
-
 /// Tells what a model has that its evaluation does not go with, or what the device lacks for it.
 pub(crate) fn check_evaluation(
     id: ModelId,

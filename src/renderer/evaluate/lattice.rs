@@ -5,7 +5,7 @@ use crate::gpu::Specialization;
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, descriptor_set_layout};
 use crate::renderer::options::{EVALUATED_VERTICES, Error, MemoryUsage, ModelId};
 use crate::renderer::pipelines::{ComputePipelines, vertex_bytes};
-use crate::renderer::shader::{Capture, Cut, PatchStages, ShaderCode};
+use crate::renderer::shader::{Cut, Output, PatchStages, ShaderCode, Source};
 use crate::table::{Evaluation, Sharing};
 use crate::table::{PatchGroup, PatchPlan, lattice_vertices};
 use ash::vk;
@@ -58,7 +58,7 @@ impl LatticePipelines {
         let constants = stages.specialization(Cut::default(), self.pipelines.context().properties());
         let texcoords = Specialization::bool(13, self.texcoords);
         let constants: Vec<_> = constants.into_iter().chain([texcoords]).collect();
-        self.pipelines.make(stages, stages.evaluation(Capture::Off, self.texcoords), code, &constants)
+        self.pipelines.make(stages, stages.shader(Source::LatticeComp, Output::Surface), code, &constants)
     }
 }
 

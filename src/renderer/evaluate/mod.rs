@@ -1,11 +1,22 @@
-//! Evaluations besides the tessellation stages.
+//! Evaluations: each a file, which [`path`](path::path) finds.
 
 mod check;
+mod compute;
+mod drawn;
+mod geometry;
 mod indices;
+mod instanced;
 mod lattice;
+mod path;
+mod recorder;
 pub(crate) mod subdivision;
+mod tessellation;
+mod two_pass;
 
 pub(crate) use check::check_evaluation;
+pub(crate) use drawn::{Asked, Drawn};
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub(crate) use indices::topology;
 pub(crate) use lattice::{BoundLattice, Lattice, LatticePipelines};
+pub(crate) use path::path;
+pub(crate) use recorder::{Bound, DrawnGroup, Recorder};

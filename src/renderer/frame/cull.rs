@@ -5,13 +5,14 @@
 //! their order, but of every 128 first those within the frustum, then those that cross it. Where control points are not cached it
 //! makes those of all patches, and the draws make those of the patches that are left again.
 
-use super::draw::Bound;
+#[cfg(doc)]
+use crate::renderer::{Evaluation};
 use super::lists::{FrameLists, ListLayout};
 use super::visible::{ItemLists, List, VisibleItem, VisibleItems};
 use super::{Renderer, RetiredObject};
+use crate::renderer::evaluate::{Bound, path};
 use crate::renderer::options::{Cull, DrawItem, Error, Geometry, View};
 use crate::renderer::shader::{Cut, PatchStages};
-use crate::table::Evaluation;
 use crate::table::PatchGroup;
 use ash::vk;
 
@@ -59,7 +60,7 @@ impl Renderer {
             let lists = self.take_lists(frame_index, view, item)?;
             let segments = match lists.is_empty() {
                 true => None,
-                false => self.model(item.model)?.drawn(item.factor)?.lattice_segments(),
+                false => self.model(item.model)?.drawn(item.factor)?.lattice().map(|lattice| lattice.segments),
             };
             listed.push(VisibleItem { item: *item, lists, segments });
         }
@@ -146,10 +147,8 @@ impl Renderer {
         for (number, stages, group) in self.listed_groups(item)? {
             let layout = ListLayout::new(stages);
             for (first, count) in pieces(group, layout) {
-                let patches_per_instance = match model.evaluation {
-                    Evaluation::Tessellation => self.patches_per_instance(stages, count, most),
-                    _ => 0,
-                };
+                let properties = self.context.properties();
+                let patches_per_instance = path(model.evaluation).patches_per_instance(properties, stages, count, most);
                 let list = List { group: number, first, count, offset: 0, patches_per_instance };
                 lists.push((list, layout.bytes(count)));
             }

@@ -2,15 +2,14 @@
 
 use super::Renderer;
 use super::visible::ItemLists;
-use crate::gpu::{Domain, tessellated_vertices};
-use crate::renderer::evaluate::{BoundLattice, subdivision};
-use crate::renderer::model::{Drawn, Model};
+use crate::renderer::evaluate::{Bound, BoundLattice, DrawnGroup, Recorder, path};
+use crate::renderer::model::Model;
 use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View, is_size};
 use crate::renderer::shader::{
-    COUNTER_CLOCKWISE_FLAG, Cut, DrawConstants, GeometryKey, PatchStages, PipelineKey, STAGES, ViewData,
+    COUNTER_CLOCKWISE_FLAG, Cut, DrawConstants, GeometryKey, PatchStages, PipelineKey, ViewData,
 };
+#[cfg(doc)]
 use crate::table::Evaluation;
-use crate::table::{TILE_VERTICES, lattice_tiles};
 use ash::vk;
 
 impl DrawItem {
@@ -25,16 +24,6 @@ impl DrawItem {
         let flags = model.displacement_flags(self.displacement) | back;
         DrawConstants { flags, ..DrawConstants::new(&self.transform, [value, scale, bias]) }
     }
-}
-
-/// What is bound in a command buffer so far.
-#[derive(Default)]
-pub(crate) struct Bound {
-    pipeline: vk::Pipeline,
-    set: vk::DescriptorSet,
-    pub lattice: BoundLattice,
-    /// Whether the rasterizer was told to discard since the last pipeline that cannot be told.
-    discards: bool,
 }
 
 impl Renderer {
@@ -111,20 +100,14 @@ impl Renderer {
         // Of patches that are not looked at, all are drawn.
         let cuts = if lists { [Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { [cut; 2] };
         for each in cuts {
-            if model.made & each.bit() == 0 {
-                self.pipelines.make(&model.stages, each)?;
+            if model.made & each.bit() == 0 || path(model.evaluation).depends_on_factor() {
+                self.pipelines.make(&model.stages, each, factor)?;
                 model.made |= each.bit();
             }
         }
         if lists {
             let mut listed = model.stages.iter().filter(|stages| stages.has_hull());
             listed.try_for_each(|&stages| self.list_pipelines.make(stages, cut, &self.pipelines.draws.shaders))?;
-        }
-        // A factor that is none of a level is told by the draw.
-        if model.evaluation == Evaluation::Subdivision
-            && let Ok(level) = subdivision::level(id, factor)
-        {
-            self.pipelines.draws.make_subdivision(level)?;
         }
         Ok(())
     }
@@ -143,139 +126,96 @@ impl Renderer {
     ) -> Result<(), Error> {
         let style = self.style(item)?;
         let (model, most) = self.check_item(view, item)?;
-        let device = self.context.device();
-        let mut constants = item.constants(model, style, view, most);
-        let lists = lists.filter(|lists| !lists.is_empty());
-        let cull = if lists.is_some() { Cull::NONE } else { item.cull };
-        let cut = Cut::new(item.factor, cull);
+        let (device, layout) = (self.context.device(), self.pipelines.draws.layout.raw());
+        if bound.set != model.set.raw {
+            bound.set = model.set.raw;
+            let point = vk::PipelineBindPoint::GRAPHICS;
+            // SAFETY: as the caller of `cmd_draw` promises.
+            unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set.raw], &[]) };
+        }
+        let constants = item.constants(model, style, view, most);
+        let properties = self.context.properties();
+        let mut recorder = Recorder { device, properties, layout, cmd, bound, constants };
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
-            if bound.set != model.set.raw {
-                bound.set = model.set.raw;
-                let point = vk::PipelineBindPoint::GRAPHICS;
-                let layout = self.pipelines.draws.layout.raw();
-                device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set.raw], &[]);
+            if style.geometry == Geometry::Surface {
+                let lists = lists.filter(|lists| !lists.is_empty());
+                self.cmd_draw_surface(&mut recorder, (model, most), item, style, lists)
+            } else {
+                self.cmd_draw_control(&mut recorder, model, item, style);
+                Ok(())
             }
-            if style.geometry != Geometry::Surface {
-                bound.lattice = BoundLattice::default();
-                constants.colour = item.colors[0];
-                let key = PipelineKey { style: item.style, geometry: GeometryKey::Control };
-                self.bind(cmd, style, self.pipelines.draws.get(key), bound);
-                self.push(cmd, &constants);
-                if let Some(control) = &model.control {
-                    let (first, count) = match style.geometry {
-                        Geometry::ControlEdges => (0, control.edges),
-                        _ => (control.edges, control.faces),
-                    };
-                    device.cmd_bind_index_buffer(cmd, control.buffer.raw(), 0, vk::IndexType::UINT32);
-                    device.cmd_draw_indexed(cmd, count, 1, first, control.vertex_offset, 0);
-                }
-                return Ok(());
-            }
-            let drawn = model.drawn(item.factor)?;
-            lists.map_or(Ok(()), |lists| lists.check(drawn))?;
-            match drawn {
-                Drawn::Lattice(lattice) => {
-                    constants.set_factor(lattice.segments as f32);
-                    lattice.cmd_bind(device, cmd, &mut bound.lattice);
-                }
-                Drawn::Tiles { segments } => constants.set_factor(segments as f32),
-                Drawn::Patches | Drawn::Subdivided { .. } => {}
-            }
-            if drawn.lattice_segments().is_none() {
-                bound.lattice = BoundLattice::default();
-            }
-            let groups = model.tables.plan().groups();
-            let pipeline = |number: usize| {
-                let stages: PatchStages = model.stages[number];
-                let geometry = match drawn {
-                    Drawn::Subdivided { level } => GeometryKey::Subdivision(level),
-                    _ if lists.is_some() && stages.has_hull() => stages.geometry(Cut::listed(item.factor)),
-                    _ => stages.geometry(cut),
+        }
+    }
+
+    /// Records the draw of the control mesh.
+    unsafe fn cmd_draw_control(&self, recorder: &mut Recorder, model: &Model, item: &DrawItem, style: &Style) {
+        let (device, cmd) = (recorder.device, recorder.cmd);
+        recorder.bound.lattice = BoundLattice::default();
+        recorder.constants.colour = item.colors[0];
+        let key = PipelineKey { style: item.style, geometry: GeometryKey::Control };
+        // SAFETY: as the caller of `cmd_draw` promises.
+        unsafe {
+            self.bind(cmd, style, self.pipelines.draws.get(key), recorder.bound);
+            recorder.push();
+            if let Some(control) = &model.control {
+                let (first, count) = match style.geometry {
+                    Geometry::ControlEdges => (0, control.edges),
+                    _ => (control.edges, control.faces),
                 };
-                self.pipelines.draws.get(PipelineKey { style: item.style, geometry })
-            };
-            // Of many models, every other one is drawn from the last kind of patch to the first: its pipeline is bound already.
-            let backwards = groups.len() > 1 && pipeline(groups.len() - 1) == Some(bound.pipeline);
-            for i in 0..groups.len() {
-                let number = if backwards { groups.len() - 1 - i } else { i };
-                let (stages, group) = (model.stages[number], &groups[number]);
-                constants.colour = item.colors[stages.kind as usize];
-                self.bind(cmd, style, pipeline(number), bound);
-                if let Some(lists) = lists.filter(|_| stages.has_hull()) {
-                    self.cmd_draw_lists(cmd, lists, (model, number), &constants, &mut bound.lattice);
-                    continue;
-                }
-                constants.first_corner = group.first_corner as u32;
-                constants.first_patch = group.patches.start as u32;
-                let patches = group.patches.len() as u32;
-                match drawn {
-                    Drawn::Patches => {
-                        let vertices = self.vertices_of_patch(stages, most);
-                        self.cmd_draw_batches(cmd, &mut constants, patches, stages.input_points(), vertices);
-                    }
-                    Drawn::Subdivided { level } => {
-                        self.cmd_draw_batches(cmd, &mut constants, patches, 1, subdivision::vertices(level));
-                    }
-                    Drawn::Lattice(lattice) => {
-                        self.push(cmd, &constants);
-                        if let Some(points) = model.control_points.as_ref().filter(|_| stages.attributes) {
-                            let of_corner = u64::from(stages.patch_bytes()) / stages.kind.corners() as u64;
-                            let offset = of_corner * group.first_corner as u64;
-                            bound.lattice.cmd_bind_vertices(device, cmd, points.raw(), offset);
-                        }
-                        lattice.cmd_draw(device, cmd, number);
-                    }
-                    Drawn::Tiles { segments } => {
-                        let tiles = lattice_tiles(segments);
-                        // No more than can be counted.
-                        let step = u32::MAX / tiles;
-                        for first in (0..patches).step_by(step as usize) {
-                            let first_corner = group.first_corner + first as usize * stages.kind.corners();
-                            constants.first_corner = first_corner as u32;
-                            constants.first_patch = group.patches.start as u32 + first;
-                            let count = step.min(patches - first) * tiles;
-                            self.cmd_draw_batches(cmd, &mut constants, count, 1, TILE_VERTICES);
-                        }
-                    }
-                }
+                device.cmd_bind_index_buffer(cmd, control.buffer.raw(), 0, vk::IndexType::UINT32);
+                device.cmd_draw_indexed(cmd, count, 1, first, control.vertex_offset, 0);
             }
+        }
+    }
+
+    /// Records the draws of the surface, group by group.
+    unsafe fn cmd_draw_surface(
+        &self,
+        recorder: &mut Recorder,
+        (model, most): (&Model, f32),
+        item: &DrawItem,
+        style: &Style,
+        lists: Option<ItemLists>,
+    ) -> Result<(), Error> {
+        let (path, drawn) = (path(model.evaluation), model.drawn(item.factor)?);
+        lists.map_or(Ok(()), |lists| lists.check(drawn))?;
+        if let Some(segments) = drawn.segments() {
+            recorder.constants.set_factor(segments as f32);
+        }
+        match drawn.lattice() {
+            // SAFETY: as the caller of `cmd_draw` promises.
+            Some(lattice) => unsafe { lattice.cmd_bind(recorder.device, recorder.cmd, &mut recorder.bound.lattice) },
+            None => recorder.bound.lattice = BoundLattice::default(),
+        }
+        let cut = Cut::new(item.factor, if lists.is_some() { Cull::NONE } else { item.cull });
+        let groups = model.tables.plan().groups();
+        let pipeline = |number: usize| {
+            let stages: PatchStages = model.stages[number];
+            let listed = lists.is_some() && stages.has_hull();
+            let geometry = path.key(stages, if listed { Cut::listed(item.factor) } else { cut }, item.factor)?;
+            self.pipelines.draws.get(PipelineKey { style: item.style, geometry })
+        };
+        // Of many models, every other one is drawn from the last kind of patch to the first: its pipeline is bound already.
+        let backwards = groups.len() > 1 && pipeline(groups.len() - 1) == Some(recorder.bound.pipeline);
+        for i in 0..groups.len() {
+            let number = if backwards { groups.len() - 1 - i } else { i };
+            let (stages, group) = (model.stages[number], &groups[number]);
+            recorder.constants.colour = item.colors[stages.kind as usize];
+            // SAFETY: as the caller of `cmd_draw` promises.
+            unsafe { self.bind(recorder.cmd, style, pipeline(number), recorder.bound) };
+            if let Some(lists) = lists.filter(|_| stages.has_hull()) {
+                // SAFETY: as the caller of `cmd_draw` promises.
+                unsafe { self.cmd_draw_lists(recorder, lists, (model, number)) };
+                continue;
+            }
+            recorder.constants.first_corner = group.first_corner as u32;
+            recorder.constants.first_patch = group.patches.start as u32;
+            let control_points = model.control_points.as_ref();
+            // SAFETY: as the caller of `cmd_draw` promises.
+            unsafe { path.cmd_draw(recorder, drawn, &DrawnGroup { number, stages, group, most, control_points }) };
         }
         Ok(())
-    }
-
-    /// Records the draws of so many patches (or tiles of them), in instances as the device likes them. Each has so many points,
-    /// and at most so many vertices when it is evaluated.
-    unsafe fn cmd_draw_batches(
-        &self,
-        cmd: vk::CommandBuffer,
-        constants: &mut DrawConstants,
-        count: u32,
-        points: u32,
-        vertices: u32,
-    ) {
-        for draw in self.context.properties().patch_batch.draws(count, points, vertices) {
-            // SAFETY: as the caller of `cmd_draw` promises.
-            unsafe {
-                if constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
-                    constants.patches_per_instance = draw.patches_per_instance;
-                    self.push(cmd, constants);
-                }
-                self.context.device().cmd_draw(cmd, draw.vertex_count, draw.instance_count, 0, draw.first_instance);
-            }
-        }
-    }
-
-    /// The most vertices that the tessellation stages make of a patch whose factors are at most this.
-    fn vertices_of_patch(&self, stages: PatchStages, most: f32) -> u32 {
-        let domain = if stages.kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
-        tessellated_vertices(domain, stages.spacing, most, self.context.properties().max_tessellation_level)
-    }
-
-    /// How many of so many patches an instance of a draw through the tessellation stages has.
-    pub(crate) fn patches_per_instance(&self, stages: PatchStages, patches: u32, most: f32) -> u32 {
-        let rule = self.context.properties().patch_batch;
-        rule.patches_per_instance(patches, stages.input_points(), self.vertices_of_patch(stages, most))
     }
 
     pub(crate) fn style(&self, item: &DrawItem) -> Result<&Style, Error> {
@@ -327,11 +267,5 @@ impl Renderer {
             }
             bound.discards = style.rasterizer_discard;
         }
-    }
-
-    pub(crate) unsafe fn push(&self, cmd: vk::CommandBuffer, constants: &DrawConstants) {
-        let layout = self.pipelines.draws.layout.raw();
-        // SAFETY: as the caller of `cmd_draw` promises.
-        unsafe { self.context.device().cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(constants)) };
     }
 }

@@ -1,9 +1,10 @@
 //! Lists of the patches that can be seen, made by compute: pipelines, memory, dispatches. See [`super::cull`].
 
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, Specialization};
+use crate::renderer::evaluate::path;
 use crate::renderer::pipelines::ComputePipelines;
 use crate::renderer::shader::{Cut, PatchStages, ShaderCode, ViewData};
-use crate::table::{Evaluation, TEXEL_BYTES};
+use crate::table::TEXEL_BYTES;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
@@ -27,11 +28,7 @@ pub(crate) struct ListLayout {
 
 impl ListLayout {
     pub(crate) fn new(stages: PatchStages) -> Self {
-        let command_bytes = match stages.evaluation {
-            // Of whole instances, and of the rest.
-            Evaluation::Tessellation => 2 * size_of::<vk::DrawIndirectCommand>(),
-            _ => size_of::<vk::DrawIndexedIndirectCommand>(),
-        };
+        let command_bytes = path(stages.evaluation).command_bytes();
         let copied = if stages.attributes { stages.patch_bytes().into() } else { 0 };
         Self { command_bytes: command_bytes as u64, copied }
     }

@@ -2,8 +2,8 @@
 
 use super::Renderer;
 use super::lists::{ListConstants, ListLayout, REGION};
-use crate::renderer::evaluate::BoundLattice;
-use crate::renderer::model::{Drawn, Model};
+use crate::renderer::evaluate::{Drawn, Recorder};
+use crate::renderer::model::Model;
 #[cfg(doc)]
 use crate::renderer::options::Cull;
 use crate::renderer::options::{DrawItem, Error, View};
@@ -59,7 +59,7 @@ impl ItemLists<'_> {
     /// Tells whether the lists are of what is drawn now.
     pub(crate) fn check(self, drawn: Drawn) -> Result<(), Error> {
         let &VisibleItem { item: DrawItem { model: id, factor, .. }, segments, .. } = self.own;
-        match (drawn.lattice_segments(), segments) {
+        match (drawn.lattice().map(|lattice| lattice.segments), segments) {
             (now, then) if now == then => Ok(()),
             (now, _) => Err(Error::OtherSegments { id, factor, segments: now.unwrap_or(0) }),
         }
@@ -91,9 +91,9 @@ impl List {
     /// Of what makes it, where the item is drawn with these.
     pub(crate) fn constants(self, model: &Model, drawn: Drawn, of_draw: &DrawConstants) -> ListConstants {
         let (stages, group) = (model.stages[self.group], &model.tables.plan().groups()[self.group]);
-        let (vertices, first_index) = match drawn {
-            Drawn::Lattice(lattice) => lattice.indices_of_patch(self.group),
-            _ => (stages.input_points(), 0),
+        let (vertices, first_index) = match drawn.lattice() {
+            Some(lattice) => lattice.indices_of_patch(self.group),
+            None => (stages.input_points(), 0),
         };
         ListConstants {
             transform: of_draw.transform,
@@ -111,30 +111,26 @@ impl List {
 }
 
 impl Renderer {
-    /// Records the draws of the lists of a group; `of_draw` are the constants of the whole item.
+    /// Records the draws of the lists of a group.
     ///
     /// # Safety
     /// As [`Renderer::cmd_draw_visible`], with the pipeline and the model's set and buffers bound.
     pub(crate) unsafe fn cmd_draw_lists(
         &self,
-        cmd: vk::CommandBuffer,
+        recorder: &mut Recorder,
         ItemLists { all: visible, own }: ItemLists,
         (model, group): (&Model, usize),
-        of_draw: &DrawConstants,
-        bound: &mut BoundLattice,
     ) {
-        let device = self.context.device();
+        let (device, cmd) = (recorder.device, recorder.cmd);
         let (stages, of_group) = (model.stages[group], &model.tables.plan().groups()[group]);
         // SAFETY: as the caller promises.
         unsafe {
             for list in own.lists.iter().filter(|list| list.group == group) {
-                let constants = DrawConstants {
-                    first_corner: list.first_corner(of_group),
-                    first_patch: list.first_patch(of_group),
-                    patches_per_instance: list.patches_per_instance,
-                    ..*of_draw
-                };
-                self.push(cmd, &constants);
+                let constants = &mut recorder.constants;
+                constants.first_corner = list.first_corner(of_group);
+                constants.first_patch = list.first_patch(of_group);
+                constants.patches_per_instance = list.patches_per_instance;
+                recorder.push();
                 self.cmd_bind_view(cmd, visible.set, [visible.view_offset, list.offset]);
                 let offset = u64::from(list.offset);
                 let commands = offset + ListLayout::commands_start(list.count);
@@ -142,7 +138,7 @@ impl Renderer {
                 if list.patches_per_instance == 0 {
                     if stages.attributes {
                         let copies = offset + ListLayout::new(stages).copies_start(list.count);
-                        bound.cmd_bind_vertices(device, cmd, visible.buffer, copies);
+                        recorder.bound.lattice.cmd_bind_vertices(device, cmd, visible.buffer, copies);
                     }
                     let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
                     device.cmd_draw_indexed_indirect(cmd, visible.buffer, commands, regions, stride);

@@ -8,11 +8,10 @@ mod pipelines;
 mod streamed;
 
 pub(crate) use displacements::Displacements;
-pub(crate) use drawn::Drawn;
 pub(crate) use pipelines::ModelPipelines;
 
 use crate::gpu::{Buffer, DeviceContext, MAX_OFFSET_ALIGNMENT};
-use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation};
+use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, path};
 use crate::renderer::options::{
     DisplacementId, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options,
 };
@@ -198,7 +197,7 @@ impl Model {
                 stride,
                 attributes,
             };
-            PatchStages { attributes: pipelines.draws.has_attributes(stages), ..stages }
+            PatchStages { attributes: path(evaluation).has_attributes(&pipelines.draws, stages), ..stages }
         };
         Ok(Self {
             id,

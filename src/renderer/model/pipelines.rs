@@ -2,8 +2,8 @@
 
 use crate::gpu::{DeviceContext, GpuError};
 use crate::renderer::construct::{CachedPipelines, Conversion};
-use crate::renderer::evaluate::LatticePipelines;
-use crate::renderer::options::{Options, Target};
+use crate::renderer::evaluate::{LatticePipelines, path};
+use crate::renderer::options::{Factor, Options, Target};
 use crate::renderer::pipelines::DrawPipelines;
 use crate::renderer::shader::{Capture, Cut, PatchStages};
 use crate::table::{Construction, Evaluation};
@@ -39,12 +39,15 @@ impl ModelPipelines {
     }
 
     /// Makes what draws of these patches need in every style, and what comes before.
-    pub(crate) fn make(&mut self, patches: &[PatchStages], cut: Cut) -> Result<(), GpuError> {
-        // Subdivision has no patches, and pipelines by level.
-        let patches: Vec<PatchStages> =
-            patches.iter().copied().filter(|stages| stages.evaluation != Evaluation::Subdivision).collect();
-        for &stages in &patches {
+    pub(crate) fn make(&mut self, patches: &[PatchStages], cut: Cut, factor: Factor) -> Result<(), GpuError> {
+        self.draws.make_control()?;
+        for &stages in patches {
+            // A factor that the evaluation does not have is reported by the draw.
+            let path = path(stages.evaluation);
+            let Some(key) = path.key(stages, cut, factor) else { continue };
+            self.draws.make(key, |key, made_for| path.recipe(stages, cut, key, made_for))?;
             match (stages.construction, stages.evaluation) {
+                (_, Evaluation::Subdivision) => {}
                 (Construction::Cached, Evaluation::GeometryTwoPass) => self.convert(stages)?,
                 (Construction::Cached, _) => self.cached.make(stages, &self.draws.shaders)?,
                 _ => {}
@@ -53,7 +56,7 @@ impl ModelPipelines {
                 self.lattice.make(stages, &self.draws.shaders)?;
             }
         }
-        self.draws.make(&patches, cut)
+        Ok(())
     }
 
     /// Makes what the first of two passes needs.

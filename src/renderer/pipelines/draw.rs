@@ -1,17 +1,11 @@
 //! The pipelines of draws, each made when the first model is added that needs it.
 
-use super::vertex_input::VertexInput;
-use crate::gpu::{
-    DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Spacing, Specialization, pipeline_layout,
-};
+use super::recipe::{MadeFor, Recipe};
+use crate::gpu::{DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Specialization, pipeline_layout};
 use crate::renderer::options::{ColorEncoding, Fragment, Geometry, Options, Style, Target};
 use crate::renderer::shader::{
-    Capture, Cut, GeometryKey, PatchStages, PipelineKey, STAGES, ShaderCode, model_layout, names, reads_texels, spaced,
-    subdivision_shader, view_layout,
+    Capture, GeometryKey, PipelineKey, STAGES, ShaderCode, ShaderId, model_layout, view_layout,
 };
-use crate::renderer::shader::{Output, ShaderId, ShaderKey, Source};
-use crate::table::Evaluation;
-use crate::table::Sharing;
 use ash::vk;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -60,12 +54,9 @@ impl DrawPipelines {
         })
     }
 
-    /// Whether instances have their control points as vertex attributes: where they fit, unless the caller has a shader of its own
-    /// for texels only.
-    pub(crate) fn has_attributes(&self, stages: PatchStages) -> bool {
-        let key = |attributes| PatchStages { attributes, ..stages }.evaluation(self.capture, self.texcoords);
-        let [texels, attributes] = [false, true].map(|attributes| self.shaders.is_own(key(attributes)));
-        stages.fit_attributes(self.context.properties()) && (attributes || !texels)
+    /// What recipes depend on.
+    pub(crate) fn made_for(&self) -> MadeFor<'_> {
+        MadeFor { properties: self.context.properties(), capture: self.capture, texcoords: self.texcoords }
     }
 
     pub(crate) fn styles(&self) -> &[Style] {
@@ -76,15 +67,34 @@ impl DrawPipelines {
         self.made.get(&key).map(Owned::raw)
     }
 
-    /// Makes what draws of these patches need in every style.
-    pub(crate) fn make(&mut self, patches: &[PatchStages], cut: Cut) -> Result<(), GpuError> {
+    /// Makes the pipelines of a recipe in every style of the surface.
+    pub(crate) fn make(
+        &mut self,
+        geometry: GeometryKey,
+        recipe: impl Fn(GeometryKey, &MadeFor) -> Recipe,
+    ) -> Result<(), GpuError> {
         for style in 0..self.styles.len() {
-            if self.styles[style].geometry != Geometry::Surface {
-                self.make_one(PipelineKey { style, geometry: GeometryKey::Control })?;
-                continue;
+            let key = PipelineKey { style, geometry };
+            if self.styles[style].geometry == Geometry::Surface && !self.made.contains_key(&key) {
+                let recipe = recipe(geometry, &self.made_for());
+                self.make_one(key, &recipe)?;
             }
-            for stages in patches {
-                self.make_one(PipelineKey { style, geometry: stages.geometry(cut) })?;
+        }
+        Ok(())
+    }
+
+    /// Makes the pipelines of the control mesh, in the styles that draw it.
+    pub(crate) fn make_control(&mut self) -> Result<(), GpuError> {
+        for style in 0..self.styles.len() {
+            let key = PipelineKey { style, geometry: GeometryKey::Control };
+            let topology = match self.styles[style].geometry {
+                Geometry::Surface => continue,
+                Geometry::ControlFaces => vk::PrimitiveTopology::TRIANGLE_LIST,
+                Geometry::ControlEdges => vk::PrimitiveTopology::LINE_LIST,
+            };
+            if !self.made.contains_key(&key) {
+                let recipe = Recipe::control_mesh(&self.made_for(), topology);
+                self.make_one(key, &recipe)?;
             }
         }
         Ok(())
@@ -95,116 +105,24 @@ impl DrawPipelines {
         [self.view_layout.raw(), self.model_layout.raw()]
     }
 
-    /// Makes what draws of subdivided faces need in every style of the surface.
-    pub(crate) fn make_subdivision(&mut self, level: u32) -> Result<(), GpuError> {
-        for style in 0..self.styles.len() {
-            if self.styles[style].geometry == Geometry::Surface {
-                self.make_one(PipelineKey { style, geometry: GeometryKey::Subdivision(level) })?;
-            }
-        }
-        Ok(())
-    }
-
-    fn make_one(&mut self, key: PipelineKey) -> Result<(), GpuError> {
-        if self.made.contains_key(&key) {
-            return Ok(());
-        }
-        let (style, properties) = (&self.styles[key.style], self.context.properties());
-        let reads_texels = [reads_texels(properties)];
-        let (constants, code);
-        let (name, mut stages) = match key.geometry {
-            GeometryKey::Control => {
-                let vertex = Shader::vertex(self.shaders.find(ShaderKey::of(Source::ControlMeshVert))?);
-                ("control mesh".to_owned(), vec![vertex.specialized(&reads_texels)])
-            }
-            GeometryKey::Evaluated { displaced } => {
-                let vertex = evaluated_vertices(displaced, self.texcoords);
-                ("evaluated vertices".to_owned(), vec![Shader::vertex(self.shaders.find(vertex)?)])
-            }
-            GeometryKey::Subdivision(level) => {
-                let vertex = Shader::vertex(self.shaders.find(ShaderKey::of(Source::PatchNumberVert))?);
-                let geometry = self.shaders.find(subdivision_shader(level, self.capture, self.texcoords))?;
-                let stages = vec![vertex, Shader::geometry(geometry).specialized(&reads_texels)];
-                (format!("faces subdivided {level} times"), stages)
-            }
-            GeometryKey::Patches(patch, cut) => {
-                let evaluation = self.shaders.find(patch.evaluation(self.capture, self.texcoords))?;
-                constants = patch.specialization(cut, properties);
-                let stages = match patch.evaluation {
-                    Evaluation::Tessellation => {
-                        let spacing = if self.capture == Capture::Grid { Spacing::Equal } else { patch.spacing };
-                        code = spaced(evaluation, spacing);
-                        self.tessellating(patch, &constants, &code)?
-                    }
-                    Evaluation::Geometry => {
-                        let tile = Shader::vertex(self.shaders.find(ShaderKey::of(Source::PatchNumberVert))?);
-                        vec![tile, Shader::geometry(evaluation).specialized(&constants)]
-                    }
-                    _ => vec![Shader::vertex(evaluation).specialized(&constants)],
-                };
-                (names::patches(patch, cut), stages)
-            }
-        };
-        let target = style.target_or(&self.target);
-        let encode = [Specialization::bool(1, target.encoding == ColorEncoding::Srgb)];
-        stages.extend(fragment(style, target, key.geometry.is_displaced(), &encode));
-        let pipeline = self.create(&format!("subdiv style {}: {name}", key.style), key, target, &stages)?;
-        self.made.insert(key, pipeline);
-        Ok(())
-    }
-
-    /// The stages before the fragment shader.
-    fn tessellating<'s>(
-        &'s self,
-        patch: PatchStages,
-        constants: &'s [Specialization],
-        evaluation: &'s [u32],
-    ) -> Result<Vec<Shader<'s>>, GpuError> {
-        let vertex = self.shaders.find(patch.vertex())?;
-        let control = self.shaders.find(patch.control(self.capture, self.texcoords))?;
-        let mut stages = vec![
-            Shader::vertex(vertex).specialized(constants),
-            Shader::tess_control(control).specialized(constants),
-            Shader::tess_evaluation(evaluation),
-        ];
-        if self.capture == Capture::Triangles {
-            stages.push(Shader::geometry(self.shaders.find(ShaderKey::of(Source::TrianglesGeom))?));
-        }
-        Ok(stages)
-    }
-
-    fn create(
-        &self,
-        name: &str,
-        key: PipelineKey,
-        target: &Target,
-        stages: &[Shader],
-    ) -> Result<Owned<vk::Pipeline>, GpuError> {
+    fn make_one(&mut self, key: PipelineKey, recipe: &Recipe) -> Result<(), GpuError> {
         let style = &self.styles[key.style];
-        let input = VertexInput::new(key.geometry, self.texcoords);
-        let topology = match key.geometry {
-            GeometryKey::Subdivision(_)
-            | GeometryKey::Patches(PatchStages { evaluation: Evaluation::Geometry, .. }, _) => {
-                vk::PrimitiveTopology::POINT_LIST
-            }
-            _ if style.geometry == Geometry::ControlEdges => vk::PrimitiveTopology::LINE_LIST,
-            _ => vk::PrimitiveTopology::TRIANGLE_LIST,
-        };
-        // A lattice says what its indices are of.
-        let topology_is_dynamic = match key.geometry {
-            GeometryKey::Evaluated { .. } => true,
-            GeometryKey::Patches(stages, _) => stages.is_instanced(),
-            _ => false,
-        };
+        let target = style.target_or(&self.target);
+        let codes = recipe.stages.iter().map(|stage| stage.code(&self.shaders)).collect::<Result<Vec<_>, _>>()?;
+        let encode = [Specialization::bool(1, target.encoding == ColorEncoding::Srgb)];
+        let mut stages: Vec<Shader> =
+            recipe.stages.iter().zip(&codes).map(|(stage, code)| stage.shader(code)).collect();
+        stages.extend(fragment(style, target, recipe.displaced, &encode));
         let mut dynamic_states = Vec::new();
-        dynamic_states.extend(topology_is_dynamic.then_some(vk::DynamicState::PRIMITIVE_TOPOLOGY));
+        dynamic_states.extend(recipe.topology_is_dynamic.then_some(vk::DynamicState::PRIMITIVE_TOPOLOGY));
         // Set when bound: a pipeline that always discards has no attachment formats, and fits no rendering that has attachments.
         dynamic_states.extend(style.rasterizer_discard.then_some(vk::DynamicState::RASTERIZER_DISCARD_ENABLE));
+        let name = format!("subdiv style {}: {}", key.style, recipe.name);
         let desc = GraphicsPipelineDesc {
-            patch_control_points: key.geometry.input_points(),
-            vertex_bindings: input.bindings.as_slice(),
-            vertex_attributes: &input.attributes,
-            topology,
+            patch_control_points: recipe.input_points,
+            vertex_bindings: recipe.input.bindings.as_slice(),
+            vertex_attributes: &recipe.input.attributes,
+            topology: recipe.topology,
             polygon_mode: if style.wireframe { vk::PolygonMode::LINE } else { vk::PolygonMode::FILL },
             cull_mode: style.cull,
             front_face: style.front_face,
@@ -216,10 +134,12 @@ impl DrawPipelines {
             samples: target.samples,
             dynamic_states: &dynamic_states,
             cache: self.cache,
-            ..GraphicsPipelineDesc::new(name, self.layout.raw(), target.render_target(), stages)
+            ..GraphicsPipelineDesc::new(&name, self.layout.raw(), target.render_target(), &stages)
         };
         // SAFETY: the shaders are ours and match; the caller's shaders and targets do by the contract of `Renderer::new`.
-        unsafe { desc.create(&self.context) }
+        let pipeline = unsafe { desc.create(&self.context)? };
+        self.made.insert(key, pipeline);
+        Ok(())
     }
 }
 
@@ -237,11 +157,4 @@ fn fragment<'a>(style: &'a Style, target: &Target, displaced: bool, ours: &'a [S
         _ => ShaderId::ShadeFlatFrag,
     };
     Some(Shader::fragment(id.code()).specialized(ours))
-}
-
-/// The vertex shader of vertices that compute evaluated.
-fn evaluated_vertices(displaced: bool, texcoords: bool) -> ShaderKey {
-    let sharing = if displaced { Sharing::Displacement } else { Sharing::Positions };
-    let output = if texcoords { Output::Texcoords } else { Output::Surface };
-    ShaderKey { sharing, output, ..ShaderKey::of(Source::LatticeVert) }.canonical()
 }

@@ -2,11 +2,13 @@
 
 mod compute;
 mod draw;
+mod recipe;
 mod requirements;
 mod vertex_input;
 
 pub(crate) use compute::ComputePipelines;
 pub(crate) use draw::DrawPipelines;
+pub(crate) use recipe::{MadeFor, Recipe, RecipeStage};
 pub(crate) use requirements::check_properties;
 pub use requirements::{Requirements, check, requirements};
-pub(crate) use vertex_input::vertex_bytes;
+pub(crate) use vertex_input::{VertexInput, vertex_bytes};

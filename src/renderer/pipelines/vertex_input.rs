@@ -1,6 +1,6 @@
 //! What vertex shaders read besides tables: vertices that compute evaluated, or control points, for each instance anew.
 
-use crate::renderer::shader::GeometryKey;
+use crate::renderer::shader::PatchStages;
 use crate::table::Sharing;
 use ash::vk;
 
@@ -32,20 +32,17 @@ pub(crate) struct VertexInput {
 }
 
 impl VertexInput {
-    pub(crate) fn new(geometry: GeometryKey, texcoords: bool) -> Self {
-        match geometry {
-            GeometryKey::Evaluated { displaced } => {
-                let sharing = if displaced { Sharing::Displacement } else { Sharing::Positions };
-                let stride = vertex_bytes(texcoords, sharing);
-                let parts = VERTEX_PARTS.into_iter().filter(|(offset, _)| *offset < stride);
-                Self::of(vk::VertexInputRate::VERTEX, stride, parts)
-            }
-            GeometryKey::Patches(patch, _) if patch.attributes => {
-                let parts = patch.attribute_offsets().map(|offset| (offset, vk::Format::R32G32B32A32_SFLOAT));
-                Self::of(vk::VertexInputRate::INSTANCE, patch.patch_bytes(), parts)
-            }
-            _ => Self::default(),
-        }
+    /// Vertices that compute evaluated.
+    pub(crate) fn of_vertices(texcoords: bool, sharing: Sharing) -> Self {
+        let stride = vertex_bytes(texcoords, sharing);
+        let parts = VERTEX_PARTS.into_iter().filter(|(offset, _)| *offset < stride);
+        Self::of(vk::VertexInputRate::VERTEX, stride, parts)
+    }
+
+    /// Control points of instances.
+    pub(crate) fn of_instances(patch: PatchStages) -> Self {
+        let parts = patch.attribute_offsets().map(|offset| (offset, vk::Format::R32G32B32A32_SFLOAT));
+        Self::of(vk::VertexInputRate::INSTANCE, patch.patch_bytes(), parts)
     }
 
     /// Of parts at an offset, in the order of their locations.

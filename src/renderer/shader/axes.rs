@@ -175,6 +175,11 @@ impl Source {
             _ => none,
         }
     }
+
+    /// The stage, as its files end.
+    pub fn stage(self) -> &'static str {
+        self.word().rsplit('.').next().unwrap_or_default()
+    }
 }
 
 /// What tells shaders apart. What is no axis of a source is as in [`ShaderKey::of`].

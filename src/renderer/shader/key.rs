@@ -44,24 +44,6 @@ pub(crate) enum GeometryKey {
     Control,
 }
 
-impl GeometryKey {
-    pub(crate) fn is_displaced(self) -> bool {
-        match self {
-            Self::Patches(patch, _) => patch.sharing == Sharing::Displacement,
-            Self::Evaluated { displaced } => displaced,
-            Self::Subdivision(_) | Self::Control => false,
-        }
-    }
-
-    /// Control points that go into a control shader, if there is one.
-    pub(crate) fn input_points(self) -> u32 {
-        match self {
-            Self::Patches(patch, _) if patch.evaluation == Evaluation::Tessellation => patch.input_points(),
-            _ => 0,
-        }
-    }
-}
-
 /// What tells the shaders of a patch apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct PatchStages {
@@ -95,6 +77,14 @@ fn patch(scheme: Scheme, kind: PatchKind) -> Patch {
 }
 
 impl Capture {
+    /// What shaders hand on that evaluate.
+    pub(crate) fn evaluated(self, texcoords: bool) -> Output {
+        match self {
+            Self::Points => Output::Surface,
+            capture => capture.output(texcoords),
+        }
+    }
+
     /// What shaders hand on then.
     fn output(self, texcoords: bool) -> Output {
         match self {
@@ -116,29 +106,15 @@ impl PatchStages {
         }
     }
 
-    /// What tells their pipelines apart in one style.
-    pub(crate) fn geometry(self, cut: Cut) -> GeometryKey {
-        match self.evaluation {
-            Evaluation::Compute => GeometryKey::Evaluated { displaced: self.sharing == Sharing::Displacement },
-            Evaluation::Tessellation => GeometryKey::Patches(self, cut),
-            _ => GeometryKey::Patches(self, cut.without_control()),
-        }
-    }
-
     /// What tells apart the pipelines that make control points by compute: what is of no concern to them is as usual.
     pub(crate) fn for_control_points(self) -> Self {
         let (evaluation, spacing) = (Evaluation::Tessellation, Spacing::Equal);
         Self { evaluation, spacing, edge_factors: false, attributes: false, ..self }
     }
 
-    /// Whether the vertex shader evaluates instances of a lattice.
-    pub(crate) fn is_instanced(self) -> bool {
-        matches!(self.evaluation, Evaluation::Instanced | Evaluation::GeometryTwoPass)
-    }
-
     /// Whether it does with no more control points than a device has attributes.
     pub(crate) fn fit_attributes(self, device: &DeviceProperties) -> bool {
-        self.is_instanced() && self.attribute_offsets().count() <= device.max_vertex_attributes as usize
+        self.attribute_offsets().count() <= device.max_vertex_attributes as usize
     }
 
     /// Where the attributes of an instance are in what is kept of a patch, in bytes.
@@ -154,7 +130,7 @@ impl PatchStages {
     }
 
     /// The key of one of its shaders.
-    fn shader(self, source: Source, output: Output) -> ShaderKey {
+    pub(crate) fn shader(self, source: Source, output: Output) -> ShaderKey {
         let (patch, sharing, attributes) = (patch(self.scheme, self.kind), self.sharing, self.attributes);
         ShaderKey { source, patch, sharing, output, attributes, level: 0 }.canonical()
     }
@@ -227,33 +203,11 @@ impl PatchStages {
         };
         self.shader(source, output)
     }
-
-    /// The shader that evaluates.
-    pub(crate) fn evaluation(self, capture: Capture, texcoords: bool) -> ShaderKey {
-        let source = match self.evaluation {
-            // Subdivision has no patches: see `subdivision_shader`.
-            Evaluation::Tessellation | Evaluation::Subdivision => Source::TessellationTese,
-            Evaluation::Compute => Source::LatticeComp,
-            Evaluation::Instanced | Evaluation::GeometryTwoPass => Source::InstancedVert,
-            Evaluation::Geometry => Source::StripsGeom,
-        };
-        let output = match capture {
-            Capture::Points => Output::Surface,
-            capture => capture.output(texcoords),
-        };
-        self.shader(source, output)
-    }
 }
 
 /// What all shaders that read tables are specialized to. GLSL twin: `READS_TEXELS` in `glsl/lib/draw/positions.glsl`.
 pub(crate) fn reads_texels(device: &DeviceProperties) -> Specialization {
     Specialization::bool(9, device.reads_texels)
-}
-
-/// The geometry shader that subdivides faces.
-pub(crate) fn subdivision_shader(level: u32, capture: Capture, texcoords: bool) -> ShaderKey {
-    let output = capture.output(texcoords);
-    ShaderKey { level: level as u8, output, ..ShaderKey::of(Source::FacesGeom) }.canonical()
 }
 
 #[cfg(all(test, feature = "headless"))]
@@ -304,7 +258,5 @@ mod tests {
             assert!(fit(needed) && !fit(needed - 1), "{sharing:?}");
             assert_eq!(stages.patch_bytes(), 16 * needed);
         }
-        let tessellated = PatchStages { evaluation: Evaluation::Tessellation, ..stages(Sharing::Positions, 4) };
-        assert!(!tessellated.fit_attributes(headless.properties()));
     }
 }

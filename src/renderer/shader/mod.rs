@@ -20,6 +20,6 @@ pub(crate) use code::ShaderCode;
 pub(crate) use cut::Cut;
 pub(crate) use gpu_data::{COUNTER_CLOCKWISE_FLAG, DrawConstants, ViewData, displacement_flags};
 pub use ids::ShaderId;
-pub(crate) use key::{Capture, GeometryKey, PatchStages, PipelineKey, reads_texels, subdivision_shader};
+pub(crate) use key::{Capture, GeometryKey, PatchStages, PipelineKey, reads_texels};
 pub(crate) use layout::{FRAMES_BINDING, MODEL_BUFFERS, POINTS_BINDING, STAGES, TEXELS, model_layout, view_layout};
 pub(crate) use spirv::{is_spirv, spaced};

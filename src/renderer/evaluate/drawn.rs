@@ -1,0 +1,85 @@
+//! What the surface of a model is drawn from.
+
+use super::lattice::Lattice;
+use crate::renderer::options::{Error, Factor, ModelId};
+use crate::table::{Evaluation, MAX_SEGMENTS};
+
+/// A draw that is asked for.
+pub(crate) struct Asked<'m> {
+    pub id: ModelId,
+    pub evaluation: Evaluation,
+    pub factor: Factor,
+    /// The largest factor of an edge, if edges have factors of their own.
+    pub largest: Option<f32>,
+    /// The uniform grid that is kept, if its segments were set.
+    pub lattice: Option<&'m Lattice>,
+}
+
+/// What the surface of a model is drawn from.
+#[derive(Clone, Copy)]
+pub(crate) enum Drawn<'m> {
+    /// Patches, for the tessellation stages.
+    Patches,
+    Lattice(&'m Lattice),
+    /// Tiles of patches, for the geometry shader.
+    Tiles {
+        segments: u32,
+    },
+    /// Faces, subdivided so often.
+    Subdivided {
+        level: u32,
+    },
+}
+
+impl<'m> Drawn<'m> {
+    /// The uniform grid, if it is one.
+    pub(crate) fn lattice(self) -> Option<&'m Lattice> {
+        match self {
+            Self::Lattice(lattice) => Some(lattice),
+            _ => None,
+        }
+    }
+
+    /// Segments along every edge, if all have as many.
+    pub(crate) fn segments(self) -> Option<u32> {
+        match self {
+            Self::Lattice(lattice) => Some(lattice.segments),
+            Self::Tiles { segments } => Some(segments),
+            Self::Patches | Self::Subdivided { .. } => None,
+        }
+    }
+}
+
+impl<'m> Asked<'m> {
+    /// Segments along every edge.
+    fn segments(&self) -> Result<u32, Error> {
+        let &Self { id, evaluation, factor, largest, lattice } = self;
+        match (factor, largest) {
+            (Factor::Uniform(factor), None) => Ok(factor.ceil() as u32),
+            (_, None) => Err(Error::NotUniform { id, evaluation, factor }),
+            // Vertices may have been evaluated before the draw, too late to scale factors.
+            (Factor::Edges(1.0), Some(largest)) => {
+                Ok(lattice.map_or(largest.ceil() as u32, |lattice| lattice.segments))
+            }
+            (_, Some(_)) => Err(Error::NotOfEdges { id, evaluation, factor }),
+        }
+    }
+
+    /// The uniform grid that is kept, if it has the segments that are asked for.
+    pub(crate) fn lattice(&self) -> Result<Drawn<'m>, Error> {
+        let (id, factor, segments) = (self.id, self.factor, self.segments()?);
+        let kept = self.lattice.map_or(0, |lattice| lattice.segments);
+        let lattice = self.lattice.filter(|lattice| lattice.segments == segments);
+        let lattice = lattice.ok_or(Error::OtherSegments { id, factor, segments: kept })?;
+        if lattice.prepared { Ok(Drawn::Lattice(lattice)) } else { Err(Error::NotPrepared { id }) }
+    }
+
+    /// Tiles with the segments that are asked for.
+    pub(crate) fn tiles(&self) -> Result<Drawn<'m>, Error> {
+        let segments = self.segments()?;
+        if segments > MAX_SEGMENTS {
+            return Err(Error::BadSegments { id: self.id, given: segments, max: MAX_SEGMENTS });
+        }
+        Ok(Drawn::Tiles { segments })
+    }
+}

@@ -1,0 +1,68 @@
+//! Recording draws: what is bound, and what is pushed.
+
+use super::lattice::BoundLattice;
+use crate::gpu::{Buffer, DeviceProperties};
+use crate::renderer::shader::{DrawConstants, PatchStages, STAGES};
+use crate::table::PatchGroup;
+use ash::vk;
+
+/// What is bound in a command buffer so far.
+#[derive(Default)]
+pub(crate) struct Bound {
+    pub pipeline: vk::Pipeline,
+    pub set: vk::DescriptorSet,
+    pub lattice: BoundLattice,
+    /// Whether the rasterizer was told to discard since the last pipeline that cannot be told.
+    pub discards: bool,
+}
+
+/// The draws of one item.
+pub(crate) struct Recorder<'r> {
+    pub device: &'r ash::Device,
+    pub properties: &'r DeviceProperties,
+    pub layout: vk::PipelineLayout,
+    pub cmd: vk::CommandBuffer,
+    pub bound: &'r mut Bound,
+    pub constants: DrawConstants,
+}
+
+/// A group of patches, to be drawn.
+pub(crate) struct DrawnGroup<'m> {
+    pub number: usize,
+    pub stages: PatchStages,
+    pub group: &'m PatchGroup,
+    /// The largest factor of an edge.
+    pub most: f32,
+    /// Control points that are kept.
+    pub control_points: Option<&'m Buffer>,
+}
+
+impl Recorder<'_> {
+    /// Pushes the constants.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded.
+    pub(crate) unsafe fn push(&self) {
+        let constants = bytemuck::bytes_of(&self.constants);
+        // SAFETY: as the caller promises.
+        unsafe { self.device.cmd_push_constants(self.cmd, self.layout, STAGES, 0, constants) };
+    }
+
+    /// Records the draws of `count` patches (or tiles of them), in instances as the device likes them. Each has `points` points, and
+    /// at most `vertices` vertices when it is evaluated.
+    ///
+    /// # Safety
+    /// As [`Renderer::cmd_draw`](crate::Renderer::cmd_draw), with the pipeline bound.
+    pub(crate) unsafe fn cmd_draw_batches(&mut self, count: u32, points: u32, vertices: u32) {
+        for draw in self.properties.patch_batch.draws(count, points, vertices) {
+            // SAFETY: as the caller promises.
+            unsafe {
+                if self.constants.patches_per_instance != draw.patches_per_instance || draw.first_instance == 0 {
+                    self.constants.patches_per_instance = draw.patches_per_instance;
+                    self.push();
+                }
+                self.device.cmd_draw(self.cmd, draw.vertex_count, draw.instance_count, 0, draw.first_instance);
+            }
+        }
+    }
+}
