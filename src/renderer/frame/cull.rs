@@ -5,11 +5,11 @@
 //! their order, but of every 128 first those within the frustum, then those that cross it. Where control points are not cached it
 //! makes those of all patches, and the draws make those of the patches that are left again.
 
-#[cfg(doc)]
-use crate::renderer::{Evaluation};
 use super::lists::{FrameLists, ListLayout};
 use super::visible::{ItemLists, List, VisibleItem, VisibleItems};
 use super::{Renderer, RetiredObject};
+#[cfg(doc)]
+use crate::renderer::Evaluation;
 use crate::renderer::evaluate::{Bound, path};
 use crate::renderer::options::{Cull, DrawItem, Error, Geometry, View};
 use crate::renderer::shader::{Cut, PatchStages};
