@@ -4,10 +4,11 @@ use super::error::CliError;
 use super::legend::{self, COLOURS};
 use ash::vk;
 use ash_subdiv::gpu::{Buffer, BufferDesc, DescriptorSet, DeviceContext, MemoryLocation, Owned, descriptor_set_layout};
+use ash_subdiv::headless::Headless;
 use ash_subdiv::measure::{Quantity, error_field};
 use ash_subdiv::mesh::{FaceVarying, MeshData};
 use ash_subdiv::table::{CpuSurface, grid_parameters};
-use ash_subdiv::{ControlMesh, MeshError};
+use ash_subdiv::{ControlMesh, MeshError, Renderer};
 use std::sync::Arc;
 
 /// Samples of the error over all patches, about: a second's work.
@@ -132,6 +133,17 @@ impl ErrorSet {
         // SAFETY: the layout is of this device, with this descriptor; the buffer goes with the set.
         let set = unsafe { DescriptorSet::of_buffers(context, layout.raw(), NAME, &[(ty, buffer.descriptor())])? };
         Ok(Self { layout, set, _buffer: buffer })
+    }
+
+    /// Binds the set where the shaders look for it.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded; `renderer` has the layout; this outlives the submission.
+    pub(super) unsafe fn cmd_bind(&self, headless: &Headless, cmd: vk::CommandBuffer, renderer: &Renderer) {
+        let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, renderer.pipeline_layout());
+        let sets = [self.set.raw()];
+        // SAFETY: as the caller promises.
+        unsafe { headless.device().cmd_bind_descriptor_sets(cmd, point, layout, 2, &sets, &[]) };
     }
 }
 

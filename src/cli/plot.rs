@@ -9,6 +9,7 @@ use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// A scheme at several costs.
@@ -123,26 +124,14 @@ impl Figure {
         (error, error_name): (usize, &str),
     ) -> Drawn<B> {
         let font = |size: u32| (FONT, size * scale).into_font();
-        let points = |curve: &Curve| -> Vec<(f64, f64)> {
-            let points = curve.points.iter().map(|point| (cost(point), point.errors[error].unwrap_or(0.0)));
-            points.filter(|&(x, y)| x > 0.0 && y > ROUNDING).collect()
-        };
+        let points = |curve: &Curve| curve.drawn(cost, error);
         let all: Vec<_> = self.curves.iter().chain([&self.floor]).flat_map(points).collect();
         if all.is_empty() {
             let at = [24, 24].map(|x| x * scale as i32);
             panel.draw(&Text::new(format!("{error_name}: no error, or not measured"), at.into(), font(15)))?;
             return Ok(());
         }
-        let range = |value: fn(&(f64, f64)) -> f64| {
-            let low = all.iter().map(value).fold(f64::MAX, f64::min) / 1.5;
-            let high = all.iter().map(value).fold(0.0, f64::max) * 1.5;
-            // Powers of ten have labels: there are to be two.
-            let (first, last) = (low.log10(), high.log10());
-            match last.floor() - first.ceil() >= 1.0 {
-                true => low..high,
-                false => 10f64.powf(first.floor())..10f64.powf(last.ceil()),
-            }
-        };
+        let range = |value: fn(&(f64, f64)) -> f64| axis_range(all.iter().map(value));
         let mut chart = ChartBuilder::on(panel)
             .margin(14 * scale)
             .margin_right(26 * scale)
@@ -167,9 +156,8 @@ impl Figure {
             let colour = if is_floor { FLOOR_COLOUR } else { COLOURS[number % COLOURS.len()] };
             // Where curves lie on each other, later ones are thinner, with smaller dots: all are seen.
             let size = (self.curves.len() - number) as u32 * scale;
-            let line = colour.stroke_width(size + scale);
             chart
-                .draw_series(LineSeries::new(points(curve), line))?
+                .draw_series(LineSeries::new(points(curve), colour.stroke_width(size + scale)))?
                 .label(curve.name)
                 .legend(move |(x, y)| Circle::new((x + 8 * scale as i32, y), 5 * scale, colour.filled()));
             let dot = (3 * scale) + size;
@@ -187,6 +175,26 @@ impl Figure {
                 .draw()?;
         }
         Ok(())
+    }
+}
+
+impl Curve {
+    /// What of the curve can be drawn: this cost against this error.
+    fn drawn(&self, cost: fn(&CurvePoint) -> f64, error: usize) -> Vec<(f64, f64)> {
+        let points = self.points.iter().map(|point| (cost(point), point.errors[error].unwrap_or(0.0)));
+        points.filter(|&(x, y)| x > 0.0 && y > ROUNDING).collect()
+    }
+}
+
+/// The range of a logarithmic axis around these.
+fn axis_range(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (low, high) = values.fold((f64::MAX, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+    let (low, high) = (low / 1.5, high * 1.5);
+    // Powers of ten have labels: there are to be two.
+    let (first, last) = (low.log10(), high.log10());
+    match last.floor() - first.ceil() >= 1.0 {
+        true => low..high,
+        false => 10f64.powf(first.floor())..10f64.powf(last.ceil()),
     }
 }
 

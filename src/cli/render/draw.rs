@@ -57,6 +57,17 @@ impl RenderArgs {
         }))
     }
 
+    fn renderer_options(&self, model: &ModelOptions, errors: Option<&ErrorSet>, visible_lists: bool) -> Options {
+        Options {
+            styles: self.shading.styles(),
+            texcoords: errors.is_some(),
+            evaluations: vec![model.evaluation],
+            visible_lists,
+            set_layouts: errors.iter().map(|errors| errors.layout.raw()).collect(),
+            ..Options::default()
+        }
+    }
+
     /// Draws the picture: rows from the top, four bytes RGBA a pixel.
     pub(super) fn draw(
         &self,
@@ -73,14 +84,7 @@ impl RenderArgs {
         let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
         let errors = picture.map.map(|map| ErrorSet::new(headless.context(), map)).transpose()?;
         let culls = self.factor.cull.cull() != Cull::NONE && model_options.construction == Construction::Cached;
-        let options = Options {
-            styles: self.shading.styles(),
-            texcoords: errors.is_some(),
-            evaluations: vec![model_options.evaluation],
-            visible_lists: culls,
-            set_layouts: errors.iter().map(|errors| errors.layout.raw()).collect(),
-            ..Options::default()
-        };
+        let options = self.renderer_options(model_options, errors.as_ref(), culls);
         let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
         // SAFETY: the layout outlives the renderer, whose shaders fit it; every submission is waited for, so the renderer
         // is dropped when idle.
@@ -105,22 +109,9 @@ impl RenderArgs {
             culls.then(|| renderer.cmd_cull(cmd, 0, &picture.view, &draws)).transpose()
         })?;
         let record = |cmd| {
-            if let Some(errors) = &errors {
-                let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, renderer.pipeline_layout());
-                // SAFETY: the set is of the layout at this place, and outlives the submission.
-                unsafe {
-                    headless.context().device().cmd_bind_descriptor_sets(
-                        cmd,
-                        point,
-                        layout,
-                        2,
-                        &[errors.set.raw()],
-                        &[],
-                    );
-                }
-            }
-            // SAFETY: inside rendering that fits the target, after the frame was prepared.
+            // SAFETY: inside rendering that fits the target, after the frame was prepared; the set outlives the submission.
             unsafe {
+                errors.iter().for_each(|errors| errors.cmd_bind(headless, cmd, &renderer));
                 match &visible {
                     Some(visible) => renderer.cmd_draw_visible(cmd, 0, visible),
                     None => renderer.cmd_draw(cmd, 0, &picture.view, &draws),

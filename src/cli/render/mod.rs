@@ -78,19 +78,16 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(construction) };
     let texels = args.displacement.texels()?;
     options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
-    let mut drawn = &mesh;
-    if let Some(map) = &map {
-        (drawn, options.refine) = (&map.mesh, 0);
-    }
+    let drawn = map.as_ref().map_or(&mesh, |map| &map.mesh);
+    options.refine = if map.is_some() { 0 } else { options.refine };
     let tables = ModelTables::new(drawn, &options)?;
     if map.is_none() {
         tell_notices(tables.notices(), &progress);
     }
     let patches = Patches::of(&tables);
-    let [width, height] = args.size;
-    let size = [width, height - legend];
-    let view = args.camera.view(&args.seen_points(&mesh, texels.as_ref())?, f64::from(size[0]) / f64::from(size[1]))?;
-    let view = view.sized(size[0], size[1]);
+    let size @ [width, height] = [args.size[0], args.size[1] - legend];
+    let seen = args.seen_points(&mesh, texels.as_ref())?;
+    let view = args.camera.view(&seen, f64::from(width) / f64::from(height))?.sized(width, height);
     progress.now("drawing");
     let (samples, device, mut pixels, statistics) = args.device.run(|headless| {
         let samples = args.check_limits(headless.properties())?;
@@ -100,48 +97,60 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         Ok((samples, headless.properties().name.clone(), pixels, statistics))
     })?;
     progress.now("writing the picture");
-    if args.background.is_transparent() {
-        unpremultiply(&mut pixels, args.shading.format() == vk::Format::R8G8B8A8_SRGB);
-    }
-    if let Some(map) = &map {
-        args.legend(map).add(args.size, args.background, &mut pixels)?;
-    }
-    write_file(&args.output, |part| match save_png(part, vk::Extent2D { width, height }, &pixels) {
-        Err(HeadlessError::Picture { message, .. }) => Err(message),
-        result => result.map_err(|error| error.to_string()),
-    })?;
+    args.save(&mut pixels, map.as_ref())?;
     drop(progress);
-    if json {
-        return output::json_pretty(&RenderOut {
-            file: &file,
-            size: args.size,
-            patches,
-            evaluation: options.evaluation.name(),
-            construction: options.construction.name(),
-            factor: Some(args.factor.factor()).filter(|f| matches!(f, Factor::Uniform(_))).map(Factor::value),
-            level: args.factor.level,
-            pixels: args.factor.pixels,
-            bend: args.factor.bend,
-            spacing: args.spacing.name(),
-            shading: args.shading.name(),
-            samples,
-            device: &device,
-            statistics,
-            error: map.map(|ErrorMap { top, largest, .. }| ErrorOut { top, largest }),
-        });
+    let error = map.map(|ErrorMap { top, largest, .. }| ErrorOut { top, largest });
+    if !json {
+        return args.print(patches, samples, &device, error);
     }
-    output::with_stdout(|out| {
-        let factor = args.factor.text();
-        writeln!(out, "{file}: {width} x {height}, {patches}, {factor}, {samples} samples, on {device}")?;
-        if let Some(ErrorMap { top, largest, .. }) = map {
-            let [top, largest] = [top, largest].map(output::short);
-            writeln!(out, "the scale ends at {top} (--error-max); the largest error is {largest}")?;
-        }
-        Ok(())
+    output::json_pretty(&RenderOut {
+        file: &file,
+        size: args.size,
+        patches,
+        evaluation: options.evaluation.name(),
+        construction: options.construction.name(),
+        factor: Some(args.factor.factor()).filter(|f| matches!(f, Factor::Uniform(_))).map(Factor::value),
+        level: args.factor.level,
+        pixels: args.factor.pixels,
+        bend: args.factor.bend,
+        spacing: args.spacing.name(),
+        shading: args.shading.name(),
+        samples,
+        device: &device,
+        statistics,
+        error,
     })
 }
 
 impl RenderArgs {
+    /// Writes the picture to its file, with the legend of errors.
+    fn save(&self, pixels: &mut Vec<u8>, map: Option<&ErrorMap>) -> Result<(), CliError> {
+        let [width, height] = self.size;
+        if self.background.is_transparent() {
+            unpremultiply(pixels, self.shading.format() == vk::Format::R8G8B8A8_SRGB);
+        }
+        if let Some(map) = map {
+            self.legend(map).add(self.size, self.background, pixels)?;
+        }
+        write_file(&self.output, |part| match save_png(part, vk::Extent2D { width, height }, pixels) {
+            Err(HeadlessError::Picture { message, .. }) => Err(message),
+            result => result.map_err(|error| error.to_string()),
+        })
+    }
+
+    /// Writes what was drawn as text.
+    fn print(&self, patches: Patches, samples: u32, device: &str, error: Option<ErrorOut>) -> Result<(), CliError> {
+        output::with_stdout(|out| {
+            let (file, [width, height], factor) = (self.output.display(), self.size, self.factor.text());
+            writeln!(out, "{file}: {width} x {height}, {patches}, {factor}, {samples} samples, on {device}")?;
+            if let Some(ErrorOut { top, largest }) = error {
+                let [top, largest] = [top, largest].map(output::short);
+                writeln!(out, "the scale ends at {top} (--error-max); the largest error is {largest}")?;
+            }
+            Ok(())
+        })
+    }
+
     /// The errors to be shown, if any.
     fn error_map(&self, mesh: &ControlMesh, progress: &Progress) -> Result<Option<ErrorMap>, CliError> {
         let Some(quantity) = self.shading.quantity() else {

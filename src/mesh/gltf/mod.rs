@@ -7,6 +7,26 @@ mod accessor;
 mod container;
 mod polygons;
 mod scene;
+
+/// An index is one of a position.
+fn check_index(index: u32, positions: &Accessor) -> Result<(), MeshError> {
+    match positions.count() {
+        count if index as usize >= count => {
+            Err(format_error(format!("an index is {index}, but POSITION has {count} elements")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// An attribute has as many elements as there are positions.
+fn check_count(name: &str, accessor: &Accessor, positions: &Accessor) -> Result<(), MeshError> {
+    let (given, needed) = (accessor.count(), positions.count());
+    match given == needed {
+        true => Ok(()),
+        false => Err(format_error(format!("{name} has {given} elements, but POSITION has {needed}"))),
+    }
+}
+
 #[cfg(test)]
 mod tests;
 
@@ -145,10 +165,7 @@ impl Builder {
         let texcoords = attribute(Semantic::TexCoords(0), Type::Vec2)?;
         let normals = attribute(Semantic::Normals, Type::Vec3)?;
         for (name, accessor) in [("TEXCOORD_0", &texcoords), ("NORMAL", &normals)] {
-            if let Some(accessor) = accessor.as_ref().filter(|accessor| accessor.count() != positions.count()) {
-                let (given, needed) = (accessor.count(), positions.count());
-                return Err(format_error(format!("{name} has {given} elements, but POSITION has {needed}")));
-            }
+            accessor.as_ref().map_or(Ok(()), |accessor| check_count(name, accessor, &positions))?;
         }
         let indices = indices(root, buffers, primitive, &positions)?;
         let ngons = primitive.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(NGONS));
@@ -160,21 +177,9 @@ impl Builder {
         polygons::for_each_face(&indices, mode, ngons, |corners| {
             let first = self.data.face_vertices.len();
             for &corner in corners {
-                if corner as usize >= positions.count() {
-                    let count = positions.count();
-                    return Err(format_error(format!("an index is {corner}, but POSITION has {count} elements")));
-                }
+                check_index(corner, &positions)?;
                 let local = *locals.entry(corner).or_insert_with(|| {
-                    let position: [f64; 3] = positions.get(corner as usize);
-                    // Adding zero makes -0 and 0 the same.
-                    let vertex = *welded.entry(position.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
-                        let position = DVec3::from(position);
-                        let placed = instance.transform.transform_point3(position);
-                        // An infinite coordinate would make the others NaN, and hide from the message what is wrong.
-                        let placed = if position.is_finite() { placed } else { position };
-                        self.data.positions.push(placed.to_array());
-                        self.data.positions.len() as u32 - 1
-                    });
+                    let vertex = self.weld(positions.get(corner as usize), instance, welded);
                     let texcoord = texcoords.as_ref().map_or([0.0; 2], |texcoords| texcoords.get(corner as usize));
                     let normal = normals.as_ref().map_or([0.0; 3], |normals| normals.get(corner as usize));
                     let normal = (normal_transform * DVec3::from(normal)).normalize_or_zero();
@@ -196,6 +201,19 @@ impl Builder {
         self.has_texcoords |= texcoords.is_some();
         self.has_normals |= normals.is_some();
         Ok(())
+    }
+
+    /// The vertex at a position of an instance's mesh, new if none is there yet.
+    fn weld(&mut self, position: [f64; 3], instance: &Instance<'_>, welded: &mut HashMap<[u64; 3], u32>) -> u32 {
+        // Adding zero makes -0 and 0 the same.
+        *welded.entry(position.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
+            let position = DVec3::from(position);
+            let placed = instance.transform.transform_point3(position);
+            // An infinite coordinate would make the others NaN, and hide from the message what is wrong.
+            let placed = if position.is_finite() { placed } else { position };
+            self.data.positions.push(placed.to_array());
+            self.data.positions.len() as u32 - 1
+        })
     }
 
     fn finish(mut self) -> MeshData {

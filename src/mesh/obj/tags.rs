@@ -23,38 +23,9 @@ pub(super) fn read<'a>(
 ) -> Result<(), String> {
     let tag = parse(words)?;
     match tag.name {
-        "crease" => {
-            let edges = tag.integers.len().saturating_sub(1);
-            if edges == 0 || !tag.strings.is_empty() || ![1, edges].contains(&tag.floats.len()) {
-                return Err(tag.shape("two or more vertices and one sharpness for all edges or one for each", "2/1/0"));
-            }
-            let vertices = indices(&tag.integers)?;
-            for (edge, pair) in vertices.windows(2).enumerate() {
-                let sharpness = sharpness(tag.floats[edge.min(tag.floats.len() - 1)])?;
-                data.creases.push(Crease { vertices: [pair[0], pair[1]], sharpness });
-                lines.creases.push(line);
-            }
-        }
-        "corner" => {
-            let count = tag.integers.len();
-            if count == 0 || !tag.strings.is_empty() || ![1, count].contains(&tag.floats.len()) {
-                return Err(tag.shape("one or more vertices and one sharpness for all or one for each", "1/1/0"));
-            }
-            for (index, vertex) in indices(&tag.integers)?.into_iter().enumerate() {
-                let sharpness = sharpness(tag.floats[index.min(tag.floats.len() - 1)])?;
-                data.corners.push(Corner { vertex, sharpness });
-                lines.corners.push(line);
-            }
-        }
-        "hole" => {
-            if tag.integers.is_empty() || !tag.floats.is_empty() || !tag.strings.is_empty() {
-                return Err(tag.shape("one or more faces", "1/0/0"));
-            }
-            for face in indices(&tag.integers)? {
-                data.holes.push(face);
-                lines.holes.push((face, line));
-            }
-        }
+        "crease" => tag.add_creases(line, data, lines)?,
+        "corner" => tag.add_corners(line, data, lines)?,
+        "hole" => tag.add_holes(line, data, lines)?,
         "interpolateboundary" => {
             data.boundary = match tag.only_integer()? {
                 "0" => BoundaryRule::None,
@@ -116,6 +87,44 @@ fn parse<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Tag<'a>, String
 }
 
 impl<'a> Tag<'a> {
+    fn add_creases(&self, line: usize, data: &mut MeshData, lines: &mut Lines) -> Result<(), String> {
+        let edges = self.integers.len().saturating_sub(1);
+        if edges == 0 || !self.strings.is_empty() || ![1, edges].contains(&self.floats.len()) {
+            return Err(self.shape("two or more vertices and one sharpness for all edges or one for each", "2/1/0"));
+        }
+        let vertices = indices(&self.integers)?;
+        for (edge, pair) in vertices.windows(2).enumerate() {
+            let sharpness = sharpness(self.floats[edge.min(self.floats.len() - 1)])?;
+            data.creases.push(Crease { vertices: [pair[0], pair[1]], sharpness });
+            lines.creases.push(line);
+        }
+        Ok(())
+    }
+
+    fn add_corners(&self, line: usize, data: &mut MeshData, lines: &mut Lines) -> Result<(), String> {
+        let count = self.integers.len();
+        if count == 0 || !self.strings.is_empty() || ![1, count].contains(&self.floats.len()) {
+            return Err(self.shape("one or more vertices and one sharpness for all or one for each", "1/1/0"));
+        }
+        for (index, vertex) in indices(&self.integers)?.into_iter().enumerate() {
+            let sharpness = sharpness(self.floats[index.min(self.floats.len() - 1)])?;
+            data.corners.push(Corner { vertex, sharpness });
+            lines.corners.push(line);
+        }
+        Ok(())
+    }
+
+    fn add_holes(&self, line: usize, data: &mut MeshData, lines: &mut Lines) -> Result<(), String> {
+        if self.integers.is_empty() || !self.floats.is_empty() || !self.strings.is_empty() {
+            return Err(self.shape("one or more faces", "1/0/0"));
+        }
+        for face in indices(&self.integers)? {
+            data.holes.push(face);
+            lines.holes.push((face, line));
+        }
+        Ok(())
+    }
+
     fn only_integer(&self) -> Result<&'a str, String> {
         match (self.integers.as_slice(), self.floats.as_slice(), self.strings.as_slice()) {
             (&[integer], [], []) => Ok(integer),
