@@ -55,6 +55,7 @@ fn build() -> Result<(), String> {
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: run this through cargo")?);
     let has = |feature: &str| env::var_os(format!("CARGO_FEATURE_{feature}")).is_some();
     println!("cargo:rerun-if-changed=glsl");
+    write(&out.join("constants.rs"), &constants("glsl/lib/constants.glsl")?)?;
     let keys: Vec<_> = ShaderKey::all().into_iter().filter(|key| has("HEADLESS") || !key.is_for_tools()).collect();
     let jobs: Vec<Job> = keys.iter().map(|&key| job(key)).collect();
     let spirv = compile_all(&jobs, &out.join("shaders"))?;
@@ -73,6 +74,18 @@ fn build() -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// The Rust file of the numbers that a GLSL file defines, each in a line such as `#define REGION 128u`.
+fn constants(path: &str) -> Result<String, String> {
+    let text = fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
+    let mut rust = String::from("// Written by build.rs.\n");
+    for line in text.lines() {
+        let Some((name, value)) = line.strip_prefix("#define ").and_then(|rest| rest.split_once(' ')) else { continue };
+        let value = value.strip_suffix('u').ok_or_else(|| format!("{path}: {name} is no unsigned number"))?;
+        let _ = writeln!(rust, "pub const {name}: u32 = {value};");
+    }
+    Ok(rust)
 }
 
 /// The compile of one of the renderer's shaders.

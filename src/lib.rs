@@ -115,6 +115,7 @@
 pub mod bench;
 #[cfg(feature = "headless")]
 pub mod capture;
+mod constants;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;

@@ -2,10 +2,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define POSITION_TEXELS 2
+#include "constants.glsl"
 #include "draw/draw.glsl"
 #include "draw/positions.glsl"
 
-layout(constant_id = 0) const uint CORNERS = 4u;
+layout(constant_id = ID_CORNERS) const uint CORNERS = 4u;
 
 layout(set = 1, binding = 1, std430) readonly buffer Corners { uint corners[]; };
 

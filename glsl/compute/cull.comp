@@ -5,6 +5,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MAKES_LISTS
+#include "constants.glsl"
 #include "draw/draw.glsl"
 #include "draw/patch_kind.glsl"
 #include "draw/visible.glsl"
@@ -14,10 +15,8 @@
 #include "construct/cached.glsl"
 
 // Whether what is kept of patches is copied. Set in src/renderer/frame/lists.rs.
-layout(constant_id = 11) const bool COPIES = false;
+layout(constant_id = ID_COPIES) const bool COPIES = false;
 
-// Patches of a workgroup. Rust twin: `REGION` in src/renderer/frame/lists.rs.
-const uint REGION = 128u;
 layout(local_size_x = REGION) in;
 
 // A bit for each patch that can be seen wholly, and for each that can be in part; then their numbers.

@@ -5,6 +5,7 @@
 #ifdef DISPLACED
 #define SHARED
 #endif
+#include "constants.glsl"
 #include "draw/draw.glsl"
 #include "construct/corner.glsl"
 #include "construct/corner_numbers.glsl"
@@ -13,7 +14,7 @@
 #include "displace/corner_lod.glsl"
 #endif
 
-layout(constant_id = 0) const uint CORNERS = 4u;
+layout(constant_id = ID_CORNERS) const uint CORNERS = 4u;
 
 layout(location = 0) out uint patch_number;
 layout(location = 1) out vec4 of_corner[RING_ROWS];

@@ -3,20 +3,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TEXCOORD
+#include "constants.glsl"
 #include "evaluate/lattice.glsl"
 #include "construct/read_cached.glsl"
 
 layout(local_size_x = 32) in;
 
-// Vertices of a patch that a workgroup takes: enough that reading the control points is little beside them.
-const uint GROUP_VERTICES = 256u;
 
 // Rust twin: `vertex_bytes` in src/renderer/pipelines/vertex_input.rs.
 #ifdef DISPLACED
 const uint VERTEX_WORDS = 14u;
 #else
 // Whether vertices have texture coordinates.
-layout(constant_id = 13) const bool HAS_TEXCOORDS = false;
+layout(constant_id = ID_HAS_TEXCOORDS) const bool HAS_TEXCOORDS = false;
 const uint VERTEX_WORDS = HAS_TEXCOORDS ? 8u : 6u;
 #endif
 layout(set = 2, binding = 0, std430) writeonly buffer Vertices { float vertices[]; };

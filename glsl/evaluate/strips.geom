@@ -3,6 +3,7 @@
 // the cached construction they are there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "constants.glsl"
 #include "evaluate/lattice.glsl"
 #include "draw/draw.glsl"
 #include "draw/construction.glsl"
@@ -15,12 +16,11 @@
 #include "capture/capture.glsl"
 #endif
 
-// Every Vulkan device lets an invocation write 1024 components: 16 a vertex, however they are counted.
-// Rust twins: src/table/lattice.rs.
-const uint TILE_VERTICES = 64u;
+// Every Vulkan device lets an invocation write 1024 components: 16 a vertex, however they are counted. Rust twins:
+// src/table/lattice.rs.
 
 layout(points) in;
-layout(triangle_strip, max_vertices = 64) out;
+layout(triangle_strip, max_vertices = TILE_VERTICES) out;
 
 layout(location = 0) in uint tile_number[];  // among those of all patches of the draw
 

@@ -1,6 +1,7 @@
 //! The buffer that the shaders write to.
 
 use super::CapturedVertex;
+use crate::constants;
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, GpuError, MemoryLocation};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -19,14 +20,12 @@ pub(super) struct Head {
 
 pub(super) const HEAD_BYTES: u64 = size_of::<Head>() as u64;
 pub(super) const RECORD_BYTES: u64 = size_of::<CapturedVertex>() as u64;
-/// Words that the control points of a patch take, whatever its kind.
-pub(super) const CONTROL_POINT_WORDS: usize = 96;
-/// Words that its factors take, after them.
-pub(super) const FACTOR_WORDS: usize = 7;
-/// In the place of a grid's size: vertices on edges as they come.
-pub(super) const EDGES_ONLY: u32 = u32::MAX;
+/// Words that the control points of a patch take, whatever its kind, and its factors after them.
+pub(super) const CONTROL_POINT_WORDS: usize = constants::CONTROL_POINT_WORDS as usize;
+pub(super) const FACTOR_WORDS: usize = constants::FACTOR_WORDS as usize;
+pub(super) use crate::constants::EDGES_ONLY;
 
-const _: () = assert!(RECORD_BYTES == 40 && HEAD_BYTES == 20);
+const _: () = assert!(RECORD_BYTES == 4 * constants::RECORD_WORDS as u64 && HEAD_BYTES == 20);
 
 pub(super) fn capture_buffer(context: &Arc<DeviceContext>, size: u64) -> Result<Buffer, GpuError> {
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER;

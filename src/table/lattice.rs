@@ -18,9 +18,7 @@ fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
     if kind.is_triangular() { n * n } else { 2 * n * n }
 }
 
-/// Vertices that an invocation of the geometry shader emits, at most. GLSL twin: `TILE_VERTICES` in
-/// `glsl/evaluate/strips.geom`.
-pub(crate) const TILE_VERTICES: u32 = 64;
+pub(crate) use crate::constants::TILE_VERTICES;
 
 /// Columns and rows of the cells that an invocation of the geometry shader emits, of a patch with `n` segments along each side.
 /// A row of `c` cells takes up to `2 c + 6` vertices.

@@ -1,24 +1,25 @@
 //! The connectivity of the two-stage construction: every one-ring in order, and what its weights are.
 
 use super::PatchPlan;
+use crate::constants;
 use crate::patch::{RingShape, RingValues, Row, Scheme};
 use crate::topology::{Ring, RingKind, Topology};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Bit of a ring entry's index: the face is a triangle, and the entry stands in for the diagonal it does not have.
-pub const TRIANGLE_BIT: u32 = 1 << 31;
+pub const TRIANGLE_BIT: u32 = constants::TRIANGLE_BIT;
 /// Bit of a ring entry's index: the face is a pentagon, and the entry stands for the middle of its far edge. The rest is the
 /// place among the entries where that edge's two vertices are.
-pub const PENTAGON_BIT: u32 = 1 << 30;
+pub const PENTAGON_BIT: u32 = constants::PENTAGON_BIT;
 /// Bit of [`RingTable::headers`]`[3]`: the first and the last edge differ.
-pub const OPEN_BIT: u32 = 1 << 31;
+pub const OPEN_BIT: u32 = constants::OPEN_BIT;
 /// Bit of [`RingTable::headers`]`[3]`: edge points go straight at the neighbours ([`RingShape::has_frame`] is false).
-pub const CONE_BIT: u32 = 1 << 30;
+pub const CONE_BIT: u32 = constants::CONE_BIT;
 /// Bit of [`RingTable::headers`]`[3]`: [`RingShape::fallback`].
-pub const FALLBACK_BIT: u32 = 1 << 29;
+pub const FALLBACK_BIT: u32 = constants::FALLBACK_BIT;
 /// Bit of [`RingTable::headers`]`[3]`: transversals are the scheme's own, with weights in the ring's type.
-pub const FITTED_BIT: u32 = 1 << 28;
+pub const FITTED_BIT: u32 = constants::FITTED_BIT;
 
 /// One-rings as the shaders read them. GLSL twin: `glsl/lib/construct/rings.glsl`.
 #[derive(Debug, Clone, Default, PartialEq)]

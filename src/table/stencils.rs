@@ -144,7 +144,7 @@ impl StencilTable {
 }
 
 /// Words at the start of a type for each corner.
-const HEAD_WORDS: usize = 3;
+const HEAD_WORDS: usize = crate::constants::HEAD_WORDS as usize;
 
 /// The one-ring of a patch corner, as the patch sees it.
 struct CornerRing {

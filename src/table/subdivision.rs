@@ -2,6 +2,7 @@
 //! them.
 
 use super::{PatchPlan, bytes};
+use crate::constants;
 use crate::limit::{EdgeProfile, Fan, FanRows, Fans, LEVELS};
 use crate::mesh::{CreaseMethod, MeshError, SHARPNESS_INFINITE};
 use crate::patch::Row;
@@ -9,9 +10,9 @@ use crate::topology::Topology;
 use std::collections::HashMap;
 
 /// Bit of [`SubdivisionTable::headers`]`[3]`: the first and the last edge differ.
-pub const FAN_OPEN_BIT: u32 = 1 << 31;
+pub const FAN_OPEN_BIT: u32 = constants::FAN_OPEN_BIT;
 /// Words of a type before its weights. GLSL twin: `TYPE_HEAD` in `glsl/lib/subdivide/subdivision.glsl`.
-const TYPE_HEAD: usize = 10;
+const TYPE_HEAD: usize = constants::TYPE_HEAD as usize;
 
 /// All faces around each vertex of a mesh of quads (a fan), and the weights of what refinement makes of the vertex and its
 /// neighbours. GLSL twin: `glsl/lib/subdivide/subdivision.glsl`.

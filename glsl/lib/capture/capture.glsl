@@ -3,6 +3,8 @@
 #ifndef CAPTURE_GLSL
 #define CAPTURE_GLSL
 
+#include "constants.glsl"
+
 #ifndef CAPTURE_BINDING
 #define CAPTURE_BINDING 0
 #endif
@@ -16,10 +18,6 @@ layout(set = 2, binding = CAPTURE_BINDING, std430) buffer Capture {
     float captured[];
 };
 
-const uint CONTROL_POINT_WORDS = 96u;
-const uint FACTOR_WORDS = 7u;
-const uint EDGES_ONLY = ~0u;  // vertices on edges as they come
-const uint RECORD_WORDS = 10u;
 
 void put(uint at, vec3 x) {
     captured[at] = x.x;

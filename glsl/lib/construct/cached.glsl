@@ -3,11 +3,12 @@
 #ifndef CACHED_GLSL
 #define CACHED_GLSL
 
+#include "constants.glsl"
 #include "draw/packed.glsl"
 #include "draw/positions.glsl"
 
 // Texels that a corner has room for: as many as the corners of any patch of the model need.
-layout(constant_id = 3) const uint STRIDE = 8u;
+layout(constant_id = ID_STRIDE) const uint STRIDE = 8u;
 
 // `corner` counts through all patches.
 #ifdef MAKES_POINTS

@@ -2,6 +2,7 @@
 #ifndef RINGS_GLSL
 #define RINGS_GLSL
 
+#include "constants.glsl"
 #include "draw/positions.glsl"
 
 layout(set = 1, binding = 1, std430) readonly buffer RingHeaders { uvec4 ring_headers[]; };
@@ -13,17 +14,11 @@ layout(set = 1, binding = 16) uniform usamplerBuffer ring_entry_texels;
 layout(set = 1, binding = 17) uniform samplerBuffer ring_type_texels;
 layout(set = 1, binding = 18) uniform usamplerBuffer patch_corner_texels;
 
-const uint TRIANGLE_BIT = 1u << 31;
-const uint PENTAGON_BIT = 1u << 30;
-const uint OPEN_BIT = 1u << 31;
-const uint CONE_BIT = 1u << 30;
-const uint FITTED_BIT = 1u << 28;
-const uint FALLBACK_BIT = 1u << 29;
 
 // What no ring of the scheme has need not be looked for. Rust twin: `PatchStages::specialization` in
 // src/renderer/shader/key.rs.
-layout(constant_id = 5) const bool MAY_BE_FITTED = true;
-layout(constant_id = 6) const bool MAY_HAVE_PENTAGONS = true;
+layout(constant_id = ID_MAY_BE_FITTED) const bool MAY_BE_FITTED = true;
+layout(constant_id = ID_MAY_HAVE_PENTAGONS) const bool MAY_HAVE_PENTAGONS = true;
 
 struct Ring {
     uint vertex;

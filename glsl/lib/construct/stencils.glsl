@@ -2,13 +2,13 @@
 #ifndef STENCILS_GLSL
 #define STENCILS_GLSL
 
+#include "constants.glsl"
 #include "draw/positions.glsl"
 
 layout(set = 1, binding = 5, std430) readonly buffer StencilPatches { uvec2 stencil_patches[]; };
 layout(set = 1, binding = 6, std430) readonly buffer StencilVertices { uint stencil_vertices[]; };
 layout(set = 1, binding = 7, std430) readonly buffer StencilTypes { uint stencil_types[]; };
 
-const uint HEAD_WORDS = 3u;
 const uint ENTRY_WORDS = 1u + OWNED;
 
 // The control points that a corner of a patch with so many corners owns. Those that faces around the corner share come out with the same bits

@@ -13,10 +13,10 @@
 #ifndef DISPLACE_GLSL
 #define DISPLACE_GLSL
 
+#include "constants.glsl"
 #include "displace/displacement_map.glsl"
 #include "draw/draw.glsl"
 
-const uint VECTOR_FLAG = 1u;  // in draw.flags
 
 // Object space to object space. `direction` is of length one, `texcoord` that of the edge's or corner's owner on edges and
 // corners, `lod` a level of the map at which a segment of the tessellation is about a texel long.

@@ -2,8 +2,9 @@
 #ifndef CONSTRUCTION_GLSL
 #define CONSTRUCTION_GLSL
 
-const uint TWO_STAGE = 0u, STENCIL = 1u, CACHED = 2u;
-layout(constant_id = 12) const uint CONSTRUCTION = TWO_STAGE;
+#include "constants.glsl"
+
+layout(constant_id = ID_CONSTRUCTION) const uint CONSTRUCTION = TWO_STAGE;
 
 #define IS_CACHED (CONSTRUCTION == CACHED)
 

@@ -2,7 +2,9 @@
 #ifndef INVOCATION_GLSL
 #define INVOCATION_GLSL
 
-layout(local_size_x = 64) in;
+#include "constants.glsl"
+
+layout(local_size_x = GROUP_INVOCATIONS) in;
 
 // Rust twin: `Invocations` in src/renderer/construct/cached.rs.
 layout(push_constant, std430) uniform Invocations {

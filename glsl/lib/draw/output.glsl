@@ -2,8 +2,10 @@
 #ifndef OUTPUT_GLSL
 #define OUTPUT_GLSL
 
+#include "constants.glsl"
+
 // Whether the attachment holds sRGB values in a format that does not encode them by itself.
-layout(constant_id = 1) const bool ENCODE_SRGB = false;
+layout(constant_id = ID_ENCODE_SRGB) const bool ENCODE_SRGB = false;
 
 layout(location = 0) out vec4 colour;
 

@@ -2,9 +2,11 @@
 #ifndef POSITIONS_GLSL
 #define POSITIONS_GLSL
 
+#include "constants.glsl"
+
 // Whether tables are read as texel buffers, as devices do that have large ones: otherwise as the storage buffers that they are, too.
 // Rust twin: `DeviceProperties::reads_texels` in src/gpu/device.rs.
-layout(constant_id = 9) const bool READS_TEXELS = false;
+layout(constant_id = ID_READS_TEXELS) const bool READS_TEXELS = false;
 
 layout(set = 1, binding = 0, std430) readonly buffer Positions { vec4 positions[]; };
 #ifndef POSITION_TEXELS

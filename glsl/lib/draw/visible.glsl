@@ -2,6 +2,8 @@
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL
 
+#include "constants.glsl"
+
 #ifdef MAKES_LISTS
 #define VISIBLE_ACCESS writeonly
 #else
@@ -16,7 +18,7 @@ layout(set = 0, binding = 1, std430) VISIBLE_ACCESS buffer Visible {
 
 #ifndef MAKES_LISTS
 // Whether a draw is of the patches on the list only.
-layout(constant_id = 10) const bool LISTED = false;
+layout(constant_id = ID_LISTED) const bool LISTED = false;
 
 // The number within the draw of the i-th patch that is drawn.
 uint patch_drawn(uint i) {

@@ -5,9 +5,9 @@
 #ifndef CULLING_GLSL
 #define CULLING_GLSL
 
+#include "constants.glsl"
 #include "edges/factors.glsl"
 
-const uint COUNTER_CLOCKWISE_FLAG = 2u;  // in draw.flags
 
 // What a corner's control points say of the patch.
 struct Examined {

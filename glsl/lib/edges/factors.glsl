@@ -5,25 +5,18 @@
 #ifndef FACTORS_GLSL
 #define FACTORS_GLSL
 
+#include "constants.glsl"
 #include "draw/draw.glsl"
 #include "evaluate/patch.glsl"
 
-layout(constant_id = 2) const float MAX_FACTOR = 64.0;
+layout(constant_id = ID_MAX_FACTOR) const float MAX_FACTOR = 64.0;
 
 layout(set = 1, binding = 11, std430) readonly buffer CornerFactors { float corner_factors[]; };
 
 // How factors are found and which patches are left out: what a draw does not ask for is not in its pipeline. Rust twin:
 // `Cut` in src/renderer/shader/cut.rs.
-layout(constant_id = 4) const uint DRAW_FLAGS = 0u;
+layout(constant_id = ID_DRAW_FLAGS) const uint DRAW_FLAGS = 0u;
 
-const uint METRIC_MASK = 3u;
-const uint METRIC_UNIFORM = 0u;
-const uint METRIC_PIXELS = 1u;
-const uint METRIC_CURVATURE = 2u;
-const uint METRIC_EDGES = 3u;
-const uint CULL_FRUSTUM_FLAG = 1u << 2;
-const uint CULL_BACK_FLAG = 1u << 3;
-const uint CULL_SMALL_FLAG = 1u << 4;
 const uint CULL_FLAGS = CULL_FRUSTUM_FLAG | CULL_BACK_FLAG | CULL_SMALL_FLAG;
 
 // How much of a bend towards the eye counts: it is seen in the shading only.

@@ -3,11 +3,12 @@
 #ifndef SHARED_GLSL
 #define SHARED_GLSL
 
+#include "constants.glsl"
 #include "construct/framed_ring.glsl"
 #include "edges/shared_bits.glsl"
 
 // Whether any corner has another ring than its own speak for what it shares, as at creases.
-layout(constant_id = 7) const bool HAS_SPEAKERS = true;
+layout(constant_id = ID_HAS_SPEAKERS) const bool HAS_SPEAKERS = true;
 
 // An edge as the vertex of a ring sees it.
 struct SharedEdge {

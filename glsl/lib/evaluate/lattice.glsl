@@ -10,6 +10,7 @@
 #define TEXCOORD
 #endif
 #endif
+#include "constants.glsl"
 #include "evaluate/lattice_sample.glsl"
 
 // The parameter of vertex i along a side, with 16 bits after the point: from both ends of an edge the same vertices, for
@@ -25,7 +26,7 @@ float along_side(uint i, uint segments) {
 }
 
 // Whether edges have factors of their own.
-layout(constant_id = 8) const bool HAS_EDGE_FACTORS = false;
+layout(constant_id = ID_HAS_EDGE_FACTORS) const bool HAS_EDGE_FACTORS = false;
 layout(set = 1, binding = 11, std430) readonly buffer CornerFactors { float corner_factors[]; };
 
 // The parameter of vertex i along the plus edge of a corner, which may have fewer segments than the lattice: then the vertex

@@ -2,6 +2,7 @@
 #ifndef SUBDIVISION_GLSL
 #define SUBDIVISION_GLSL
 
+#include "constants.glsl"
 #include "draw/positions.glsl"
 
 layout(set = 1, binding = 1, std430) readonly buffer FanHeaders { uvec4 fan_headers[]; };
@@ -10,8 +11,6 @@ layout(set = 1, binding = 2, std430) readonly buffer FanEntries { uint fan_entri
 layout(set = 1, binding = 3, std430) readonly buffer FanWords { uint fan_words[]; };
 layout(set = 1, binding = 4, std430) readonly buffer FaceCorners { uvec2 face_corners[]; };
 
-const uint FAN_OPEN_BIT = 1u << 31;
-const uint TYPE_HEAD = 10u;
 
 // All faces around a corner of a face, and where that face is among them.
 struct Fan {

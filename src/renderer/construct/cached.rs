@@ -1,5 +1,6 @@
 //! The cached construction: frames of rings, and from these control points, by compute.
 
+use crate::constants::GROUP_INVOCATIONS;
 use crate::gpu::{DeviceContext, GpuError, MAX_WORKGROUPS};
 use crate::renderer::pipelines::ComputePipelines;
 use crate::renderer::shader::{Cut, PatchStages, ShaderCode};
@@ -8,9 +9,6 @@ use crate::table::PatchPlan;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
-
-/// Invocations in a workgroup of `glsl/lib/draw/invocation.glsl`.
-const GROUP: u32 = 64;
 
 /// Push constants. GLSL twin: `glsl/lib/draw/invocation.glsl`.
 #[repr(C)]
@@ -101,7 +99,7 @@ impl CachedPipelines {
     }
 
     unsafe fn cmd_dispatch(&self, cmd: vk::CommandBuffer, step: Step, invocations: Invocations) {
-        let groups = invocations.count.div_ceil(GROUP);
+        let groups = invocations.count.div_ceil(GROUP_INVOCATIONS);
         let rows = groups.div_ceil(MAX_WORKGROUPS);
         // SAFETY: as the caller promises.
         unsafe { self.0.cmd_dispatch(cmd, &step, &invocations, [groups.div_ceil(rows), rows]) };

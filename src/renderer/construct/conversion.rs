@@ -1,5 +1,6 @@
 //! Control points made by the geometry shader, in a pass of their own before the draws (Ni et al. 2008).
 
+use crate::constants::ID_STRIDE;
 use crate::gpu::{
     DeviceContext, GpuError, GraphicsPipelineDesc, Owned, RenderTarget, Shader, Specialization, VkResultExt,
     pipeline_layout,
@@ -71,7 +72,7 @@ impl Conversion {
             return Ok(());
         }
         let [_, stride] = key;
-        let constants = [Specialization::uint(3, stride), reads_texels(self.context.properties())];
+        let constants = [Specialization::uint(ID_STRIDE, stride), reads_texels(self.context.properties())];
         let shaders = [
             Shader::vertex(code.find(ShaderKey::of(Source::ConvertVert))?),
             Shader::geometry(code.find(stages.conversion())?).specialized(&constants),

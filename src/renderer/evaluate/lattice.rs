@@ -1,6 +1,7 @@
 //! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
 
 use super::indices::{IndexCache, LatticeShape, PatchIndices, SharedIndices};
+use crate::constants::{GROUP_VERTICES, ID_HAS_TEXCOORDS};
 use crate::gpu::Specialization;
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, descriptor_set_layout};
 use crate::renderer::options::{EVALUATED_VERTICES, Error, MemoryUsage, ModelId};
@@ -12,8 +13,6 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
 
-/// Vertices of a patch that a workgroup takes. GLSL twin: `GROUP_VERTICES` in `glsl/evaluate/lattice.comp`.
-const GROUP_VERTICES: u32 = 256;
 /// About as many evaluated vertices are drawn with the same indices, of one patch at least.
 const BLOCK_VERTICES: u64 = 65_536;
 
@@ -56,7 +55,7 @@ impl LatticePipelines {
     /// Makes what patches need.
     pub(crate) fn make(&mut self, stages: PatchStages, code: &ShaderCode) -> Result<(), GpuError> {
         let constants = stages.specialization(Cut::default(), self.pipelines.context().properties());
-        let texcoords = Specialization::bool(13, self.texcoords);
+        let texcoords = Specialization::bool(ID_HAS_TEXCOORDS, self.texcoords);
         let constants: Vec<_> = constants.into_iter().chain([texcoords]).collect();
         self.pipelines.make(stages, stages.shader(Source::LatticeComp, Output::Surface), code, &constants)
     }

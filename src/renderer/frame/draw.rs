@@ -2,12 +2,11 @@
 
 use super::Renderer;
 use super::visible::ItemLists;
+use crate::constants::COUNTER_CLOCKWISE_FLAG;
 use crate::renderer::evaluate::{Bound, BoundLattice, DrawnGroup, Recorder, path};
 use crate::renderer::model::Model;
 use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View, is_size};
-use crate::renderer::shader::{
-    COUNTER_CLOCKWISE_FLAG, Cut, DrawConstants, GeometryKey, PatchStages, PipelineKey, ViewData,
-};
+use crate::renderer::shader::{Cut, DrawConstants, GeometryKey, PatchStages, PipelineKey, ViewData};
 #[cfg(doc)]
 use crate::table::Evaluation;
 use ash::vk;

@@ -1,5 +1,6 @@
 //! Lists of the patches that can be seen, made by compute: pipelines, memory, dispatches. See [`super::cull`].
 
+use crate::constants::{ID_COPIES, REGION};
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, Specialization};
 use crate::renderer::evaluate::path;
 use crate::renderer::pipelines::ComputePipelines;
@@ -13,8 +14,6 @@ use std::sync::Arc;
 const PLACE_BYTES: u64 = 4;
 /// The most bytes of a list.
 const MAX_BYTES: u64 = 1 << 20;
-/// Patches that a workgroup lists. GLSL twin: `REGION` in `glsl/compute/cull.comp`.
-pub(crate) const REGION: u32 = 128;
 
 /// How large a list is, and what is in it: places of patches, then the indirect draws, then copies. Workgroups list the patches of
 /// a region each, and write its draws.
@@ -164,7 +163,8 @@ impl ListPipelines {
     pub(crate) fn make(&mut self, stages: PatchStages, cut: Cut, code: &ShaderCode) -> Result<(), GpuError> {
         let stages = stages.for_culling();
         let constants = stages.specialization(cut, self.0.context().properties());
-        let constants: Vec<_> = constants.into_iter().chain([Specialization::bool(11, stages.attributes)]).collect();
+        let constants: Vec<_> =
+            constants.into_iter().chain([Specialization::bool(ID_COPIES, stages.attributes)]).collect();
         self.0.make((stages, cut), stages.culling(), code, &constants)
     }
 

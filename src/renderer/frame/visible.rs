@@ -1,7 +1,8 @@
 //! The patches that can be seen, on lists, and their draws.
 
 use super::Renderer;
-use super::lists::{ListConstants, ListLayout, REGION};
+use super::lists::{ListConstants, ListLayout};
+use crate::constants::REGION;
 use crate::renderer::evaluate::{Drawn, Recorder};
 use crate::renderer::model::Model;
 #[cfg(doc)]

@@ -1,5 +1,6 @@
 //! How finely patches are cut, and which are left out.
 
+use crate::constants::{METRIC_CURVATURE, METRIC_EDGES, METRIC_PIXELS, METRIC_UNIFORM};
 /// Where the tessellation factors of a draw come from.
 ///
 /// The factor of an edge depends on the edge alone, so both its patches have the same; the inside of a patch takes the larger
@@ -49,10 +50,10 @@ impl Factor {
     /// Its number in a draw's flags.
     pub(crate) fn metric(self) -> u32 {
         match self {
-            Self::Uniform(_) => 0,
-            Self::Pixels(_) => 1,
-            Self::Curvature(_) => 2,
-            Self::Edges(_) => 3,
+            Self::Uniform(_) => METRIC_UNIFORM,
+            Self::Pixels(_) => METRIC_PIXELS,
+            Self::Curvature(_) => METRIC_CURVATURE,
+            Self::Edges(_) => METRIC_EDGES,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The pipelines of draws, each made when the first model is added that needs it.
 
 use super::recipe::{MadeFor, Recipe};
+use crate::constants::ID_ENCODE_SRGB;
 use crate::gpu::{DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Specialization, pipeline_layout};
 use crate::renderer::options::{ColorEncoding, Fragment, Geometry, Options, Style, Target};
 use crate::renderer::shader::{
@@ -109,7 +110,7 @@ impl DrawPipelines {
         let style = &self.styles[key.style];
         let target = style.target_or(&self.target);
         let codes = recipe.stages.iter().map(|stage| stage.code(&self.shaders)).collect::<Result<Vec<_>, _>>()?;
-        let encode = [Specialization::bool(1, target.encoding == ColorEncoding::Srgb)];
+        let encode = [Specialization::bool(ID_ENCODE_SRGB, target.encoding == ColorEncoding::Srgb)];
         let mut stages: Vec<Shader> =
             recipe.stages.iter().zip(&codes).map(|(stage, code)| stage.shader(code)).collect();
         stages.extend(fragment(style, target, recipe.displaced, &encode));

@@ -1,5 +1,6 @@
 //! What tells the draws of a patch apart besides its shaders.
 
+use crate::constants::{CULL_BACK_FLAG, CULL_FRUSTUM_FLAG, CULL_SMALL_FLAG};
 use crate::renderer::options::{Cull, Factor};
 
 /// How the patches of a draw are cut and which of them are drawn: each way has pipelines of its own.
@@ -34,8 +35,9 @@ impl Cut {
     /// GLSL twin: `DRAW_FLAGS` in `glsl/lib/edges/factors.glsl`.
     pub(crate) fn flags(self) -> u32 {
         let Cull { frustum, back, small } = self.cull;
+        let flag = |set, flag| if set { flag } else { 0 };
         // Five bits: see `Cut::bit`.
-        self.metric | u32::from(frustum) << 2 | u32::from(back) << 3 | u32::from(small) << 4
+        self.metric | flag(frustum, CULL_FRUSTUM_FLAG) | flag(back, CULL_BACK_FLAG) | flag(small, CULL_SMALL_FLAG)
     }
 
     /// What is not as in draws with a uniform factor of all patches; else empty.

@@ -4,6 +4,7 @@
 //! 16-byte vectors and trailing 4-byte scalars, for which the two rules agree with `repr(C)`. GLSL twin:
 //! `glsl/lib/draw/draw.glsl`.
 
+use crate::constants::{REACH_SHIFT, VECTOR_FLAG};
 use crate::gpu::MAX_OFFSET_ALIGNMENT;
 use crate::renderer::options::{DisplacementMap, MeasuredFrom, View};
 use bytemuck::{Pod, Zeroable};
@@ -71,13 +72,6 @@ pub(crate) struct DrawConstants {
     pub patches_per_instance: u32,
     pub flags: u32,
 }
-
-/// Bits of [`DrawConstants::flags`]. GLSL twins: `glsl/lib/displace/displace.glsl`, `glsl/lib/edges/culling.glsl`.
-pub(crate) const VECTOR_FLAG: u32 = 1;
-/// What is seen counter-clockwise faces away.
-pub(crate) const COUNTER_CLOCKWISE_FLAG: u32 = 2;
-/// How far displacement reaches, as a half-precision number.
-pub(crate) const REACH_SHIFT: u32 = 16;
 
 /// The half-precision number next to `x` that is not below it, for `x` from 0 up.
 pub(crate) fn half_not_below(x: f32) -> u16 {

@@ -2,6 +2,7 @@
 
 use super::axes::{Output, Patch, ShaderKey, Source};
 use super::cut::Cut;
+use crate::constants;
 use crate::gpu::{DeviceProperties, Spacing, Specialization};
 use crate::patch::Scheme;
 use crate::table::{Construction, Evaluation, Sharing, TEXEL_BYTES};
@@ -177,17 +178,17 @@ impl PatchStages {
     /// What the shaders of draws that are cut so are specialized to, but for those that evaluate and shade.
     pub(crate) fn specialization(self, cut: Cut, device: &DeviceProperties) -> [Specialization; 11] {
         [
-            Specialization::uint(0, self.kind.corners() as u32),
-            Specialization::float(2, device.max_tessellation_level as f32),
-            Specialization::uint(3, self.stride),
-            Specialization::uint(4, cut.flags()),
-            Specialization::bool(5, self.scheme == Scheme::GregoryFitted),
-            Specialization::bool(6, self.scheme.has_pentagons()),
-            Specialization::bool(7, self.has_speakers),
-            Specialization::bool(8, self.edge_factors),
+            Specialization::uint(constants::ID_CORNERS, self.kind.corners() as u32),
+            Specialization::float(constants::ID_MAX_FACTOR, device.max_tessellation_level as f32),
+            Specialization::uint(constants::ID_STRIDE, self.stride),
+            Specialization::uint(constants::ID_DRAW_FLAGS, cut.flags()),
+            Specialization::bool(constants::ID_MAY_BE_FITTED, self.scheme == Scheme::GregoryFitted),
+            Specialization::bool(constants::ID_MAY_HAVE_PENTAGONS, self.scheme.has_pentagons()),
+            Specialization::bool(constants::ID_HAS_SPEAKERS, self.has_speakers),
+            Specialization::bool(constants::ID_HAS_EDGE_FACTORS, self.edge_factors),
             reads_texels(device),
-            Specialization::bool(10, cut.is_listed()),
-            Specialization::uint(12, self.construction as u32),
+            Specialization::bool(constants::ID_LISTED, cut.is_listed()),
+            Specialization::uint(constants::ID_CONSTRUCTION, construction_number(self.construction)),
         ]
     }
 
@@ -205,9 +206,18 @@ impl PatchStages {
     }
 }
 
+/// The number of a construction in shaders.
+fn construction_number(construction: Construction) -> u32 {
+    match construction {
+        Construction::TwoStage => constants::TWO_STAGE,
+        Construction::Stencil => constants::STENCIL,
+        Construction::Cached => constants::CACHED,
+    }
+}
+
 /// What all shaders that read tables are specialized to. GLSL twin: `READS_TEXELS` in `glsl/lib/draw/positions.glsl`.
 pub(crate) fn reads_texels(device: &DeviceProperties) -> Specialization {
-    Specialization::bool(9, device.reads_texels)
+    Specialization::bool(constants::ID_READS_TEXELS, device.reads_texels)
 }
 
 #[cfg(all(test, feature = "headless"))]

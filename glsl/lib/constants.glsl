@@ -1,0 +1,73 @@
+// Numbers that shaders and the host agree on. build.rs makes a Rust constant of each: `crate::constants`.
+#ifndef CONSTANTS_GLSL
+#define CONSTANTS_GLSL
+
+// Specialization constants, by their ids.
+#define ID_CORNERS 0u
+#define ID_ENCODE_SRGB 1u
+#define ID_MAX_FACTOR 2u
+#define ID_STRIDE 3u
+#define ID_DRAW_FLAGS 4u
+#define ID_MAY_BE_FITTED 5u
+#define ID_MAY_HAVE_PENTAGONS 6u
+#define ID_HAS_SPEAKERS 7u
+#define ID_HAS_EDGE_FACTORS 8u
+#define ID_READS_TEXELS 9u
+#define ID_LISTED 10u
+#define ID_COPIES 11u
+#define ID_CONSTRUCTION 12u
+#define ID_HAS_TEXCOORDS 13u
+
+// Constructions, by their numbers.
+#define TWO_STAGE 0u
+#define STENCIL 1u
+#define CACHED 2u
+
+// Where factors come from, and what is culled: bits of DRAW_FLAGS.
+#define METRIC_MASK 3u
+#define METRIC_UNIFORM 0u
+#define METRIC_PIXELS 1u
+#define METRIC_CURVATURE 2u
+#define METRIC_EDGES 3u
+#define CULL_FRUSTUM_FLAG 4u
+#define CULL_BACK_FLAG 8u
+#define CULL_SMALL_FLAG 16u
+
+// Bits of a draw's flags: a displacement map has vectors; what is seen counter-clockwise faces away. From REACH_SHIFT on, how far
+// displacement reaches, as a half-precision number.
+#define VECTOR_FLAG 1u
+#define COUNTER_CLOCKWISE_FLAG 2u
+#define REACH_SHIFT 16u
+
+// Rings and their entries.
+#define TRIANGLE_BIT 0x80000000u
+#define PENTAGON_BIT 0x40000000u
+#define OPEN_BIT 0x80000000u
+#define CONE_BIT 0x40000000u
+#define FALLBACK_BIT 0x20000000u
+#define FITTED_BIT 0x10000000u
+
+// Fans of subdivision: an open one; words before the weights of a type.
+#define FAN_OPEN_BIT 0x80000000u
+#define TYPE_HEAD 10u
+
+// Stencils: words of a type for each corner, before the weights.
+#define HEAD_WORDS 3u
+
+// Invocations of a workgroup that makes control points.
+#define GROUP_INVOCATIONS 64u
+// Patches of a workgroup that lists what can be seen.
+#define REGION 128u
+// Vertices of a patch that a workgroup evaluates.
+#define GROUP_VERTICES 256u
+// Vertices of a tile of a patch in strips.
+#define TILE_VERTICES 64u
+
+// What is captured of a patch, and of a vertex.
+#define CONTROL_POINT_WORDS 96u
+#define FACTOR_WORDS 7u
+#define RECORD_WORDS 10u
+// In the place of a grid's size: vertices on edges as they come.
+#define EDGES_ONLY 0xffffffffu
+
+#endif
