@@ -1,4 +1,4 @@
-//! What every path is to the race: something that can be drawn.
+//! Drawables: what the race needs of every path.
 
 use super::{BenchError, Contestant, Motion, Normals, Subject};
 use crate::gpu::Spacing;
@@ -7,7 +7,7 @@ use crate::renderer::{ModelOptions, TableBytes, View};
 use ash::vk;
 use std::time::Instant;
 
-/// What there is to do before the first frame, in milliseconds; of tables and upload of the renderer's own paths the median
+/// Times before the first frame, in milliseconds; of tables and upload of the renderer's own paths the median
 /// of several times.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Setup {
@@ -23,12 +23,12 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// What each model needs: all but pipelines and compilation.
+    /// Time that each model takes: all but pipelines and compilation.
     pub fn per_model(&self) -> f64 {
         self.tables + self.upload
     }
 
-    /// What the first use of a path costs besides.
+    /// Time that the first use of a path takes besides.
     pub fn first_use(&self) -> f64 {
         self.pipelines + self.first_frame
     }
@@ -50,7 +50,7 @@ pub struct Traffic {
 /// Bytes of a vertex on its way to the rasterizer: `gl_Position`, position and normal.
 pub(super) const VERTEX_BYTES: u64 = 16 + 12 + 12;
 
-/// What a frame shows.
+/// Kind of frame.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pass {
     Pixels,
@@ -105,7 +105,7 @@ pub(super) trait Drawable {
     /// Everything that drawing reads.
     fn bytes(&self) -> Vec<TableBytes>;
 
-    /// How many of them a frame moves before it draws, and how many each instance in each pass reads.
+    /// Bytes that a frame moves before it draws, and bytes that each instance in each pass reads.
     fn moved_bytes(&self, _motion: Motion) -> [u64; 2] {
         [0, self.bytes().iter().map(|(_, bytes)| bytes).sum()]
     }
@@ -119,14 +119,14 @@ pub(super) trait Drawable {
     fn control_point_bytes(&self) -> u64;
 }
 
-/// What a drawable is made for.
+/// Device, target and subject that a drawable is made for.
 #[derive(Clone, Copy)]
 pub(super) struct Lane<'a> {
     pub headless: &'a Headless,
     pub target: &'a OffscreenDesc,
     pub subject: &'a Subject,
     pub spacing: Spacing,
-    /// What the rasterizer leaves out.
+    /// Faces that the rasterizer culls.
     pub cull: vk::CullModeFlags,
     /// Calls of [`Drawable::cmd_draw`] in a frame.
     pub passes: u32,

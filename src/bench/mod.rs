@@ -1,10 +1,10 @@
-//! How long it takes to draw a surface, each way there is, and how far that is from the floor.
+//! Timings: each way to draw a surface, and how far that is from the floor.
 //!
 //! A [`Bench`] races [`Contestant`]s: schemes, constructions and [`Path`]s. For one mesh and one tessellation factor they
 //! draw in turns, A B C A B C, so that a machine that becomes slower or faster does so for all alike, and frame `i` of
 //! one is compared with frame `i` of the other. Nothing here knows files or prints.
 //!
-//! What is measured, in milliseconds:
+//! Measured, in milliseconds:
 //!
 //! * **gpu**: from the first command of a frame to the last, by timestamps of the device: attachments are cleared, the
 //!   control points made anew if the vertices [move](Motion), the surface drawn with pixels.
@@ -54,15 +54,15 @@ named! {
     pub enum Path {
         /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
         Tessellation = Evaluation::Tessellation.name(),
-        /// The same with ACC as published (Loop and Schaefer 2008), where the evaluation shader makes the tangents: for the scheme
+        /// Tessellation stages with ACC as published (Loop and Schaefer 2008), where the evaluation shader makes the tangents: for the scheme
         /// [`Scheme::Acc`] and [`Construction::TwoStage`], to compare with.
         AccPublished = "acc-published",
-        /// Likewise with the vertex shader that evaluates instances of a lattice, as [`Path::Instanced`]: for
+        /// ACC as published by the vertex shader that evaluates instances of a uniform grid, as [`Path::Instanced`]: for
         /// [`Construction::Cached`].
         AccPublishedInstanced = "acc-published-instanced",
         /// Evaluated by compute once a frame, and drawn as indexed triangles in each pass ([`Evaluation::Compute`]).
         Compute = Evaluation::Compute.name(),
-        /// A lattice instanced over the patches ([`Evaluation::Instanced`]).
+        /// A uniform grid instanced over the patches ([`Evaluation::Instanced`]).
         Instanced = Evaluation::Instanced.name(),
         /// Strips from the geometry shader ([`Evaluation::Geometry`]).
         Geometry = Evaluation::Geometry.name(),
@@ -79,7 +79,7 @@ named! {
 }
 
 impl Path {
-    /// What evaluates; `None` for a floor.
+    /// Evaluation of the patches; `None` for a floor.
     pub fn evaluation(self) -> Option<Evaluation> {
         match self {
             Self::Tessellation | Self::AccPublished => Some(Evaluation::Tessellation),
@@ -138,14 +138,14 @@ named! {
         /// Each patch has its own.
         #[default]
         Own = "own",
-        /// Those that patches share
+        /// Normals that patches share
         /// ([`ModelOptions::shared_normals`](crate::renderer::ModelOptions::shared_normals)).
         Shared = "shared",
     }
 }
 
 named! {
-    /// What leaves out the patches that are not seen.
+    /// Stage that culls patches.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum CullBy {
         /// The control shader, in each draw ([`Renderer::cmd_draw`](crate::Renderer::cmd_draw)).
@@ -156,7 +156,7 @@ named! {
 }
 
 impl CullBy {
-    /// What does if nothing is said: compute where control points are cached.
+    /// Stage that culls if none is named: compute where control points are cached.
     pub const fn usual(patches: Option<(Scheme, Construction)>) -> Self {
         match patches {
             Some((_, Construction::Cached)) => Self::Compute,
@@ -165,28 +165,28 @@ impl CullBy {
     }
 }
 
-/// One of those that are raced.
+/// A contestant of a race.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Contestant {
-    /// How the surface is drawn.
+    /// Way to draw the surface.
     pub path: Path,
-    /// From which patches, made how; `None` where there are none, for floors and subdivision.
+    /// Scheme and construction of the patches; `None` for floors and subdivision.
     pub patches: Option<(Scheme, Construction)>,
-    /// Where its normals come from.
+    /// Source of its normals.
     pub normals: Normals,
-    /// Patches that it leaves out.
+    /// Patches that it culls.
     pub cull: Cull,
-    /// What leaves them out, if any. Of paths without tessellation stages, compute does in any case.
+    /// Stage that culls them. Without tessellation stages it is compute in any case.
     pub cull_by: CullBy,
 }
 
 impl Contestant {
-    /// With normals of each patch's own, without culling; that would be [as usual](CullBy::usual).
+    /// A contestant with each patch's own normals, without culling; `cull_by` is [as usual](CullBy::usual).
     pub const fn new(path: Path, patches: Option<(Scheme, Construction)>) -> Self {
         Self { path, patches, normals: Normals::Own, cull: Cull::NONE, cull_by: CullBy::usual(patches) }
     }
 
-    /// The same with each of these normals and cullings that it can be combined with: patches are left out where
+    /// Variants with each of these normals and cullings that it can be combined with: patches are culled where
     /// [`Evaluation::culls`], by each of these that can (as it is if none are given), and normals shared where the scheme is
     /// watertight and [`Evaluation::shares`]. Floors stay as they are.
     pub fn variants(self, normals: &[Normals], culls: &[Cull], cull_by: &[CullBy]) -> Vec<Self> {
@@ -232,7 +232,7 @@ impl Contestant {
         paths.iter().flat_map(of_path).collect()
     }
 
-    /// Whether compute looks for the patches to leave out.
+    /// Whether compute culls patches.
     pub(super) fn culls_by_compute(self) -> bool {
         self.cull != Cull::NONE && (self.cull_by == CullBy::Compute || !self.path.tessellates())
     }

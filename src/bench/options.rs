@@ -4,10 +4,10 @@ use crate::measure::statistics::FEWEST;
 use crate::named::named;
 
 named! {
-    /// Where the eye is.
+    /// Position of the eye.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub enum Camera {
-        /// So far that all is in the picture.
+        /// Far enough to have all in the picture.
         #[default]
         Fit = "fit",
         /// The middle of that, three times as large: the edges of the picture cut the rest off.
@@ -27,20 +27,20 @@ named! {
     }
 }
 
-/// How to measure.
+/// Options of the measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BenchOptions {
     /// Tessellation factors, from 1 up, of all edges and insides.
     pub factors: Vec<f32>,
     /// Where the tessellator puts its vertices.
     pub spacing: Spacing,
-    /// What every frame has to make anew.
+    /// Motion of the control vertices, which says what each frame makes anew.
     pub motion: Motion,
     /// Pixels of the picture.
     pub size: [u32; 2],
-    /// From where each contestant draws, in turns.
+    /// Cameras that each contestant draws from, in turns.
     pub cameras: Vec<Camera>,
-    /// Whether the rasterizer leaves out triangles that face away, as renderers have it of closed models. Some drivers then count
+    /// Whether the rasterizer culls triangles that face away, as renderers have it of closed models. Some drivers then count
     /// fewer of what clipping leaves.
     pub single_sided: bool,
     /// Copies of the model that a frame draws, each with a transform of its own.

@@ -10,10 +10,10 @@ use crate::measure::statistics::{Estimate, FEWEST, paired_difference};
 use ash::vk;
 use std::time::Duration;
 
-/// What a race tells while it runs.
+/// Reports of a race while it runs.
 #[derive(Debug)]
 pub enum Event {
-    /// So many frames more are done, or need not be drawn, of those that [`Bench::frames`] counts.
+    /// Further frames that are done, or need not be drawn, of those that [`Bench::frames`] counts.
     Frames(u64),
     /// A contestant does not run, at this factor or at all: why.
     LeftOut(Contestant, Option<f32>, BenchError),
@@ -69,12 +69,12 @@ impl<'h> Bench<'h> {
         Ok(Self { headless, options, targets })
     }
 
-    /// How it measures.
+    /// Options of the measurement.
     pub fn options(&self) -> &BenchOptions {
         &self.options
     }
 
-    /// How many frames a race of so many contestants draws.
+    /// Frames that a race of `contestants` draws.
     pub fn frames(&self, contestants: usize) -> u64 {
         let drawn = self.options.cameras.len() as u64 * 2 * self.options.factors.len() as u64;
         contestants as u64 * self.rounds() * (u64::from(self.options.motion == Motion::Moving) + drawn)
@@ -89,12 +89,12 @@ impl<'h> Bench<'h> {
     ///
     /// # Errors
     /// Failed Vulkan calls. A contestant that has no patches for the mesh, or takes more memory than there is, is left
-    /// out, and `tell` hears of it.
+    /// out, and `report` is given the reason.
     pub fn race(
         &self,
         subject: &Subject,
         contestants: &[Contestant],
-        mut tell: impl FnMut(Event),
+        mut report: impl FnMut(Event),
     ) -> Result<(), BenchError> {
         let lane = self.lane(subject);
         let scenes = self.scenes(subject);
@@ -102,38 +102,38 @@ impl<'h> Bench<'h> {
         for &contestant in contestants {
             match self.runner(contestant, lane, &scenes[0]) {
                 Err(error) if error.leaves_out() => {
-                    tell(Event::LeftOut(contestant, None, error));
-                    tell(Event::Frames(self.frames(1)));
+                    report(Event::LeftOut(contestant, None, error));
+                    report(Event::Frames(self.frames(1)));
                 }
                 other => runners.push(other?),
             }
         }
-        self.construction(&mut runners, &scenes[..1], &mut tell)?;
+        self.construction(&mut runners, &scenes[..1], &mut report)?;
         for &factor in &self.options.factors {
             let mut racing = Vec::new();
             for runner in &mut runners {
                 match runner.drawable.set_factor(factor) {
                     Err(error) if error.leaves_out() => {
-                        tell(Event::LeftOut(runner.contestant, Some(factor), error));
-                        tell(Event::Frames(scenes.len() as u64 * 2 * self.rounds()));
+                        report(Event::LeftOut(runner.contestant, Some(factor), error));
+                        report(Event::Frames(scenes.len() as u64 * 2 * self.rounds()));
                     }
                     Ok(()) => racing.push(runner),
                     Err(error) => return Err(error),
                 }
             }
-            let series = self.turns(&mut racing, &scenes, factor, &Pass::ALL, &mut tell)?;
+            let series = self.turns(&mut racing, &scenes, factor, &Pass::ALL, &mut report)?;
             let mut rows = Vec::new();
             for (scene, series) in scenes.iter().zip(series) {
                 for (runner, series) in racing.iter_mut().zip(series) {
                     rows.push(self.row(runner, scene, subject, factor, series)?);
                 }
             }
-            tell(Event::Rows(rows));
+            report(Event::Rows(rows));
         }
         Ok(())
     }
 
-    /// What a contestant draws, as the first camera sees it: rows from the top, four bytes sRGB and opacity a pixel.
+    /// Picture of a contestant from the first camera: rows from the top, four bytes sRGB and opacity a pixel.
     ///
     /// # Errors
     /// As [`Bench::race`], but a contestant that would be left out is an error here.
@@ -162,7 +162,7 @@ impl<'h> Bench<'h> {
         self.headless
     }
 
-    /// Of no size to speak of.
+    /// Target of 16 x 16 pixels, for frames without rasterization.
     pub(super) fn geometry_target(&self) -> &Offscreen {
         &self.targets[1]
     }
@@ -183,12 +183,12 @@ impl<'h> Bench<'h> {
         Ok(Runner { contestant, drawable, first_frame, construction: None })
     }
 
-    /// What making the control points takes: factor 1, less the same of the bilinear floor, which goes through the same stages.
+    /// Time to make the control points: factor 1, less the bilinear floor at factor 1, which goes through the same stages.
     fn construction(
         &self,
         runners: &mut [Runner],
         scenes: &[Scene],
-        tell: &mut impl FnMut(Event),
+        report: &mut impl FnMut(Event),
     ) -> Result<(), BenchError> {
         if self.options.motion == Motion::Still {
             return Ok(());
@@ -198,8 +198,8 @@ impl<'h> Bench<'h> {
         let all = runners.len();
         let drawn = |runner: &&mut Runner| has_floor && runner.contestant.path.tessellates();
         let mut drawn: Vec<&mut Runner> = runners.iter_mut().filter(drawn).collect();
-        tell(Event::Frames(self.rounds() * (all - drawn.len()) as u64));
-        let series = self.turns(&mut drawn, scenes, 1.0, &[Pass::Geometry], tell)?.swap_remove(0);
+        report(Event::Frames(self.rounds() * (all - drawn.len()) as u64));
+        let series = self.turns(&mut drawn, scenes, 1.0, &[Pass::Geometry], report)?.swap_remove(0);
         let Some(floor) = drawn.iter().position(|runner| is_floor(runner)) else { return Ok(()) };
         let floor = &series[floor][0].device;
         for (runner, series) in drawn.iter_mut().zip(&series).filter(|(runner, _)| !is_floor(runner)) {
@@ -215,7 +215,7 @@ impl<'h> Bench<'h> {
         scenes: &[Scene],
         factor: f32,
         passes: &[Pass],
-        tell: &mut impl FnMut(Event),
+        report: &mut impl FnMut(Event),
     ) -> Result<Vec<Vec<Vec<Series>>>, BenchError> {
         let mut all = vec![vec![vec![Series::default(); passes.len()]; runners.len()]; scenes.len()];
         for round in 0..self.options.warm_up + self.options.frames {
@@ -228,7 +228,7 @@ impl<'h> Bench<'h> {
                             series.host.push(milliseconds(host));
                         }
                     }
-                    tell(Event::Frames(passes.len() as u64));
+                    report(Event::Frames(passes.len() as u64));
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! What the host does to record a frame of many models.
+//! Recording: the host's work for a frame of many models.
 
 use super::drawable::timed;
 use super::scene::Scene;
@@ -7,26 +7,26 @@ use crate::named::named;
 use crate::renderer::{DrawItem, ModelId, ModelTables, Options, Renderer, Style, Target};
 
 named! {
-    /// What the models of a frame are.
+    /// Models of a frame.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum Crowd {
-        /// One model, drawn so many times.
+        /// One model, drawn many times.
         Instances = "instances",
-        /// So many models with tables and buffers of their own, at rest.
+        /// Models with tables and buffers of their own, at rest.
         Models = "models",
-        /// The same, and the vertices of each moved.
+        /// Models with tables and buffers of their own, whose vertices move.
         Moving = "moving",
     }
 }
 
 impl Crowd {}
 
-/// What recording one frame of a crowd took on the host's clock, frame by frame, in milliseconds.
+/// Recording times of a crowd on the host's clock, frame by frame, in milliseconds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// Of what.
+    /// Models that are recorded.
     pub crowd: Crowd,
-    /// [`Renderer::cmd_prepare`], and [`Renderer::cmd_cull`] where compute looks for the patches to leave out.
+    /// [`Renderer::cmd_prepare`], and [`Renderer::cmd_cull`] where compute culls patches.
     pub prepare: Vec<f64>,
     /// [`Renderer::cmd_draw`], or [`Renderer::cmd_draw_visible`] then.
     pub draw: Vec<f64>,

@@ -1,4 +1,4 @@
-//! What comes out.
+//! Rows: results of a race.
 
 use super::{Camera, Contestant, Setup, Traffic};
 use crate::measure::statistics::Estimate;
@@ -13,12 +13,12 @@ pub struct Series {
     pub host: Vec<f64>,
 }
 
-/// What one contestant did at one factor.
+/// Result of one contestant at one factor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Who.
     pub contestant: Contestant,
-    /// From where.
+    /// Camera that it was drawn from.
     pub camera: Camera,
     /// The factor.
     pub factor: f32,
@@ -31,19 +31,19 @@ pub struct Row {
     /// Triangles in a frame, before clipping. Where lattices are strips (see
     /// [`DeviceProperties::indices_at_once`](crate::gpu::DeviceProperties::indices_at_once)) those that join their rows count, too.
     pub triangles: Option<u64>,
-    /// Those that clipping left.
+    /// Triangles that clipping left.
     pub visible: Option<u64>,
     /// Frames with pixels.
     pub gpu: Series,
     /// Frames without rasterization.
     pub geometry: Series,
-    /// What making the control points takes, in milliseconds (see the module); `None` without the bilinear floor, for floors
+    /// Time to make the control points, in milliseconds (see the module); `None` without the bilinear floor, for floors
     /// and paths without the tessellation stages, and if the vertices do not move.
     pub construction: Option<Estimate>,
-    /// What went before the first frame.
+    /// Set-up before the first frame.
     pub setup: Setup,
     /// Everything that drawing reads.
     pub bytes: Vec<TableBytes>,
-    /// What a frame moves.
+    /// Bytes that a frame moves.
     pub traffic: Traffic,
 }

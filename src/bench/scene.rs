@@ -1,4 +1,4 @@
-//! What is in the picture.
+//! Scene of a picture: instances and view.
 
 use super::drawable::{Frame, Pass};
 use super::{BenchOptions, Camera, Subject};

@@ -1,4 +1,4 @@
-//! What is drawn: a mesh, or some of its patches.
+//! Subjects: a mesh, or some of its patches.
 
 use super::BenchError;
 use crate::mesh::{ControlMesh, MeshData};
@@ -34,7 +34,7 @@ impl Subset {
 /// A mesh to be drawn, by name.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// What the mesh is called.
+    /// Name of the mesh.
     pub name: String,
     /// The control mesh; faces that are not drawn are holes.
     pub mesh: ControlMesh,
@@ -60,7 +60,7 @@ impl Subject {
         if subset == Subset::All {
             return Ok(Self { name, mesh, refine, counts });
         }
-        // Of a refined mesh, it is its own faces that are left out.
+        // The faces of a refined mesh become holes, not those of the control mesh.
         let holes = plan.patches().iter().filter(|patch| !subset.has(patch.kind)).map(|patch| patch.face);
         let data = prepared.mesh.data();
         let holes = data.holes.iter().copied().chain(holes).collect();
@@ -68,12 +68,12 @@ impl Subject {
         Ok(Self { name, mesh, refine: 0, counts })
     }
 
-    /// How many patches of a kind are drawn.
+    /// Patches of a kind that are drawn.
     pub fn patch_count(&self, kind: PatchKind) -> u32 {
         self.counts[kind as usize]
     }
 
-    /// How many patches are drawn.
+    /// Patches that are drawn.
     pub fn patches(&self) -> u64 {
         self.counts.iter().map(|&count| u64::from(count)).sum()
     }

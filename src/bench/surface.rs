@@ -28,7 +28,7 @@ pub(super) struct Surface {
     cull: Cull,
     /// Whether compute looks for what can be seen.
     culls_by_compute: bool,
-    /// What is drawn of the next pass.
+    /// Visible list of the next pass.
     visible: Option<VisibleItems>,
 }
 

@@ -11,7 +11,7 @@ use std::ops::Range;
 const MAX_BYTES: u64 = 128 << 20;
 
 impl Captured<'_> {
-    /// What [`Captured::capture_each`] captures, together.
+    /// Words of all patches: [`Captured::capture_each`], collected.
     pub(super) fn capture(
         &self,
         mode: Capture,

@@ -1,4 +1,4 @@
-//! What the stages before rasterization computed, written to a buffer by the shaders themselves and read back: control points,
+//! Capture: results of the stages before rasterization, written to a buffer by the shaders and read back: control points,
 //! samples on a grid, every evaluated vertex, and the triangles between them. For tests, `subdiv patches`, `subdiv sample` and
 //! `subdiv screen`.
 
@@ -33,40 +33,40 @@ pub struct CapturedVertex {
     pub patch: u32,
     /// Object space.
     pub position: [f32; 3],
-    /// Of length one, towards the side from which the patch is counter-clockwise.
+    /// Normal of length one, towards the side from which the patch is counter-clockwise.
     pub normal: [f32; 3],
 }
 
 /// Which vertices of a draw are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Which {
-    /// Every one.
+    /// Every vertex.
     All,
-    /// Those on the edges and corners of patches.
+    /// Vertices on the edges and corners of patches.
     OnEdges,
 }
 
 /// The factors of a patch as the control shader made them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CapturedFactors {
-    /// What each edge asks for, from the first corner's plus edge on, not yet within limits; the last is nothing for triangles.
+    /// Factor that each edge asks for, from the first corner's plus edge on, not yet within limits; the last is nothing for triangles.
     pub asked: [f32; 4],
     /// The inner factors; the second is nothing for triangles.
     pub inner: [f32; 2],
-    /// Whether the patch is left out.
+    /// Whether the patch is culled.
     pub culled: bool,
 }
 
-/// How the watched model is drawn.
+/// Draw of the watched model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaptureDraw {
-    /// What factors in pixels and culling go by.
+    /// View for factors in pixels and for culling.
     pub view: View,
     /// The factors.
     pub factor: Factor,
-    /// Those of edges, for [`Factor::Edges`]; else empty.
+    /// Factors of edges, for [`Factor::Edges`]; else empty.
     pub edge_factors: Vec<f32>,
-    /// Patches that are left out.
+    /// Patches that are culled.
     pub cull: Cull,
     /// Scale and bias of the displacement.
     pub displacement: [f32; 2],
@@ -121,7 +121,7 @@ impl<'h> Captured<'h> {
         })
     }
 
-    /// With a displacement map.
+    /// A model with a displacement map.
     ///
     /// # Errors
     /// As [`Captured::new`]; a mesh without texture coordinates.
@@ -134,12 +134,12 @@ impl<'h> Captured<'h> {
         options: &ModelOptions,
         map: DisplacementMap,
     ) -> Result<Self, Error> {
-        // The first map that a renderer is told of.
+        // The first map of a renderer.
         let options = ModelOptions { displacement: Some(DisplacementId::FIRST), ..options.clone() };
         Ok(Self { displacement: Some(map), ..Self::new(headless, mesh, &options)? })
     }
 
-    /// With shaders in the place of the crate's own: see [`Options::shaders`].
+    /// Replaces shaders of the crate: see [`Options::shaders`].
     pub fn with_shaders(self, shaders: Vec<(ShaderId, Vec<u32>)>) -> Self {
         Self { shaders, ..self }
     }
@@ -179,7 +179,7 @@ impl<'h> Captured<'h> {
         Ok(factors.collect())
     }
 
-    /// What the control shader says of each patch.
+    /// Words that the control shader writes for each patch.
     fn capture_patches(&self, draw: &CaptureDraw) -> Result<Vec<f32>, Error> {
         let words = self.capture(
             Capture::Points,
@@ -217,7 +217,7 @@ impl<'h> Captured<'h> {
         Ok(grids)
     }
 
-    /// Every vertex that the tessellator made with this factor and the model's spacing, or the vertices of the lattice that the
+    /// Every vertex that the tessellator made with this factor and the model's spacing, or the vertices of the uniform grid that the
     /// model is evaluated on, in no order.
     ///
     /// A device may evaluate a vertex more than once; then it is there more than once.

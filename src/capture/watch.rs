@@ -11,10 +11,10 @@ use bytemuck::Zeroable;
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
-/// How many are kept of each sort: a driver may take 20 MB for a pipeline.
+/// Entries that a pool keeps: a driver may take 20 MB for a pipeline.
 const KEPT: usize = 4;
 
-/// What nobody is using, by what it is for; those used last.
+/// Pool of idle values by key; it keeps those used last.
 pub(crate) struct Idle<K, T>(Mutex<VecDeque<(K, T)>>);
 
 impl<K, T> Default for Idle<K, T> {
@@ -46,14 +46,14 @@ impl<K: PartialEq, T> Idle<K, T> {
 /// A renderer that watches, without a model between captures, and what it draws with.
 pub(super) struct Watcher {
     pub renderer: Renderer,
-    /// Of set 2.
+    /// Layout of set 2.
     pub layout: Owned<vk::DescriptorSetLayout>,
     pub target: Offscreen,
     /// Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
     pub idle: Option<Buffer>,
 }
 
-/// What watches with the crate's own shaders, for all models of a device ([`Headless::kept`]).
+/// Pool of watchers with the crate's own shaders, for all models of a device ([`Headless::kept`]).
 pub(super) type Watchers = Idle<(Capture, ModelOptions), Watcher>;
 
 impl Watcher {

@@ -25,10 +25,10 @@ pub(super) struct CameraArgs {
         conflicts_with_all = ["yaw", "pitch", "zoom"]
     )]
     eye: Option<DVec3>,
-    /// What the eye looks at; the middle of the mesh if not given.
+    /// Point that the eye looks at; the middle of the mesh if not given.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse::triple, requires = "eye")]
     target: Option<DVec3>,
-    /// Which way is up.
+    /// Direction that is up.
     #[arg(long, value_name = "X,Y,Z", default_value = "0,1,0", allow_hyphen_values = true, value_parser = parse::triple)]
     up: DVec3,
     /// The vertical angle of view, in degrees.

@@ -16,7 +16,7 @@ pub(super) fn load_font() {
     ONCE.call_once(|| drop(register_font(FONT, FontStyle::Normal, dejavu::sans::regular())));
 }
 
-/// What is wrong with a drawing.
+/// Errors of a drawing.
 pub(super) fn drawing_error(error: impl std::error::Error) -> CliError {
     CliError::Work(format!("drawing: {error}"))
 }

@@ -1,11 +1,11 @@
-//! Which patches are left out.
+//! Patches to cull.
 
 use ash_subdiv::renderer::Cull;
 use clap::{Args, ValueEnum};
 
 #[derive(Debug, Args)]
 pub(super) struct CullArgs {
-    /// Leave out patches that are not seen: `back` those that face away, `frustum` those out of the picture, `small` those
+    /// Cull patches that are not seen: `back` those that face away, `frustum` those out of the picture, `small` those
     /// between pixels (with one sample a pixel).
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
     cull: Vec<CullArg>,

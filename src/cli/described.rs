@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What a value is written as.
+/// Form of a written value.
 pub(super) enum Shape {
     /// A number, a text or a truth.
     Scalar,

@@ -23,7 +23,7 @@ described! {
         max_storage_buffer_range: u64,
         max_line_width: f32,
         features: Vec<&'static str>,
-        /// What the program needs and the device lacks; it can be used if this is empty.
+        /// Needs of the program that the device lacks; it can be used if this is empty.
         missing: Vec<String>,
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 
 /// The built-in height map: overlapping scales, which repeat.
 const SCALES: &[u8] = include_bytes!("../../assets/scales.png");
-/// What [`DisplacementArgs::displacement`] calls it.
+/// Name in [`DisplacementArgs::displacement`].
 const SCALES_NAME: &str = "scales";
 
 #[derive(Debug, Args)]
@@ -16,10 +16,10 @@ pub(super) struct DisplacementArgs {
     /// coordinates.
     #[arg(long, value_name = "FILE")]
     displacement: Option<String>,
-    /// How far the greatest height (1 in a PNG file) moves it, as a part of the bounding box's diagonal.
+    /// Distance that the greatest height (1 in a PNG file) moves it, as a part of the bounding box's diagonal.
     #[arg(long, value_name = "PART", default_value_t = 0.01, allow_negative_numbers = true)]
     displacement_scale: f32,
-    /// What is added to that everywhere, as a part of the diagonal.
+    /// Distance that is added everywhere, as a part of the diagonal.
     #[arg(long, value_name = "PART", default_value_t = 0.0, allow_negative_numbers = true)]
     displacement_bias: f32,
     /// The map holds vectors in object space, in red, green and blue.
@@ -52,7 +52,7 @@ impl DisplacementArgs {
         }
     }
 
-    /// How far the map moves a point along an axis, at most.
+    /// Distance that the map moves a point along an axis, at most.
     pub(super) fn reach(&self, mesh: &ControlMesh, texels: &Texels) -> f64 {
         let [scale, bias] = self.amount(mesh);
         let ends = texels.range().map(|value| f64::from(scale * value + bias).abs());
@@ -79,7 +79,7 @@ pub(super) fn texture(headless: &Headless, texels: &Texels) -> Result<Texture, C
     Ok(Texture::new(headless, "displacement map", texels)?)
 }
 
-/// Of the control mesh's bounding box.
+/// Diagonal of the control mesh's bounding box.
 pub(super) fn diagonal(mesh: &ControlMesh) -> f32 {
     let [low, high] = mesh.bounds();
     (high - low).length() as f32

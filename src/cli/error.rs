@@ -1,4 +1,4 @@
-//! What ends the program.
+//! Errors that end the program.
 
 use std::error::Error;
 use std::io::ErrorKind;
@@ -38,7 +38,7 @@ impl CliError {
         Self::Usage(line.strip_prefix("error: ").unwrap_or(&line).to_owned())
     }
 
-    /// What the user is told, on one line.
+    /// Message for the user, on one line.
     pub(super) fn message(&self) -> Option<String> {
         match self {
             Self::Usage(message) | Self::Work(message) => Some(message.replace('\n', " ")),

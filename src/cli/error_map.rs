@@ -75,7 +75,7 @@ impl ErrorMap {
         Ok(Self { mesh, top, largest, side, columns, values })
     }
 
-    /// What the shader reads.
+    /// Bytes that the shader reads.
     fn bytes(&self) -> Vec<u8> {
         let header = [self.side, self.columns, (self.top as f32).to_bits(), 0];
         let colours: Vec<[f32; 4]> = (0..COLOURS).map(|number| legend::colour(number).linear()).collect();

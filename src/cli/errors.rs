@@ -25,7 +25,7 @@ pub(super) struct ErrorArgs {
     /// Samples along each side of a face.
     #[arg(long, value_name = "N", default_value_t = 33, value_parser = clap::value_parser!(u32).range(1..=1025))]
     samples: u32,
-    /// Samples over the whole of each surface for the distance to the nearest point; 0 leaves it out.
+    /// Samples over the whole of each surface for the distance to the nearest point; 0 measures none.
     #[arg(long, value_name = "N", default_value_t = 60_000, value_parser = clap::value_parser!(u32).range(0..=100_000_000))]
     nearest: u32,
     /// Write comma-separated values, one line for each scheme and set of faces.
@@ -67,14 +67,14 @@ described! {
         area: f64,
         samples: u32,
         nearest_samples: u32,
-        /// What is measured of the limit surface itself.
+        /// Error of the limit surface itself.
         nearest_floor_rms: Option<f64> = "measured of the exact surface itself",
         patches: usize,
         irregular_patches: usize,
         schemes: BTreeMap<&'static str, SchemeOut>,
         /// Schemes that have no patches for the mesh, and why.
         undefined: BTreeMap<&'static str, String> = "schemes without patches for the mesh, and why",
-        /// What is plotted: the mesh refined 0, 1, .. times more.
+        /// Errors that are plotted: the mesh refined 0, 1, .. times more.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         refinements: Vec<RefinementOut> = "with --plot",
     }

@@ -1,4 +1,4 @@
-//! What evaluates the patches, and how their control points are made.
+//! Evaluation and construction of the patches.
 
 use super::error::CliError;
 use super::parse;
@@ -8,11 +8,11 @@ use clap::Args;
 
 #[derive(Debug, Args)]
 pub(super) struct EvaluationArgs {
-    /// What evaluates the patches. All but the tessellation stages cut every edge into as many segments as --factor says,
+    /// Evaluation of the patches. All but the tessellation stages give every edge as many segments as --factor says,
     /// rounded up.
     #[arg(long, value_name = "WHAT", default_value = Evaluation::Tessellation.name(), value_parser = parse::evaluation())]
     pub(super) evaluation: Evaluation,
-    /// How the GPU makes the control points; if not given, as is usual with the evaluation (two-stage with tessellation).
+    /// Construction of the control points on the GPU; if not given, as is usual with the evaluation (two-stage with tessellation).
     #[arg(long, value_name = "HOW", value_parser = parse::one_of(Construction::ALL, Construction::name))]
     construction: Option<Construction>,
 }

@@ -165,7 +165,7 @@ impl Info {
     }
 }
 
-/// How many vertices have how many edges.
+/// Vertices by their number of edges.
 fn valence(mesh: &ControlMesh) -> BTreeMap<u32, usize> {
     let mut edges = vec![0u32; mesh.vertex_count()];
     for face in 0..mesh.face_count() as u32 {

@@ -1,4 +1,4 @@
-//! What the colours of an error map mean, written below the picture.
+//! Legend of an error map, written below the picture.
 
 use super::canvas::{Canvas, FONT, drawing_error, load_font};
 use super::error::CliError;
@@ -10,7 +10,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// The smallest picture that a legend fits in.
 const SMALLEST: [u32; 2] = [240, 120];
 
-/// How many colours there are, from no error to the top of the scale.
+/// Colours, from no error to the top of the scale.
 pub(super) const COLOURS: usize = 256;
 
 /// A colour of the scale, as sRGB bytes: as far apart to the eye as the numbers are, and light where there is little error,
@@ -22,7 +22,7 @@ pub(super) fn colour(number: usize) -> Colour {
 
 /// A scale from zero to `top`.
 pub(super) struct Legend {
-    /// What is shown, and in which unit.
+    /// Quantity that is shown, with its unit.
     pub title: String,
     pub top: f64,
     /// Whether there are values above the top.
@@ -30,7 +30,7 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// How many of a picture's rows the legend takes.
+    /// Rows of a picture that the legend takes.
     pub(super) fn height(size: [u32; 2]) -> Result<u32, CliError> {
         let [width, height] = size;
         if width < SMALLEST[0] || height < SMALLEST[1] {
@@ -82,7 +82,7 @@ impl Legend {
     }
 }
 
-/// How many there are of the legend.
+/// Rows of the legend.
 fn rows(size: [u32; 2]) -> u32 {
     9 * font_size(size) / 2
 }

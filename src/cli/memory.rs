@@ -1,4 +1,4 @@
-//! How the process holds its memory.
+//! The process's memory.
 
 /// Has the process keep memory that it is likely to need again.
 ///

@@ -5,7 +5,7 @@
 //! | `bench` | `bench`: what to race, results, presets, comparisons, the report |
 //! | `camera`, `displacement`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
 //! | `described` | the keys of JSON, for help and tables |
-//! | `cull` | which patches are left out |
+//! | `cull` | which patches are culled |
 //! | `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
 //! | `obj` | what `shapes` writes |
@@ -79,17 +79,17 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Count what a mesh has, which patches it becomes and how many bytes they take. Needs no device.
     Info(info::InfoArgs),
-    /// The control points of every patch, as the GPU or the CPU makes them.
+    /// Write the control points of every patch, as the GPU or the CPU makes them.
     Patches(patches::PatchesArgs),
-    /// Positions and normals on a lattice of every patch, as the GPU or the CPU evaluates them.
+    /// Write positions and normals on a uniform grid of every patch, as the GPU or the CPU evaluates them.
     Sample(sample::SampleArgs),
-    /// How long each scheme, construction and path takes to draw, on this device.
+    /// Time each scheme, construction and path on this device.
     Bench(Box<bench::BenchArgs>),
-    /// How far the patches of each scheme are from the exact surface, in position and normal. Needs no device.
+    /// Measure each scheme against the exact surface, in position and normal. Needs no device.
     Error(errors::ErrorArgs),
     /// Prove that neighbouring patches meet, to the last bit, under any factors and displacement.
     Watertight(watertight::WatertightArgs),
-    /// How far the drawn triangles are from the exact surface on the screen, with factors by the view and with one for all.
+    /// Measure the drawn triangles against the exact surface on the screen, with factors by the view and with one for all.
     Screen(screen::ScreenArgs),
     /// List the built-in shapes, or write one as OBJ.
     Shapes(shapes::ShapesArgs),

@@ -1,4 +1,4 @@
-//! What goes out: standard output, notes, progress, files.
+//! Output: standard output, notes, progress, files.
 
 use super::described::{Described, columns, holds};
 use super::error::CliError;
@@ -60,7 +60,7 @@ pub(super) fn with_stdout(write: impl FnOnce(&mut dyn Write) -> Result<(), CliEr
     Ok(out.flush()?)
 }
 
-/// Tells something that is not asked for but good to know.
+/// Reports something that is not asked for but good to know.
 pub(super) fn note(message: impl Display) {
     // Where standard error is closed there is nobody to tell.
     let _ = writeln!(io::stderr(), "note: {message}");
@@ -119,7 +119,7 @@ impl Progress {
         Self(bar)
     }
 
-    /// A bar that fills with `steps` steps of [`Progress::advance`], and tells how long the rest will take.
+    /// A bar that fills with `steps` steps of [`Progress::advance`], and says how long the rest will take.
     pub(super) fn bar(what: &'static str, steps: u64) -> Self {
         let bar = ProgressBar::new(steps).with_message(what);
         if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {elapsed}, {eta} left") {
@@ -129,7 +129,7 @@ impl Progress {
         Self(bar)
     }
 
-    /// So many steps more are done.
+    /// Further steps are done.
     pub(super) fn advance(&self, steps: u64) {
         self.0.inc(steps);
     }
@@ -139,12 +139,12 @@ impl Progress {
         self.0.suspend(work)
     }
 
-    /// What is going on now.
+    /// Work that is going on now.
     pub(super) fn now(&self, what: &'static str) {
         self.0.set_message(what);
     }
 
-    /// Tells a note without being drawn over it.
+    /// Writes a note without being drawn over it.
     pub(super) fn note(&self, message: impl Display) {
         self.0.suspend(|| note(message));
     }

@@ -28,7 +28,7 @@ pub(super) fn scheme_or_limit() -> impl TypedValueParser<Value = Surface> {
         .map(|given| Scheme::ALL.into_iter().find(|s| s.name() == given).map_or(Surface::Limit, Surface::Patches))
 }
 
-/// What can be sampled.
+/// Surface that can be sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Surface {
     /// The patches of a scheme.
@@ -37,10 +37,10 @@ pub(super) enum Surface {
     Limit,
 }
 
-/// What [`scheme_or_limit`] calls the limit surface.
+/// Name of the limit surface in [`scheme_or_limit`].
 pub(super) const LIMIT: &str = "limit";
 
-/// What evaluates patches, by its name.
+/// An evaluation of patches by its name.
 pub(super) fn evaluation() -> impl TypedValueParser<Value = Evaluation> {
     // Subdivision has --level.
     use Evaluation::{Compute, Geometry, GeometryTwoPass, Instanced, Tessellation};
@@ -55,7 +55,7 @@ pub(super) fn factor(text: &str) -> Result<f32, String> {
     number(text).filter(|f| (1.0..=MAX_FACTOR).contains(f)).ok_or_else(|| "it must be a number from 1 to 64".into())
 }
 
-/// A tessellation factor, or how many segments edges are cut into without the tessellation stages.
+/// A tessellation factor, or segments per edge without the tessellation stages.
 pub(super) fn segments(text: &str) -> Result<f32, String> {
     number(text).filter(|f| (1.0..=1024.0).contains(f)).ok_or_else(|| {
         "it must be a number from 1 to 64, or to 1024 without the tessellation stages (--evaluation)".into()
@@ -72,7 +72,7 @@ pub(super) fn angle(text: &str) -> Result<f32, String> {
     number(text).ok_or_else(|| "it must be a number of degrees".into())
 }
 
-/// How many, such as 1000000 or 1e6.
+/// A count, such as 1000000 or 1e6.
 pub(super) fn count(text: &str) -> Result<u64, String> {
     let whole = |x: &f64| (0.0..1e15).contains(x) && x.fract() == 0.0;
     let number = text.parse().ok().filter(whole).map(|x: f64| x as u64);

@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::output::{self, Progress};
-use super::source::{DeviceArgs, MeshArgs, tell_notices};
+use super::source::{DeviceArgs, MeshArgs, report_notices};
 use ash_subdiv::capture::Captured;
 use ash_subdiv::table::{FaceOrigin, Patch};
 use ash_subdiv::topology::PatchKind;
@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use serde::{Serialize, Serializer};
 use std::fmt::Display;
 
-/// Who makes the control points.
+/// Maker of the control points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Maker {
     /// The GPU: rings in the vertex shader, patches in the control shader.
@@ -29,7 +29,7 @@ enum Maker {
 pub(super) struct PatchesArgs {
     #[command(flatten)]
     mesh: MeshArgs,
-    /// Who makes the control points.
+    /// Maker of the control points.
     #[arg(long, value_enum, default_value_t = Maker::TwoStage)]
     construction: Maker,
     #[command(flatten)]
@@ -126,7 +126,7 @@ fn on_device(
         progress.now("building tables");
         let options = args.mesh.model_options(construction);
         let captured = Captured::new(headless, mesh, &options)?;
-        tell_notices(captured.tables().notices(), &progress);
+        report_notices(captured.tables().notices(), &progress);
         progress.now("making control points");
         let points = captured.control_points()?;
         Ok((captured.tables().clone(), points))
@@ -154,7 +154,7 @@ fn write<T: Serialize + Display>(args: &PatchesArgs, json: bool, made: Made<T>) 
     })
 }
 
-/// What stands before the kind of a patch in text.
+/// Text before the kind of a patch.
 pub(super) fn heading(origin: FaceOrigin) -> String {
     match origin.sub {
         -1 => format!("face {}: ", origin.face),
@@ -162,7 +162,7 @@ pub(super) fn heading(origin: FaceOrigin) -> String {
     }
 }
 
-/// What a control point is called.
+/// Name of a control point.
 fn label(scheme: Scheme, kind: PatchKind, number: usize) -> String {
     let n = kind.corners();
     let sign = if (number - number.min(n)).is_multiple_of(2) { '+' } else { '-' };

@@ -18,23 +18,23 @@ pub(super) struct Curve {
     pub points: Vec<CurvePoint>,
 }
 
-/// What a surface costs, and how far it is from the limit surface (root mean squares; none where not measured).
+/// Cost of a surface, and its errors against the limit surface (root mean squares; none where not measured).
 pub(super) struct CurvePoint {
     pub patches: f64,
     pub table_bytes: f64,
     pub errors: [Option<f64>; 3],
 }
 
-/// What is drawn.
+/// Content of a plot.
 pub(super) struct Figure {
     pub title: String,
     pub subtitle: String,
     pub curves: Vec<Curve>,
-    /// What would be measured of an exact scheme.
+    /// Curve that an exact scheme would have.
     pub floor: Curve,
 }
 
-/// Of the errors of a [`CurvePoint`].
+/// Names of the errors of a [`CurvePoint`].
 const ERRORS: [&str; 3] = ["position rms / diagonal", "nearest rms / diagonal", "normal rms, radians"];
 
 type Cost = (&'static str, fn(&CurvePoint) -> f64);
@@ -179,7 +179,7 @@ impl Figure {
 }
 
 impl Curve {
-    /// What of the curve can be drawn: this cost against this error.
+    /// Points of the curve that can be drawn: this cost against this error.
     fn drawn(&self, cost: fn(&CurvePoint) -> f64, error: usize) -> Vec<(f64, f64)> {
         let points = self.points.iter().map(|point| (cost(point), point.errors[error].unwrap_or(0.0)));
         points.filter(|&(x, y)| x > 0.0 && y > ROUNDING).collect()

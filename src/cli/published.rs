@@ -1,4 +1,4 @@
-//! What others measured of the same schemes, to stand beside ours.
+//! Published errors of the same schemes, to stand beside ours.
 
 use super::error::CliError;
 use super::output::{self, Table};

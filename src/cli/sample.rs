@@ -1,10 +1,10 @@
-//! `subdiv sample`: positions and normals on a lattice of every patch.
+//! `subdiv sample`: positions and normals on a uniform grid of every patch.
 
 use super::error::CliError;
 use super::output::{self, Progress};
 use super::parse::{self, Surface};
 use super::patches::{by_origin, heading};
-use super::source::{DeviceArgs, SourceArgs, tell_notices};
+use super::source::{DeviceArgs, SourceArgs, report_notices};
 use ash_subdiv::capture::{Captured, CapturedVertex};
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::patch::Sample;
@@ -22,7 +22,7 @@ use std::fmt::Display;
 pub(super) struct SampleArgs {
     #[command(flatten)]
     mesh: SourceArgs,
-    /// Which patches faces become; `limit` is the exact Catmull-Clark surface instead, with --cpu.
+    /// Scheme of the patches that faces become; `limit` is the exact Catmull-Clark surface instead, with --cpu.
     #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::scheme_or_limit())]
     scheme: Surface,
     /// Samples along each side of a patch, from 2 up; the GPU has at most its largest factor and one.
@@ -31,7 +31,7 @@ pub(super) struct SampleArgs {
     /// Evaluate on the CPU in f64, instead of in the evaluation shader.
     #[arg(long, conflicts_with_all = ["construction", "device", "validation"])]
     cpu: bool,
-    /// How the GPU makes the control points.
+    /// Construction of the control points on the GPU.
     #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::one_of(Construction::ALL, Construction::name))]
     construction: Construction,
     #[command(flatten)]
@@ -96,12 +96,12 @@ struct SamplesOut<'o, L: Lattice> {
 /// Where each part of the surface comes from, what it is, and its samples.
 type Parts<'o, L> = (&'o [FaceOrigin], &'o [Part], &'o [Vec<L>]);
 
-/// What a part of the surface is.
+/// A part of the surface.
 #[derive(Debug, Clone, Copy)]
 struct Part {
     /// The scheme that draws it.
     scheme: &'static str,
-    /// What it is called in text.
+    /// Name in text.
     name: &'static str,
     /// As what it is sampled.
     kind: PatchKind,
@@ -189,7 +189,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
         progress.now("building tables");
         let options = args.mesh.model_options(scheme, args.construction);
         let captured = Captured::new(headless, &mesh, &options)?;
-        tell_notices(captured.tables().notices(), &progress);
+        report_notices(captured.tables().notices(), &progress);
         progress.now("sampling");
         let samples = captured.grid(args.grid)?;
         Ok((captured.tables().clone(), samples))

@@ -6,7 +6,7 @@ use super::described::{described, help};
 use super::error::CliError;
 use super::output::{self, Progress, Table};
 use super::parse;
-use super::source::{DeviceArgs, MeshArgs, tell_notices};
+use super::source::{DeviceArgs, MeshArgs, report_notices};
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::measure::{PixelDeviation, ScreenError, screen_error};
 use ash_subdiv::renderer::Factor;
@@ -35,7 +35,7 @@ pub(super) struct ScreenArgs {
     /// Where the tessellator puts its vertices along an edge.
     #[arg(long, default_value = "equal", value_parser = parse::one_of(Spacing::ALL, Spacing::name))]
     spacing: Spacing,
-    /// How the GPU makes the control points.
+    /// Construction of the control points on the GPU.
     #[arg(long, value_name = "HOW", default_value = Construction::TwoStage.name(), value_parser = parse::one_of(Construction::ALL, Construction::name))]
     construction: Construction,
     /// Width and height of the screen in pixels.
@@ -157,7 +157,7 @@ impl Row {
 }
 
 impl ScreenArgs {
-    /// Those that follow the view.
+    /// Factors that follow the view.
     fn adaptive(&self) -> Vec<Factor> {
         let pixels = self.pixels.iter().copied().map(Factor::Pixels);
         let factors: Vec<_> = pixels.chain(self.bend.iter().copied().map(Factor::Curvature)).collect();
@@ -174,7 +174,7 @@ pub(super) fn run(args: &ScreenArgs, json: bool) -> Result<(), CliError> {
     let view = args.camera.view(&args.mesh.hull(&mesh)?, f64::from(width) / f64::from(height))?.sized(width, height);
     let (device, mut adaptive, uniform) = args.device.run(|headless| {
         let captured = Captured::new(headless, &mesh, &options)?;
-        tell_notices(captured.tables().notices(), &progress);
+        report_notices(captured.tables().notices(), &progress);
         progress.now("measuring");
         let row = |factor: Factor| -> Result<Row, CliError> {
             let draw = CaptureDraw { view, cull: args.cull.cull(), ..CaptureDraw::new(factor) };

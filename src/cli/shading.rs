@@ -1,4 +1,4 @@
-//! What a picture shows: the pipeline states and colours of each kind of shading.
+//! Shadings: the pipeline states and colours of each kind of shading.
 
 use super::parse::Colour;
 use ash::vk;
@@ -8,7 +8,7 @@ use ash_subdiv::renderer::{Fragment, Geometry};
 use ash_subdiv::{DrawItem, Style};
 use clap::ValueEnum;
 
-/// What the picture shows.
+/// Content of the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Shading {
     /// The smooth surface in one colour.
@@ -23,7 +23,7 @@ pub(super) enum Shading {
     Cage,
     /// The control mesh itself: its faces flat, and its edges.
     ControlMesh,
-    /// How far the surface is from the exact one, at the same parameters, as a colour with a legend.
+    /// The distance from the exact surface, at the same parameters, as a colour with a legend.
     ErrorPosition,
     /// The angle to the normal of the exact surface, as a colour with a legend.
     ErrorNormal,
@@ -79,12 +79,12 @@ impl Shading {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }
 
-    /// How colours are stored. Normals are numbers, not light: they are stored as they are.
+    /// Format that stores colours. Normals are numbers, not light: they are stored as they are.
     pub(super) fn format(self) -> vk::Format {
         if self == Self::Normals { vk::Format::R8G8B8A8_UNORM } else { vk::Format::R8G8B8A8_SRGB }
     }
 
-    /// What is drawn, one over the other.
+    /// Layers, one over the other.
     fn layers(self) -> Vec<Layer> {
         let lit = |colours| Layer::surface(Fragment::Lit, colours);
         match self {

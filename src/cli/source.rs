@@ -16,7 +16,7 @@ use std::path::PathBuf;
 pub(super) struct MeshArgs {
     #[command(flatten)]
     pub source: SourceArgs,
-    /// Which patches faces become.
+    /// Scheme of the patches that faces become.
     #[arg(long, default_value = Scheme::Gregory.name(), value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     pub scheme: Scheme,
 }
@@ -32,7 +32,7 @@ pub(super) struct SourceArgs {
     /// Take out vertices that belong to no face, instead of refusing the file (OBJ).
     #[arg(long)]
     drop_isolated: bool,
-    /// Which mesh of a glTF scene, by its name or its node's; all of them if not given.
+    /// Mesh of a glTF scene, by its name or its node's; all of them if not given.
     #[arg(long, value_name = "NAME", conflicts_with = "shape")]
     mesh_name: Option<String>,
     /// Steps of Catmull-Clark refinement before patches are made; each makes four times as many faces.
@@ -44,7 +44,7 @@ pub(super) struct SourceArgs {
 }
 
 impl MeshArgs {
-    /// How the mesh is to be drawn, with this construction.
+    /// Options of the model, with this construction.
     pub(super) fn model_options(&self, construction: Construction) -> ModelOptions {
         self.source.model_options(self.scheme, construction)
     }
@@ -60,7 +60,7 @@ impl MeshArgs {
         Ok(points)
     }
 
-    /// The patches of the mesh on the CPU; tells the notices about it.
+    /// The patches of the mesh on the CPU; reports the notices about it.
     pub(super) fn cpu_surface<'m>(
         &self,
         mesh: &'m ControlMesh,
@@ -82,7 +82,7 @@ impl SourceArgs {
         path.or_else(|| self.shape.clone()).unwrap_or_default()
     }
 
-    /// How the mesh is to be drawn, with this scheme and construction.
+    /// Options of the model, with this scheme and construction.
     pub(super) fn model_options(&self, scheme: Scheme, construction: Construction) -> ModelOptions {
         let name = self.shape.clone().unwrap_or_else(|| "mesh".into());
         ModelOptions {
@@ -95,7 +95,7 @@ impl SourceArgs {
         }
     }
 
-    /// The patches of the mesh on the CPU; tells the notices about it.
+    /// The patches of the mesh on the CPU; reports the notices about it.
     pub(super) fn cpu_surface<'m>(
         &self,
         mesh: &'m ControlMesh,
@@ -103,11 +103,11 @@ impl SourceArgs {
         progress: &Progress,
     ) -> Result<CpuSurface<'m>, CliError> {
         let surface = CpuSurface::with_fallback(mesh, scheme, self.fallback(), self.refine)?;
-        tell_notices(&surface.notices(), progress);
+        report_notices(&surface.notices(), progress);
         Ok(surface)
     }
 
-    /// What becomes of faces that a scheme has no patches for.
+    /// Fallback for faces that a scheme has no patches for.
     pub(super) fn fallback(&self) -> Fallback {
         self.fallback.unwrap_or_default()
     }
@@ -131,8 +131,8 @@ impl SourceArgs {
     }
 }
 
-/// Tells what a user will want to know about how a mesh is drawn.
-pub(super) fn tell_notices(notices: &[Notice], progress: &Progress) {
+/// Reports the notices on how a mesh is drawn.
+pub(super) fn report_notices(notices: &[Notice], progress: &Progress) {
     notices.iter().for_each(|notice| progress.note(notice));
 }
 

@@ -5,7 +5,7 @@ use super::displacement::{diagonal, scales, texture};
 use super::error::CliError;
 use super::output::{self, Progress, Table};
 use super::parse;
-use super::source::{DeviceArgs, SourceArgs, tell_notices};
+use super::source::{DeviceArgs, SourceArgs, report_notices};
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::headless::{Headless, Texture};
 use ash_subdiv::measure::watertight::{
@@ -28,7 +28,7 @@ pub(super) struct WatertightArgs {
     /// The largest random factor.
     #[arg(long, default_value_t = 12.0, value_parser = parse::factor)]
     largest_factor: f32,
-    /// How far the built-in height map moves the surface, as a part of the bounding box's diagonal.
+    /// Distance that the built-in height map moves the surface, as a part of the bounding box's diagonal.
     #[arg(long, value_name = "PART", default_value_t = 0.05)]
     displacement_scale: f32,
     /// Width and height in pixels of the pictures in which holes are looked for.
@@ -171,7 +171,7 @@ pub(super) fn run(args: &WatertightArgs, json: bool) -> Result<(), CliError> {
                         let options = args.options(construction, spacing, shared_normals);
                         let setup = args.setup(headless, &mesh, options, displaced)?;
                         if seed == 0 && edges == 0 {
-                            tell_notices(setup.captured.tables().notices(), &progress);
+                            report_notices(setup.captured.tables().notices(), &progress);
                         }
                         edges = setup.seams.edge_count();
                         progress.now("comparing");
@@ -211,7 +211,7 @@ pub(super) fn run(args: &WatertightArgs, json: bool) -> Result<(), CliError> {
     wrong(first, out.leaked_pixels).map_or(Ok(()), |message| Err(CliError::Work(message)))
 }
 
-/// What is not watertight.
+/// Edges that are not watertight.
 fn wrong(first: Option<Mismatch>, leaked_pixels: Option<u64>) -> Option<String> {
     match (first, leaked_pixels) {
         (Some(mismatch), _) => Some(tell(&mismatch)),

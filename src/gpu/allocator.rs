@@ -44,7 +44,7 @@ pub struct AllocationRequest<'a> {
 /// Memory from an [`Allocator`]: `size` bytes of `memory`, from `offset` on.
 #[derive(Debug)]
 pub struct Allocation {
-    /// What the resource is bound to.
+    /// Memory that the resource is bound to.
     pub memory: vk::DeviceMemory,
     /// Bytes from the start of `memory`.
     pub offset: u64,
@@ -52,7 +52,7 @@ pub struct Allocation {
     pub size: u64,
     /// The host address of the first byte of this allocation (not of `memory`), if it is mapped.
     pub mapped: Option<NonNull<u8>>,
-    /// What the allocator needs to recognize the allocation when it is freed.
+    /// Token by which the allocator recognizes the allocation when it is freed.
     pub token: Box<dyn Any + Send + Sync>,
 }
 

@@ -1,4 +1,4 @@
-//! How many patches one draw instance may hold.
+//! Batches: patches that one draw instance may hold.
 
 use crate::named::named;
 use ash::vk;
@@ -13,7 +13,7 @@ pub enum Domain {
 }
 
 named! {
-    /// How a tessellation factor becomes a whole number of segments.
+    /// Rounding of a tessellation factor to a whole number of segments.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub enum Spacing {
         /// `equal_spacing`: rounded up.
@@ -52,7 +52,7 @@ pub fn tessellated_vertices(domain: Domain, spacing: Spacing, level: f32, max_le
     }
 }
 
-/// How the patches of a draw are to be divided into instances on a device.
+/// Division of a draw's patches into instances on a device.
 ///
 /// A draw of many patches is `vkCmdDraw(k * control_points, instances, 0, first_instance)` with `k` patches an instance:
 /// the patch of a vertex is `gl_InstanceIndex * k + gl_VertexIndex / control_points`. Shaders never use
@@ -86,7 +86,7 @@ impl PatchBatch {
         if driver == vk::DriverId::MESA_LLVMPIPE { Self::LAVAPIPE } else { Self::Unlimited }
     }
 
-    /// How many of `patches` patches go into an instance, where one patch has `control_points` control points and at
+    /// Patches per instance, of `patches`, where one patch has `control_points` control points and at
     /// most `vertices` tessellation-evaluation vertices (see [`tessellated_vertices`]). At least 1.
     pub fn patches_per_instance(self, patches: u32, control_points: u32, vertices: u32) -> u32 {
         let most = match self {
@@ -127,7 +127,7 @@ pub struct PatchDraw {
     pub instance_count: u32,
     /// The number of the first.
     pub first_instance: u32,
-    /// What the vertex shader multiplies `gl_InstanceIndex` by; the same in all draws of one call.
+    /// Multiplier of `gl_InstanceIndex` in the vertex shader; the same in all draws of one call.
     pub patches_per_instance: u32,
 }
 

@@ -6,14 +6,14 @@ use bytemuck::{AnyBitPattern, NoUninit};
 
 use super::{Allocation, AllocationRequest, Dedicated, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 
-/// What a [`Buffer`] is to be.
+/// Description of a [`Buffer`].
 #[derive(Debug, Clone, Copy)]
 pub struct BufferDesc<'a> {
     /// The debug name.
     pub name: &'a str,
     /// Bytes; rounded up to a multiple of 4, and at least 4.
     pub size: u64,
-    /// What Vulkan is to use it for.
+    /// Uses of the buffer.
     pub usage: vk::BufferUsageFlags,
     /// Who reads and writes it.
     pub location: MemoryLocation,
@@ -147,7 +147,7 @@ impl Buffer {
         vk::DescriptorBufferInfo { buffer: self.raw(), offset: 0, range: vk::WHOLE_SIZE }
     }
 
-    /// A view of at least a texel from `offset` on, in bytes, as a texel buffer whose texels take so many bytes; it ends where the
+    /// A view of at least a texel from `offset` on, in bytes, as a texel buffer; it ends where the
     /// device sees no more. The buffer is for such views, and the offset aligned.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ pub fn version_text(version: u32) -> String {
     format!("{major}.{minor}.{}", vk::api_version_patch(version))
 }
 
-/// What a device is and can do: limits, and the driver bugs to work around, as named properties.
+/// Properties of a device: limits, and the driver bugs to work around, as named properties.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct DeviceProperties {
@@ -33,7 +33,7 @@ pub struct DeviceProperties {
     pub driver_name: String,
     /// The driver's version, in its own words.
     pub driver_info: String,
-    /// How many patches a draw instance may hold.
+    /// Patches that a draw instance may hold.
     pub patch_batch: PatchBatch,
     /// Indices of triangles that the driver takes at a time, making vertices anew after: lattices with more are drawn as strips,
     /// which have a third. Mesa's draw module (lavapipe) takes 1023, looking each of them up, too; of others no such limit is known.
@@ -120,7 +120,7 @@ impl DeviceProperties {
     }
 }
 
-/// How a device was made, which Vulkan cannot be asked afterwards.
+/// Options of a device's making, which Vulkan cannot be asked for afterwards.
 #[derive(Default)]
 pub struct ContextOptions {
     /// The features that were enabled at device creation.
@@ -185,7 +185,7 @@ impl DeviceContext {
         &self.device
     }
 
-    /// What images of this format and these uses the device has; `None` if it has none.
+    /// Properties of images of this format and these uses; `None` if the device has none.
     pub(super) fn images(&self, format: vk::Format, usage: vk::ImageUsageFlags) -> Option<vk::ImageFormatProperties> {
         let (kind, tiling, none) = (vk::ImageType::TYPE_2D, vk::ImageTiling::OPTIMAL, vk::ImageCreateFlags::empty());
         let (instance, device) = (&self.instance, self.physical_device);
@@ -193,7 +193,7 @@ impl DeviceContext {
         unsafe { instance.get_physical_device_image_format_properties(device, format, kind, tiling, usage, none).ok() }
     }
 
-    /// What the device is and can do.
+    /// Properties of the device.
     pub fn properties(&self) -> &DeviceProperties {
         &self.properties
     }

@@ -2,7 +2,7 @@ use ash::vk;
 
 use super::AllocatorError;
 
-/// What can go wrong between the crate and a Vulkan device. Each error names the object it happened to.
+/// Errors between the crate and a Vulkan device. Each error names the object it happened to.
 #[allow(missing_docs, reason = "the messages say it")]
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

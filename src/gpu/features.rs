@@ -45,7 +45,7 @@ features! {
     maintenance4 = "maintenance4",
     /// `discard` in fragment shaders of the caller's, compiled for Vulkan 1.3.
     terminate_invocation = "shaderTerminateInvocation",
-    /// The same by other compilers.
+    /// `discard` by other compilers.
     demote_to_helper_invocation = "shaderDemoteToHelperInvocation",
     /// Wireframe pictures.
     fill_mode_non_solid = "fillModeNonSolid",
@@ -57,7 +57,7 @@ features! {
     statistics = "pipelineStatisticsQuery",
     /// Geometry shaders, the `gl_PrimitiveID` of fragment shaders with them: subdivision of faces.
     geometry = "geometryShader",
-    /// Indirect draws that start at any instance: patches that compute shaders left out.
+    /// Indirect draws that start at any instance: patches that compute shaders culled.
     indirect_first_instance = "drawIndirectFirstInstance",
     /// Several indirect draws in one call: the same.
     multi_draw_indirect = "multiDrawIndirect",

@@ -6,16 +6,16 @@ use ash::vk;
 use super::buffer::wants_dedicated;
 use super::{Allocation, AllocationRequest, Dedicated, DeviceContext, GpuError, MemoryLocation, Owned, VkResultExt};
 
-/// What an [`Image`] is to be: two-dimensional, with optimal tiling, in device memory.
+/// Description of an [`Image`]: two-dimensional, with optimal tiling, in device memory.
 #[derive(Debug, Clone, Copy)]
 pub struct ImageDesc<'a> {
     /// The debug name.
     pub name: &'a str,
     /// Pixels.
     pub extent: vk::Extent2D,
-    /// Of a colour, depth or stencil image.
+    /// Format of a colour, depth or stencil image.
     pub format: vk::Format,
-    /// What Vulkan is to use it for.
+    /// Uses of the image.
     pub usage: vk::ImageUsageFlags,
     /// Samples a pixel.
     pub samples: vk::SampleCountFlags,
@@ -219,7 +219,7 @@ impl Drop for Image {
     }
 }
 
-/// What an image of a format holds: colour, depth, stencil, or the last two.
+/// Aspects of a format: colour, depth, stencil, or the last two.
 pub fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
     use vk::ImageAspectFlags as A;
     match format {

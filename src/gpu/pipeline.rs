@@ -5,7 +5,7 @@ use ash::vk;
 use super::stages::Stages;
 use super::{DeviceContext, GpuError, Owned, Shader, VkResultExt};
 
-/// What a graphics pipeline draws into.
+/// Attachments of a graphics pipeline.
 #[derive(Debug, Clone, Copy)]
 pub enum RenderTarget<'a> {
     #[allow(missing_docs, reason = "named as in Vulkan")]
@@ -28,7 +28,7 @@ impl RenderTarget<'_> {
 /// The depth test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DepthState {
-    /// What a fragment's depth has to be to what is there.
+    /// Comparison of a fragment's depth with the depth that is there.
     pub compare: vk::CompareOp,
     /// Whether the depth of fragments that pass is kept.
     pub write: bool,
@@ -41,7 +41,7 @@ impl DepthState {
     pub const LESS_OR_EQUAL: Self = Self { compare: vk::CompareOp::LESS_OR_EQUAL, write: true };
 }
 
-/// What is added to the depth of a fragment (Vulkan 1.3, "Depth Bias").
+/// Bias that is added to the depth of a fragment (Vulkan 1.3, "Depth Bias").
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DepthBias {
     /// Smallest steps of the depth format.
@@ -50,7 +50,7 @@ pub struct DepthBias {
     pub slope: f32,
 }
 
-/// How a fragment's colour meets what is there; the same for all colour attachments that are written to.
+/// Blending of a fragment's colour with the colour that is there; the same for all colour attachments that are written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Blend {
     /// Replaces it.
@@ -226,7 +226,7 @@ impl<'a> GraphicsPipelineDesc<'a> {
         owned_pipeline(context, created, "vkCreateGraphicsPipelines", self.name)
     }
 
-    /// What would be undefined behaviour, or fail with a message that helps nobody.
+    /// Checks what would be undefined behaviour, or fail with a message that helps nobody.
     fn check(&self, context: &DeviceContext) -> Result<(), GpuError> {
         let (properties, features) = (context.properties(), context.features());
         let unsupported = |why: String| Err(GpuError::Unsupported { object: self.name.to_owned(), why });

@@ -12,9 +12,9 @@ use crate::gpu::{DeviceProperties, Features, version_text};
 pub struct DeviceInfo {
     /// The number that selects it in `SUBDIV_DEVICE` and `--device`.
     pub index: usize,
-    /// What it is and can do.
+    /// Properties of the device.
     pub properties: DeviceProperties,
-    /// What the headless device needs and this one lacks; it can be used if this is empty.
+    /// Needs of the headless device that this one lacks; it can be used if this is empty.
     pub missing: Vec<String>,
 }
 
@@ -47,7 +47,7 @@ impl DeviceInfo {
     }
 }
 
-/// What every headless device needs.
+/// Needs of every headless device.
 pub(super) const BASE: Features = Features {
     tessellation: true,
     dynamic_rendering: true,

@@ -30,7 +30,7 @@ pub use offscreen::save_png;
 
 use instance::{Instance, LIFE, Messages};
 
-/// What the device is to be.
+/// Options of the device.
 #[derive(Debug, Clone, Default)]
 pub struct HeadlessOptions {
     /// The validation layer, with synchronization validation. Also on if the environment variable `SUBDIV_VALIDATION` is
@@ -39,7 +39,7 @@ pub struct HeadlessOptions {
     /// The number of the device, or a part of its name. If none, the environment variable `SUBDIV_DEVICE` says it; if
     /// that is not set, it is the first discrete GPU, or else the first integrated one, or else a CPU.
     pub device: Option<String>,
-    /// What the device must have. Other features that it has are enabled too: see [`DeviceContext::features`].
+    /// Features that the device must have. Other features that it has are enabled too: see [`DeviceContext::features`].
     pub needs: Features,
     /// As [`ContextOptions::storage_tables`].
     pub storage_tables: bool,
@@ -94,7 +94,7 @@ impl Headless {
         let owner = OwnedDevice { raw: raw.clone(), _instance: instance };
 
         let mut debug_settings = gpu_allocator::AllocatorDebugSettings::default();
-        // `finish` tells of leaks.
+        // `finish` reports leaks.
         debug_settings.log_leaks_on_shutdown = false;
         let allocator = gpu_allocator::vulkan::Allocator::new(&gpu_allocator::vulkan::AllocatorCreateDesc {
             instance: instance_handle.clone(),
@@ -127,7 +127,7 @@ impl Headless {
         Ok(Self { context, instance: instance_handle, physical_device, queue_family, queue, messages, kept })
     }
 
-    /// What buffers, images and pipelines are made from.
+    /// Context that buffers, images and pipelines are made from.
     pub fn context(&self) -> &Arc<DeviceContext> {
         &self.context
     }
@@ -152,7 +152,7 @@ impl Headless {
         self.queue_family
     }
 
-    /// What the device is and can do.
+    /// Properties of the device.
     pub fn properties(&self) -> &DeviceProperties {
         self.context.properties()
     }

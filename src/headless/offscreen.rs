@@ -7,14 +7,14 @@ use super::Headless;
 use super::HeadlessError;
 use crate::gpu::{Buffer, BufferDesc, GpuError, Image, ImageDesc, MemoryLocation, RenderTarget};
 
-/// What an [`Offscreen`] is to be.
+/// Description of an [`Offscreen`].
 #[derive(Debug, Clone, Copy)]
 pub struct OffscreenDesc {
     /// Pixels.
     pub extent: vk::Extent2D,
     /// Samples a pixel; resolved to one when drawing ends.
     pub samples: vk::SampleCountFlags,
-    /// Of four bytes a pixel: `R8G8B8A8_SRGB` or `R8G8B8A8_UNORM`.
+    /// Colour format of four bytes a pixel: `R8G8B8A8_SRGB` or `R8G8B8A8_UNORM`.
     pub color: vk::Format,
     /// The format of the depth image.
     pub depth: vk::Format,
@@ -36,7 +36,7 @@ impl OffscreenDesc {
 pub struct Offscreen {
     desc: OffscreenDesc,
     color: Image,
-    /// What is drawn into if there are several samples.
+    /// Image that is drawn into if there are several samples.
     multisampled: Option<Image>,
     depth: Image,
     pixels: Buffer,
@@ -77,7 +77,7 @@ impl Offscreen {
         Ok(Self { desc: *desc, color, multisampled, depth, pixels, device: context.device().clone() })
     }
 
-    /// What it was made as.
+    /// Description it was made from.
     pub fn desc(&self) -> &OffscreenDesc {
         &self.desc
     }
@@ -87,7 +87,7 @@ impl Offscreen {
         self.desc.extent
     }
 
-    /// What pipelines that draw here are made for; their sample count is [`OffscreenDesc::samples`].
+    /// Target of pipelines that draw here; their sample count is [`OffscreenDesc::samples`].
     pub fn target(&self) -> RenderTarget<'_> {
         RenderTarget::Dynamic {
             color: std::slice::from_ref(&self.desc.color),

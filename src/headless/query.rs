@@ -8,7 +8,7 @@ use ash::vk;
 use super::Headless;
 use crate::gpu::{DeviceContext, GpuError, Owned, VkResultExt};
 
-/// What the shader stages were called for. Counts of stages that the device cannot count are 0.
+/// Invocations of the shader stages. Counts of stages that the device cannot count are 0.
 ///
 /// lavapipe counts tessellation evaluations exactly, and fragments too often.
 #[allow(missing_docs, reason = "named as in Vulkan")]
@@ -121,7 +121,7 @@ impl StatisticsQuery {
 /// Points in time on the device. lavapipe's are sound at the boundaries of render passes, and not within one.
 pub struct Timestamps {
     count: u32,
-    /// What of a timestamp the queue writes; it starts anew where that ends.
+    /// Bits of a timestamp that the queue writes; it starts anew where they end.
     mask: u64,
     pool: Owned<vk::QueryPool>,
     context: Arc<DeviceContext>,
@@ -205,7 +205,7 @@ fn query_pool(
     }
 }
 
-/// How long commands took.
+/// Duration of commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Timing {
     /// On the device, from the first command to the last.

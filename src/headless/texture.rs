@@ -37,7 +37,7 @@ impl Texels {
     /// The same from the contents of a file.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// Reason, in words.
     #[cfg(feature = "png")]
     pub fn decode(bytes: &[u8], vectors: bool) -> Result<Self, String> {
         let picture = image::load_from_memory(bytes).map_err(|e| e.to_string())?;

@@ -12,7 +12,7 @@ const TRIANGLES: f64 = 2e6;
 /// Cells along the side of a block. A tree of single triangles takes longer to build than it saves in queries.
 const BLOCK: usize = 4;
 
-/// Points on a lattice over each part of each patch, and a tree of boxes around blocks of its cells. Each cell is two
+/// Points on a uniform grid over each part of each patch, and a tree of boxes around blocks of its cells. Each cell is two
 /// triangles.
 pub(super) struct Dense {
     points: Vec<DVec3>,
@@ -44,7 +44,7 @@ pub(super) fn lattice(kind: PatchKind, patches: usize, position: impl Fn(Paramet
 }
 
 impl Dense {
-    /// From the [`lattice`] of every patch.
+    /// A surface from the [`lattice`] of every patch.
     pub(super) fn new(kinds: &[PatchKind], lattices: &[Vec<DVec3>]) -> Self {
         Self::with_patches(kinds, lattices, kinds.len())
     }

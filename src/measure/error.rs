@@ -1,4 +1,4 @@
-//! How far schemes are from the limit surface.
+//! Errors of schemes against the limit surface.
 
 use super::nearest::{self, Nearest};
 use super::sums::{Deviation, Sums};
@@ -9,10 +9,10 @@ use crate::patch::{Fallback, Scheme, Undefined};
 use crate::table::{PatchPlan, prepare};
 use crate::topology::{PatchKind, Topology};
 
-/// How to measure.
+/// Options of the measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ErrorOptions {
-    /// What becomes of faces that a scheme has no patches for.
+    /// Fallback for faces that a scheme has no patches for.
     pub fallback: Fallback,
     /// Steps of refinement before patches are made, at least.
     pub refine: u32,
@@ -29,7 +29,7 @@ impl Default for ErrorOptions {
     }
 }
 
-/// How far some faces of a scheme are from the limit surface.
+/// Errors of some faces of a scheme against the limit surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FaceErrors {
     /// Distance of the points with the same parameters, over the diagonal of the control mesh.
@@ -37,36 +37,36 @@ pub struct FaceErrors {
     /// Distance to the nearest point of the other surface, both ways together, over the diagonal of the control mesh.
     /// `None` if not asked for.
     pub nearest: Option<Deviation>,
-    /// Angle between the normals at the same parameters, in radians. Samples where either surface has none are left out.
+    /// Angle between the normals at the same parameters, in radians. Samples where either surface has none do not count.
     pub normal: Deviation,
 }
 
-/// How far the patches of a scheme are from the limit surface.
+/// Errors of the patches of a scheme against the limit surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SchemeError {
     /// Over all faces.
     pub all: FaceErrors,
     /// Over irregular quads and triangles; `None` if there are none.
     pub irregular: Option<FaceErrors>,
-    /// How many faces the scheme has no patches for, so that they were measured with those of the fallback.
+    /// Faces that the scheme has no patches for, measured with those of the fallback.
     pub fallen_back: usize,
 }
 
-/// What [`surface_errors`] found.
+/// Result of [`surface_errors`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorReport {
     /// Length of the diagonal of the control mesh's bounding box: the unit of distances here, in the mesh's own.
     pub diagonal: f64,
     /// Area of the limit surface that was measured, in the mesh's own units.
     pub area: f64,
-    /// How many patches there are.
+    /// Patches of the mesh.
     pub patches: usize,
-    /// How many of them are irregular quads or triangles.
+    /// Patches that are irregular quads or triangles.
     pub irregular_patches: usize,
     /// The nearest distance of the limit surface from itself, over the diagonal of the control mesh: what comes of
     /// measuring against triangles. `None` if not asked for.
     pub nearest_floor: Option<Deviation>,
-    /// In the order in which they were asked for; those without patches on this mesh say why.
+    /// Errors by scheme, in the order of the request; schemes without patches on this mesh say why.
     pub schemes: Vec<(Scheme, Result<SchemeError, Undefined>)>,
 }
 
@@ -84,7 +84,7 @@ pub struct ErrorReport {
 /// as a mesh of triangles (about two million, at least 32 a patch, at most 2048). Chords of such a mesh are off the
 /// surface by an eighth of their length squared over the radius of curvature: no smaller distance is to be trusted, and
 /// that of a scheme that is exact is not zero ([`ErrorReport::nearest_floor`]). Where the normals differ by more than 1.2 rad the point has found the
-/// other side of something thin, and is left out.
+/// other side of something thin, and does not count.
 ///
 /// **Maxima of normals.** Where the limit surface itself folds over in a cusp, its normal swings by up to a half turn
 /// within a few thousandths of u and v, and a patch that swings a little earlier or later differs by as much. That is
@@ -193,7 +193,7 @@ impl Measured {
 
 struct PatchErrors {
     area: f64,
-    /// Of each scheme.
+    /// Sums by scheme.
     schemes: Vec<ParametricSums>,
 }
 

@@ -5,7 +5,7 @@ use crate::mesh::MeshError;
 use crate::table::{CpuSurface, grid_parameters};
 use crate::topology::Topology;
 
-/// What the error is of.
+/// Quantity that an error is measured of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// Distance between the points with the same parameters, in the mesh's own units.
@@ -14,7 +14,7 @@ pub enum Quantity {
     Normal,
 }
 
-/// How far the patches of a surface are from the limit surface: for each patch, in the order of
+/// Errors of the patches of a surface against the limit surface: for each patch, in the order of
 /// [`CpuSurface::plan`], the error at each of its [`grid_parameters`], `n` along a side.
 ///
 /// On triangles and pentagons "the same parameters" are a convention, that of [`surface_errors`](super::surface_errors).

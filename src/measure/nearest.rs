@@ -12,9 +12,9 @@ use rayon::prelude::*;
 /// Where normals differ by more, in radians, the nearest point is on the other side of something thin.
 const MAX_ANGLE: f64 = 1.2;
 
-/// What [`measure`] found.
+/// Result of [`measure`].
 pub(super) struct Nearest {
-    /// Of each scheme, for each patch, the distances from its points to the limit surface and the other way.
+    /// For each scheme and patch, the distances from its points to the limit surface and the other way.
     pub distances: Vec<Vec<Sums>>,
     /// For each patch, the distances from points of the limit surface to its own triangles.
     pub floor: Vec<Sums>,
@@ -27,7 +27,7 @@ struct Probe {
     weight: f64,
 }
 
-/// What both surfaces over a patch are asked at.
+/// Points of a patch at which both surfaces are evaluated.
 struct LimitPatch {
     lattice: Vec<DVec3>,
     probes: Vec<Probe>,

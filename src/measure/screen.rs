@@ -1,4 +1,4 @@
-//! How far the drawn triangles are from the limit surface, in pixels of the screen.
+//! Distances of drawn triangles from the limit surface, in pixels of the screen.
 
 use super::surfaces::Parameters;
 use crate::capture::{CaptureDraw, Captured, CapturedVertex};
@@ -30,13 +30,13 @@ const SAMPLES: [([f64; 3], f64); 7] = [
 pub struct PixelDeviation {
     /// Root mean square over the area on the screen.
     pub rms: f64,
-    /// What 99 % of the area on the screen is within, up to 1.1 % more.
+    /// Bound of 99 % of the area on the screen, up to 1.1 % more.
     pub p99: f64,
     /// The largest, however small its triangle.
     pub max: f64,
 }
 
-/// How far the triangles of a draw are from the limit surface on the screen.
+/// Distances of the triangles of a draw from the limit surface on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ScreenError {
     /// Triangles that the tessellator made, seen or not.
@@ -47,7 +47,7 @@ pub struct ScreenError {
     pub shift: PixelDeviation,
     /// Its part along the normal of the surface: what outlines are off by.
     pub shape: PixelDeviation,
-    /// From the patches themselves, between points with the same parameters: what more triangles would take away.
+    /// Distance from the patches themselves, between points with the same parameters: what more triangles would take away.
     pub facets: PixelDeviation,
 }
 

@@ -1,4 +1,4 @@
-//! What many noisy measurements say: medians, spreads, and how sure a difference is. Nothing here assumes a distribution:
+//! Statistics of noisy measurements: medians, spreads, and how sure a difference is. Nothing here assumes a distribution:
 //! times on a shared machine have none worth a name.
 
 use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal};
@@ -53,7 +53,7 @@ pub fn median(values: &[f64]) -> Option<Estimate> {
     if sorted.len() < FEWEST {
         return None;
     }
-    // How many of the values lie below the true median: heads of so many coins.
+    // The count of values below the true median: heads of as many coins.
     let below = Binomial::new(0.5, sorted.len() as u64).ok()?;
     let outside = (1.0 - CONFIDENCE) / 2.0;
     let out = (0..sorted.len() / 2).take_while(|&k| below.cdf(k as u64) <= outside).count();
@@ -79,12 +79,12 @@ fn paired(a: &[f64], b: &[f64], of: impl Fn(f64, f64) -> f64) -> Option<Estimate
     if a.len() == b.len() { median(&values) } else { None }
 }
 
-/// How values of two separate runs differ.
+/// Difference of the values of two separate runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Change {
     /// New over old: the median of all ratios of a new value to an old one (Hodges and Lehmann 1963).
     pub ratio: Estimate,
-    /// How sure it is that there is a difference, from 0 to 1: one less the two-sided p-value of the rank-sum test (Mann
+    /// Confidence that there is a difference, from 0 to 1: one less the two-sided p-value of the rank-sum test (Mann
     /// and Whitney 1947), with the normal approximation.
     pub confidence: f64,
 }

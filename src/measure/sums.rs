@@ -17,7 +17,7 @@ impl Deviation {
     }
 }
 
-/// What [`Deviation`] is made of.
+/// Sums that [`Deviation`] is made of.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Sums {
     weight: f64,

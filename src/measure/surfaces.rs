@@ -20,7 +20,7 @@ pub(super) fn drawn_faces(topology: &Topology) -> Vec<(u32, PatchKind)> {
 /// The patches of a scheme.
 pub(super) struct SchemePatches<'p> {
     plan: &'p PatchPlan,
-    /// In the order of their faces.
+    /// Patches in the order of their faces.
     patches: Vec<Patch>,
 }
 
@@ -36,7 +36,7 @@ impl<'p> SchemePatches<'p> {
 pub(super) struct Surfaces<'s> {
     pub mesh: &'s ControlMesh,
     pub topology: &'s Topology<'s>,
-    /// Those that are drawn, and what they become.
+    /// Faces that are drawn, and the patches they become.
     pub faces: Vec<(u32, PatchKind)>,
     pub schemes: Vec<SchemePatches<'s>>,
 }
@@ -56,7 +56,7 @@ impl Surfaces<'_> {
         Ok(results)
     }
 
-    /// Those of one of the schemes over one of the faces.
+    /// Control points of one of the schemes over one of the faces.
     pub(super) fn control_points(&self, scheme: usize, face: usize) -> Vec<DVec3> {
         let SchemePatches { plan, patches } = &self.schemes[scheme];
         patches[face].control_points(self.topology, plan.fallback_rings(), |vertex| self.mesh.position(vertex))
@@ -83,7 +83,7 @@ pub(super) struct Parameters {
 }
 
 impl Parameters {
-    /// Those of the patch over the face: (u, v) of a quad, the first two barycentric coordinates of a triangle.
+    /// Parameters of the patch over the face: (u, v) of a quad, the first two barycentric coordinates of a triangle.
     fn of_patch(self) -> [f64; 2] {
         let Self { sub, u, v } = self;
         if sub < 0 {

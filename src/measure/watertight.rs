@@ -17,7 +17,7 @@ mod shaders {
     include!(concat!(env!("OUT_DIR"), "/measure_shaders.rs"));
 }
 
-/// What was compared, and what differs.
+/// Comparison of the patches at edges: samples, and those that differ.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tally {
     /// Pairs of vertices that two patches evaluated at one place of the surface.
@@ -50,7 +50,7 @@ impl Tally {
 pub struct Mismatch {
     /// The vertices at both ends of the edge, or the one vertex twice.
     pub vertices: [u32; 2],
-    /// How far along the edge.
+    /// Parameter along the edge.
     pub at: f32,
     /// The faces of the vertices.
     pub faces: [u32; 2],
@@ -72,7 +72,7 @@ pub struct Seams {
 }
 
 impl Seams {
-    /// Of a model that is drawn with these tables; `refine` as in [`ModelOptions::refine`].
+    /// Seams of a model that is drawn with these tables; `refine` as in [`ModelOptions::refine`].
     ///
     /// # Errors
     /// As [`prepare`].
@@ -104,7 +104,7 @@ impl Seams {
         Ok(Self { patches, first_corners, edges, paired, smooth, corners })
     }
 
-    /// How many edges have two patches.
+    /// Edges with two patches.
     pub fn edge_count(&self) -> usize {
         self.paired.iter().filter(|&&paired| paired).count()
     }

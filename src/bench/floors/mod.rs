@@ -1,4 +1,4 @@
-//! What nothing that draws the surface can get below: small pipelines of the bench's own, lit and drawn as the renderer
+//! The floors that no way to draw the surface gets below: small pipelines of the bench's own, lit and drawn as the renderer
 //! does.
 
 mod bilinear;
@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// The storage buffers that a floor's shaders may read in set 1. The first of them is there once more, as a texel buffer.
 const BINDINGS: usize = 2;
 
-/// What comes into the vertex stage, and what it hands on.
+/// Input of the vertex stage, and what it passes on.
 #[derive(Default)]
 struct Input<'a> {
     /// Nought without tessellation.

@@ -1,4 +1,4 @@
-//! What is asked for.
+//! Arguments of `subdiv bench`.
 
 use super::super::cull::{CullArg, cull};
 use super::super::described::help;
@@ -39,11 +39,11 @@ pub(in super::super) struct BenchArgs {
     /// Where normals come from, with commas: those that patches share cost time. For watertight schemes.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::one_of(Normals::ALL, Normals::name))]
     pub(super) normals: Vec<Normals>,
-    /// Measure each row of the tessellation stages and of instances again with patches left out that are not seen: `back`
+    /// Measure each row of the tessellation stages and of instances again with patches culled that are not seen: `back`
     /// those that face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
     pub(super) cull: Vec<CullArg>,
-    /// What leaves them out, with commas: the control shader of each draw, or compute before the draws. If not given, compute for
+    /// Stages that cull them, with commas: the control shader of each draw, or compute before the draws. If not given, compute for
     /// `cached`, the control shader for other constructions.
     #[arg(long, value_name = "WHAT", value_delimiter = ',', requires = "cull", value_parser = parse::one_of(CullBy::ALL, CullBy::name))]
     cull_by: Vec<CullBy>,
@@ -53,7 +53,7 @@ pub(in super::super) struct BenchArgs {
     /// Where the tessellator puts its vertices along an edge; several with commas.
     #[arg(long, value_delimiter = ',', default_value = "equal", value_parser = parse::one_of(Spacing::ALL, Spacing::name))]
     pub(super) spacing: Vec<Spacing>,
-    /// Which patches are drawn: all if not given.
+    /// Patches that are drawn: all if not given.
     #[arg(long, value_name = "WHICH", value_parser = parse::one_of(Subset::ALL, Subset::name))]
     pub(super) patches: Option<Subset>,
     /// Draw the model this many times, side by side, with a transform each.
@@ -69,7 +69,7 @@ pub(in super::super) struct BenchArgs {
     /// Where the eye is, with commas: `clipped` shows the middle three times as large, and cuts off what is around.
     #[arg(long, value_name = "WHERE", value_delimiter = ',', default_value = "fit", value_parser = parse::one_of(Camera::ALL, Camera::name))]
     pub(super) view: Vec<Camera>,
-    /// Have the rasterizer leave out triangles that face away, as renderers do of closed models. Some drivers, lavapipe among
+    /// Have the rasterizer cull triangles that face away, as renderers do of closed models. Some drivers, lavapipe among
     /// them, then count fewer of what clipping leaves: compare views without it.
     #[arg(long)]
     pub(super) single_sided: bool,
@@ -88,7 +88,7 @@ pub(in super::super) struct BenchArgs {
     /// Frames of each row that go before.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(super) warm_up: u32,
-    /// Measure instead how long the host takes to record a frame of so many models: of one model drawn so many times, of so
+    /// Measure instead how long the host takes to record a frame of this many models: of one model drawn as often, of as
     /// many models, and of as many whose vertices move; with --cull, also where compute looks what is seen.
     #[arg(long, value_name = "MODELS", conflicts_with_all = ["preset", "compare", "results", "factors", "spacing", "instances", "passes", "motion", "view"], value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(super) recording: Option<u32>,
@@ -101,7 +101,7 @@ pub(in super::super) struct BenchArgs {
     /// Also write index.html, results.json and results.csv to this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) report: Option<PathBuf>,
-    /// Tell what became faster or slower since, by more than the floors did; what --json wrote.
+    /// Report what became faster or slower since, by more than the floors did; what --json wrote.
     #[arg(long, value_name = "OLD.json")]
     pub(super) compare: Option<PathBuf>,
     /// Do not measure: take what --json wrote.
@@ -123,7 +123,7 @@ x base:       the median of ratios to the first row, frame by frame, with the in
 construction: control points alone: factor 1 less the bilinear floor at factor 1, without
               rasterization; of paths with the tessellation stages, as the floor.
 set-up:       tables and upload, without pipelines; the median of several.
-triangles:    before clipping; of lattices drawn as strips (on lavapipe, of quads from 14 segments
+triangles:    before clipping; of grids drawn as strips (on lavapipe, of quads from 14 segments
               on) with those that join rows, of no area.
 sure:         of --compare: that the frames of both runs differ, whatever made them. It does not
               know that machines drift between runs; floors, which do not draw the surface, tell
@@ -135,7 +135,7 @@ Patches, triangles and times are of a frame: of all its instances and passes.
 Rows of one mesh and factor draw in turns, so that a machine that becomes slower does so for all.
 
 `compute` evaluates once a frame into a vertex buffer that all passes draw; `instanced` draws one
-lattice for all patches, an instance for each, which the vertex shader evaluates; in `geometry` the
+uniform grid for all patches, an instance for each, which the vertex shader evaluates; in `geometry` the
 geometry shader evaluates, in `geometry-two-pass` it makes control points for `instanced`. They go
 with the construction `cached`, `geometry` also with `stencil`.
 `acc-published` is ACC as first published: its evaluation shader makes the tangents, at every
@@ -145,7 +145,7 @@ construction two-stage; `acc-published-instanced` likewise with `cached`, to be 
 `subdivision` refines faces in a geometry shader, at factors 1, 2, 4 and 8: levels 0 to 3.
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was
 evaluated before.
---cull is for `tessellation` and `instanced`: with `cached`, compute shaders leave patches out
+--cull is for `tessellation` and `instanced`: with `cached`, compute shaders cull patches
 before they are drawn, else the control shader does. What --cull-by has otherwise is named, as
 `back by compute`.
 Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of
@@ -177,7 +177,7 @@ fn frames(text: &str) -> Result<u32, String> {
 }
 
 impl BenchArgs {
-    /// What is asked for, else what the preset says, else everything; without a choice of normals and culling.
+    /// Contestants that are asked for, else those of the preset, else everything; without a choice of normals and culling.
     pub(super) fn plain_contestants(&self) -> Vec<Contestant> {
         Contestant::all(
             &pick(&self.paths, self.preset.map(|p| p.paths), &Path::ALL),
@@ -208,7 +208,7 @@ impl BenchArgs {
         factors
     }
 
-    /// What is drawn.
+    /// Meshes that are drawn.
     pub(super) fn meshes(&self, patches: Subset) -> Result<Meshes, CliError> {
         let options = ReadOptions { drop_isolated: self.drop_isolated, ..ReadOptions::default() };
         let mut originals: Vec<(String, ControlMesh)> = Vec::new();
@@ -256,11 +256,11 @@ fn pick<T: Copy + PartialEq>(given: &[T], preset: Option<&[T]>, all: &[T]) -> Ve
 pub(super) struct Meshes {
     /// By name, before any copies are made.
     pub originals: Vec<(String, ControlMesh)>,
-    /// With what is told of each.
+    /// With the facts of each.
     pub subjects: Vec<(Subject, MeshOut)>,
 }
 
-/// So many copies as a block that is as near to a cube as the count allows.
+/// Copies as a block that is as near to a cube as the count allows.
 fn lattice(copies: u32) -> [u32; 3] {
     let divisor = |n: u32, root: f64| (1..=root.round() as u32).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
     let x = divisor(copies, f64::from(copies).cbrt());

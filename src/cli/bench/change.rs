@@ -1,4 +1,4 @@
-//! How rows changed between two days.
+//! Changes of rows between two days.
 
 use super::super::described::described;
 use super::row::{GEOMETRY, GPU, Interval, Row, Setting, Who};
@@ -6,7 +6,7 @@ use ash_subdiv::measure::statistics::{CONFIDENCE, change};
 use serde::Serialize;
 
 described! {
-    /// How a row changed, with pixels or without.
+    /// Change of a row, with pixels or without.
     #[derive(Debug, Serialize)]
     pub(super) struct Change {
         #[serde(flatten)]
@@ -20,15 +20,15 @@ described! {
         pub new_ms: f64,
         /// New over old.
         pub ratio: Interval,
-        /// That there is a difference between the frames of the two runs, from 0 to 1; whatever made it.
+        /// Confidence that the frames of the two runs differ, from 0 to 1; whatever made them.
         pub confidence: f64,
-        /// What the machine did between the two runs: new over old of all floors. From 1 to 1 if there are none, and for floors.
+        /// Drift of the machine between the two runs: new over old of all floors. From 1 to 1 if there are none, and for floors.
         pub machine: Range,
     }
 }
 
 described! {
-    /// Of ratios; always with 1 in it.
+    /// Range of ratios; always with 1 in it.
     #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
     pub(super) struct Range {
         pub low: f64,
@@ -75,7 +75,7 @@ impl Change {
     }
 }
 
-/// What the machine did, of both kinds of time; `None` without floors.
+/// Drift of the machine, of both kinds of time; `None` without floors.
 pub(super) fn machine(changes: &[Change]) -> Option<String> {
     changes.iter().find(|change| change.who.is_floor())?;
     let of = |what: &str| {

@@ -1,7 +1,7 @@
 //! Results of two days side by side.
 //!
-//! The frames of a run tell how sure a difference between two runs is, not what made it: between them, a machine drifts by
-//! more than within each. The floors tell how far it did: they do not draw the surface. (They share the shaders of the view
+//! The frames of a run say how sure a difference between two runs is, not what made it: between them, a machine drifts by
+//! more than within each. The floors say how far it did: they do not draw the surface. (They share the shaders of the view
 //! and of the stages' outputs with what does: a change of those, or of the driver, counts as the machine's.)
 
 use super::super::error::CliError;
@@ -12,7 +12,7 @@ use super::results::Results;
 use super::row::{GEOMETRY, GPU, Row, Who};
 use ash_subdiv::bench::{BenchOptions, Contestant};
 
-/// That rows measured with these options on these meshes can be set beside the old ones.
+/// Checks that rows measured with these options on these meshes can be set beside the old ones.
 pub(super) fn check(old: &Results, options: &OptionsOut, meshes: &[MeshOut]) -> Result<(), CliError> {
     if let Some((old, new)) = old.options.alike().into_iter().zip(options.alike()).find(|(old, new)| old != new) {
         return Err(CliError::Work(format!("the results to compare with are of {old}, these of {new}: measure alike")));
@@ -33,7 +33,7 @@ pub(super) fn check(old: &Results, options: &OptionsOut, meshes: &[MeshOut]) -> 
     Ok(())
 }
 
-/// That there will be rows that both have, if these contestants are raced on these meshes.
+/// Checks that there will be rows that both have, if these contestants are raced on these meshes.
 pub(super) fn check_rows(
     old: &Results,
     meshes: &[MeshOut],

@@ -1,4 +1,4 @@
-//! What goes with the rows: the device, the options, the meshes, who did not run, and the command.
+//! Facts about the rows: the device, the options, the meshes, who did not run, and the command.
 
 use super::super::described::described;
 use super::row::{Setting, Who};
@@ -19,7 +19,7 @@ described! {
         pub vulkan: String,
         /// Nanoseconds a tick.
         pub timestamp_period: f32,
-        /// Of this machine, for drivers that draw on the CPU.
+        /// Processors of this machine, for drivers that draw on the CPU.
         pub processors: usize,
     }
 }
@@ -51,9 +51,9 @@ described! {
         pub copies: u32,
         pub vertices: usize,
         pub faces: usize,
-        /// Those that are drawn, by kind.
+        /// Patches that are drawn, by kind.
         pub patches: BTreeMap<String, u32>,
-        /// Of each scheme: root mean square of the angle to the limit surface's normal, in radians. Measured for reports.
+        /// Error by scheme: root mean square of the angle to the limit surface's normal, in radians. Measured for reports.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         pub normal_error: BTreeMap<String, f64>,
         /// A picture as a `data:` address. Made for reports.
@@ -81,7 +81,7 @@ impl OptionsOut {
         Self { size, single_sided, instances, passes, frames, warm_up, patches: patches.name().to_owned(), refine }
     }
 
-    /// What the times of a row depend on besides its setting, as the program's options.
+    /// Options that the times of a row depend on besides its setting.
     pub(super) fn alike(&self) -> [String; 5] {
         let Self { size: [width, height], single_sided, instances, patches, refine, .. } = self;
         [

@@ -1,4 +1,4 @@
-//! What rows say together: how time grows, from how many passes on compute wins, what a view that clips costs.
+//! Findings over several rows: the growth of time, the passes from which on compute wins, the cost of a view that clips.
 
 use super::super::described::described;
 use super::facts::{MeshOut, original_name};
@@ -130,7 +130,7 @@ fn groups(rows: &[Row], same: impl Fn(&Setting) -> Setting) -> Vec<(Setting, Vec
     groups
 }
 
-/// Of both kinds of time.
+/// Finding of both kinds of time.
 fn finding(setting: &Setting, row: &Row, of: impl Fn(&str) -> Option<Bounds>) -> Option<Finding> {
     Some(Finding {
         setting: setting.clone(),

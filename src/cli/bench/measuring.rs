@@ -79,7 +79,7 @@ impl BenchArgs {
         report::Folder::prepare(folder, self.compare.as_deref())
     }
 
-    /// How far the normals of the schemes that are raced are from the limit surface's. Copies of a mesh are as far.
+    /// Measures the normals of the schemes that are raced against the limit surface's. Copies of a mesh are as far.
     fn find_normal_errors(
         &self,
         originals: &[(String, ControlMesh)],
@@ -182,7 +182,7 @@ fn record(
     Ok(())
 }
 
-/// How far the normals of each scheme are from the limit surface's, where it has patches.
+/// Errors of the normals of each scheme against the limit surface's, where it has patches.
 fn normal_errors(mesh: &ControlMesh, schemes: &[Scheme], refine: u32) -> Result<BTreeMap<String, f64>, CliError> {
     let options = ErrorOptions { refine, samples: 9, nearest: 0, ..ErrorOptions::default() };
     let report = surface_errors(mesh, schemes, &options)?;

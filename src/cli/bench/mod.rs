@@ -2,13 +2,13 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args`, `together` | what is asked for, and what of it goes together |
+//! | `args`, `together` | arguments, and which go together |
 //! | `measuring` | the measurement |
-//! | `results`, `row`, `facts` | what was measured, and on what, as it is written and read |
-//! | `findings` | what rows say together |
+//! | `results`, `row`, `facts` | results, and the facts about them, as they are written and read |
+//! | `findings` | findings over several rows |
 //! | `text` | all of it as tables |
-//! | `recorded` | what the host takes to record a frame |
-//! | `presets` | what papers measured |
+//! | `recorded` | times to record a frame on the host |
+//! | `presets` | measurements of papers |
 //! | `compare`, `change` | against results of another day |
 //! | `report` | the same as one page, with plots |
 
@@ -62,7 +62,7 @@ pub(super) fn run(args: &BenchArgs, json: bool) -> Result<(), CliError> {
     results.changes.as_deref().map_or(Ok(()), text::changes)
 }
 
-/// What there is, each once, in the order in which they first appear.
+/// Values that occur, each once, in the order in which they first appear.
 fn unique<'a, A, T: PartialEq>(all: &'a [A], of: impl Fn(&'a A) -> T) -> Vec<T> {
     let mut once = Vec::new();
     all.iter().map(of).for_each(|one| {

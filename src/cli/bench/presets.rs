@@ -1,4 +1,4 @@
-//! What papers measured: the same measurement, and their figures.
+//! Presets: the measurements of papers, and their figures.
 
 use super::super::described::described;
 use super::facts::{MeshOut, OptionsOut};
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Preset {
     name: &'static str,
     pub title: &'static str,
-    /// What is not the same, and what the figures are.
+    /// Differences, and the meaning of the figures.
     pub note: &'static str,
     pub schemes: &'static [Scheme],
     pub constructions: &'static [Construction],
@@ -26,7 +26,7 @@ pub(super) struct Preset {
     unit: Unit,
     /// Measured without pixels.
     geometry: bool,
-    /// Of each mesh, ratios are to the first.
+    /// Figures by mesh; ratios are to the first.
     published: &'static [Published],
 }
 
@@ -187,12 +187,12 @@ pub(super) fn parser() -> impl TypedValueParser<Value = &'static Preset> {
 }
 
 described! {
-    /// What is told of a preset.
+    /// Description of a preset.
     #[derive(Debug, Serialize, Deserialize)]
     pub(super) struct PresetOut {
         pub name: String,
         pub title: String,
-        /// What the figures are, and why there are none.
+        /// Meaning of the figures, and why there are none.
         pub note: String,
     }
 }
@@ -207,11 +207,11 @@ described! {
         pub factor: f32,
         pub figure: f64,
         pub unit: String,
-        /// Of times, to the first figure of the mesh that something stands beside.
+        /// Ratio of times to the first figure of the mesh that something stands beside.
         pub published_ratio: f64,
         pub mesh: String,
         pub ms: f64,
-        /// Of medians, to the row in place of that figure.
+        /// Ratio of medians to the row in place of that figure.
         pub ratio: f64,
     }
 }
@@ -223,7 +223,7 @@ impl Preset {
         schemes.chain(self.constructions.iter().map(|how| how.name())).collect::<Vec<_>>().join(", ")
     }
 
-    /// What is told of it where these figures are set beside.
+    /// Description where these figures are set beside.
     pub(super) fn about(&self, beside: &[Beside]) -> PresetOut {
         let mut note = self.note.to_owned();
         if beside.is_empty() && !self.published.is_empty() {

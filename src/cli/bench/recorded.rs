@@ -1,4 +1,4 @@
-//! What the host takes to record a frame of many models.
+//! Recordings: the host's times for a frame of many models.
 
 use super::super::described::described;
 use super::row::{Times, Who};
@@ -11,7 +11,7 @@ described! {
         pub mesh: String,
         #[serde(flatten)]
         pub who: Who,
-        /// What the models are: see `Crowd`.
+        /// Crowd of models: see `Crowd`.
         pub crowd: String,
         pub models: u32,
         pub prepare_ms: Times,
@@ -38,7 +38,7 @@ impl Recorded {
     }
 }
 
-/// That nothing of what is asked for can be recorded.
+/// Message where nothing of what is asked for can be recorded.
 pub(super) fn none() -> String {
     let paths: Vec<_> = Path::ALL.into_iter().filter(|path| path.is_recorded()).map(Path::name).collect();
     format!("none of --paths is recorded by the renderer alone: name one of {}", paths.join(", "))

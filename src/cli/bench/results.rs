@@ -1,4 +1,4 @@
-//! What was measured, as it is written to JSON and read again.
+//! Results, as they are written to JSON and read again.
 
 use super::super::described::described;
 use super::super::error::CliError;
@@ -36,7 +36,7 @@ described! {
         pub preset: Option<PresetOut>,
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         pub published: Vec<Beside>,
-        /// Of these to others: not read again.
+        /// Changes from other results: not read again.
         #[serde(default, skip_deserializing, skip_serializing_if = "Option::is_none")]
         pub changes: Option<Vec<Change>>,
     }
@@ -61,7 +61,7 @@ impl Results {
         }
     }
 
-    /// What a user is told of those that are left out, from the `told`th on.
+    /// Notes on contestants that are left out, from the `told`th on.
     pub(super) fn left_out_notes(&self, told: usize) -> Vec<String> {
         left_out_by_reason(&self.left_out, told, 3)
     }
@@ -84,7 +84,7 @@ impl Results {
         Ok(results)
     }
 
-    /// That there is something, and that times are such.
+    /// Checks that there are rows, and that times are times.
     fn check(&self) -> Result<(), String> {
         if self.rows.is_empty() && self.recording.is_empty() {
             return Err("it has no rows".into());

@@ -48,7 +48,7 @@ fn moving() -> String {
 }
 
 described! {
-    /// Who is raced.
+    /// Contestant of a row.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     pub(super) struct Who {
         pub scheme: String,
@@ -72,7 +72,7 @@ described! {
         pub tes_invocations: Option<u64>,
         pub compute_invocations: Option<u64>,
         pub triangles: Option<u64>,
-        /// What clipping left of them.
+        /// Triangles that clipping left.
         pub visible_triangles: Option<u64>,
         pub gpu_ms: Times,
         pub geometry_ms: Times,
@@ -113,11 +113,11 @@ described! {
     }
 }
 
-/// What is timed: frames with pixels, and geometry alone.
+/// Names of what is timed: frames with pixels, and geometry alone.
 pub(super) const GPU: &str = "gpu";
 pub(super) const GEOMETRY: &str = "geometry";
 
-/// What a name says where there is nothing to name.
+/// Name where there is nothing to name.
 pub(super) const NONE: &str = "none";
 /// The key of a map's sum.
 const TOTAL: &str = "total";
@@ -138,7 +138,7 @@ impl Setting {
         race.cameras.iter().any(|&camera| *self == Self::new(&self.mesh, race, camera))
     }
 
-    /// What it is where nothing else is asked for.
+    /// The setting where nothing else is asked for.
     fn usual(&self) -> Self {
         let usual = BenchOptions::default();
         Self::new(&self.mesh, &usual, usual.cameras[0])

@@ -61,7 +61,7 @@ fn ratio(interval: Option<Interval>) -> String {
     interval.map_or("-".into(), |Interval { value, low, high }| format!("{value:.3} ({low:.2} to {high:.2})"))
 }
 
-/// What the host takes.
+/// Recordings.
 pub(super) fn recording(recording: &[Recorded]) -> Result<(), CliError> {
     if recording.is_empty() {
         return Ok(());
@@ -89,7 +89,7 @@ pub(super) fn recording(recording: &[Recorded]) -> Result<(), CliError> {
     table.print()
 }
 
-/// What rows say together.
+/// Findings over several rows.
 pub(super) fn findings(findings: &Findings) -> Result<(), CliError> {
     for (title, list) in findings.lists().into_iter().filter(|(_, list)| !list.is_empty()) {
         let mut table = Table::new(&[4, 5, 6, 7]);
@@ -113,7 +113,7 @@ pub(super) fn findings(findings: &Findings) -> Result<(), CliError> {
     Ok(())
 }
 
-/// What a paper published beside what was measured.
+/// Published figures beside measured ones.
 pub(super) fn published(preset: Option<&PresetOut>, beside: &[Beside]) -> Result<(), CliError> {
     let Some(PresetOut { title, note, .. }) = preset else { return Ok(()) };
     with_stdout(|out| Ok(writeln!(out, "{title}\n{note}")?))?;
@@ -138,7 +138,7 @@ pub(super) fn published(preset: Option<&PresetOut>, beside: &[Beside]) -> Result
     table.print()
 }
 
-/// What became faster or slower.
+/// Rows that became faster or slower.
 pub(super) fn changes(changes: &[Change]) -> Result<(), CliError> {
     if let Some(machine) = machine(changes) {
         with_stdout(|out| Ok(writeln!(out, "{machine}")?))?;

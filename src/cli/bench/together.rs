@@ -1,4 +1,4 @@
-//! What goes together: what a user is told of what is asked for and cannot be measured.
+//! Combinations: notes on what is asked for and cannot be measured.
 
 use super::super::error::CliError;
 use super::args::BenchArgs;
@@ -10,7 +10,7 @@ use ash_subdiv::renderer::{Cull, Evaluation};
 const SHARED_NORMALS: &str = "shared normals go with watertight schemes (gregory, gregory-fitted), and without tessellation with cached, but not with geometry-two-pass";
 const CULLED: &str = "it is for the paths tessellation and, by compute, instanced";
 
-/// What a path goes with, if not with everything.
+/// Rule of a path: the schemes and constructions it goes with, if not all.
 fn rule(path: Path) -> Option<String> {
     let schemes = Some(path.schemes()).filter(|&schemes| schemes != Scheme::ALL).unwrap_or_default();
     let constructions = path.constructions().iter().map(|construction| construction.name());
@@ -19,7 +19,7 @@ fn rule(path: Path) -> Option<String> {
 }
 
 impl BenchArgs {
-    /// Of the paths that are asked for; and of shared normals, if they are.
+    /// Rules of the paths that are asked for, and of shared normals, if they are.
     fn rules(&self) -> Vec<String> {
         let mut rules: Vec<String> = unique(&self.paths, |&path| path).into_iter().filter_map(rule).collect();
         if self.normals.contains(&Normals::Shared) {
@@ -28,7 +28,7 @@ impl BenchArgs {
         rules
     }
 
-    /// That what is asked for does not go together, and what does.
+    /// Error where nothing of what is asked for goes together.
     pub(super) fn no_contestants(&self) -> CliError {
         let message = "none of --paths, --constructions, --schemes and --normals go together";
         let preset = self.preset.map(|preset| format!("the preset is of {}", preset.about_patches()));

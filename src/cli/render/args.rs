@@ -1,4 +1,4 @@
-//! What is asked for.
+//! Arguments of `subdiv render`.
 
 use super::super::camera::CameraArgs;
 use super::super::cull::CullArgs;
@@ -15,7 +15,7 @@ use ash_subdiv::{Construction, Spacing};
 use clap::Args;
 use std::path::PathBuf;
 
-/// How finely patches are cut, and which are left out.
+/// Factors of the patches, and which are culled.
 #[derive(Debug, Args)]
 pub(super) struct FactorArgs {
     /// The tessellation factor of every patch, from 1 to 64; without the tessellation stages (--evaluation) to 1024.
@@ -73,7 +73,7 @@ pub(in super::super) struct RenderArgs {
     /// Where the tessellator puts its vertices along an edge.
     #[arg(long, default_value = "equal", value_parser = parse::one_of(Spacing::ALL, Spacing::name))]
     pub(super) spacing: Spacing,
-    /// What the picture shows.
+    /// Content of the picture.
     #[arg(long, value_enum, default_value_t = Shading::Lit)]
     pub(super) shading: Shading,
     /// The error at the top of the scale of --shading error-position (over the diagonal of the mesh's bounding box) or
@@ -110,7 +110,7 @@ Examples:
   subdiv render --shape cloth --eye 3,4,5 --target 0,0,0 --fov 25 --size 1920x1080 -o cloth.png";
 
 impl RenderArgs {
-    /// How control points are made; an error if the evaluation does not go with what was asked for.
+    /// Construction of the control points; an error if the evaluation does not go with what was asked for.
     pub(super) fn construction(&self) -> Result<Construction, CliError> {
         let factor = self.factor.factor;
         if factor > parse::MAX_FACTOR && self.evaluation.evaluation == Evaluation::Tessellation {

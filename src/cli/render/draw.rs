@@ -1,4 +1,4 @@
-//! What the device does for a picture.
+//! The device's work for a picture.
 
 use super::super::displacement::texture;
 use super::super::error::CliError;
@@ -10,7 +10,7 @@ use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, ModelTables};
 use ash_subdiv::{Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Target, View};
 
-/// What is drawn besides the model.
+/// Size, view and maps of a picture.
 pub(super) struct Picture<'p> {
     /// In pixels, without the legend.
     pub size: [u32; 2],
@@ -21,7 +21,7 @@ pub(super) struct Picture<'p> {
 }
 
 impl RenderArgs {
-    /// What the factors of the picture come to; none where the device cannot tell, or nothing was asked for.
+    /// Statistics of the factors of the picture; none where the device cannot count, or nothing was asked for.
     pub(super) fn statistics(
         &self,
         headless: &Headless,
@@ -35,7 +35,7 @@ impl RenderArgs {
             return Ok(None);
         }
         let displacement = self.displacement.amount(mesh);
-        // Other evaluations leave out the same.
+        // Other evaluations cull the same.
         let options = &ModelOptions { evaluation: Evaluation::Tessellation, ..options.clone() };
         let draw = CaptureDraw { view: picture.view, cull, displacement, ..CaptureDraw::new(factor) };
         let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;

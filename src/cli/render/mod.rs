@@ -10,7 +10,7 @@ use super::info::Patches;
 use super::legend::Legend;
 use super::output::{self, Progress, write_file};
 use super::picture::unpremultiply;
-use super::source::tell_notices;
+use super::source::report_notices;
 pub(super) use args::RenderArgs;
 use ash::vk;
 use ash_subdiv::gpu::DeviceProperties;
@@ -44,7 +44,7 @@ described! {
 }
 
 described! {
-    /// What the control shader made of the factors.
+    /// Factors as the control shader made them.
     #[derive(Clone, Copy, Serialize)]
     struct StatisticsOut {
         patches_drawn: usize,
@@ -82,7 +82,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     options.refine = if map.is_some() { 0 } else { options.refine };
     let tables = ModelTables::new(drawn, &options)?;
     if map.is_none() {
-        tell_notices(tables.notices(), &progress);
+        report_notices(tables.notices(), &progress);
     }
     let patches = Patches::of(&tables);
     let size @ [width, height] = [args.size[0], args.size[1] - legend];

@@ -1,4 +1,4 @@
-//! Which plots there are, and how each contestant is drawn in all of them.
+//! Plots of the report, and the style of each contestant in all of them.
 
 use super::super::super::error::CliError;
 use super::super::findings::{any_passes, any_size};

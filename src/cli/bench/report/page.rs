@@ -104,7 +104,7 @@ fn microseconds(times: Times) -> Markup {
     spread(times, 1e3)
 }
 
-/// In so many of a millisecond.
+/// Times in a unit of which a millisecond has `scale`.
 fn spread(Times { median, min, max, mad }: Times, scale: f64) -> Markup {
     let [median, min, max, mad] = [median, min, max, mad].map(|ms| format!("{:.2}", scale * ms));
     html! { td title=(format!("{min} to {max}")) { (median) " " small { "±" (mad) } } }
@@ -251,7 +251,7 @@ use</b>: pipelines, and the first frame with them; drivers may find them compile
 <li><b>KiB</b>: everything that drawing reads. <b>traffic</b>: what a frame moves, counted as if there were no caches.
 <b>evaluations</b>, <b>compute</b>: invocations of evaluation and compute shaders in a frame.</li>
 <li><b>sure</b>: that the frames of both runs differ, whatever made them. It holds the noise within each run, not the drift
-of the machine between them; the floors, which no change of the program makes faster or slower, tell of that: <b>faster</b>
+of the machine between them; the floors, which no change of the program makes faster or slower, show that: <b>faster</b>
 and <b>slower</b> are rows whose interval is wholly outside of what the intervals of all floors reach, <b>as the machine</b> those
 that differ by no more. Few floors reach less far than a machine may drift: the more factors, the surer.</li>
 <li><b>views</b>: of each, the time of a triangle that clipping leaves, over that in the first. <b>passes</b>: where the

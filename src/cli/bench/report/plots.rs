@@ -11,27 +11,27 @@ use plotters::prelude::*;
 use plotters::style::Color;
 use std::ops::Range;
 
-/// What a plot shows of one contestant.
+/// Curve of one contestant.
 pub(super) struct Line {
-    /// Told under the pointer, with the numbers of a point.
+    /// Shown under the pointer, with the numbers of a point.
     pub label: String,
     pub style: LineStyle,
     /// Both above zero: the axes are logarithmic.
     pub points: Vec<(f64, f64)>,
 }
 
-/// How a contestant is drawn, the same in all plots.
+/// Style of a contestant, the same in all plots.
 #[derive(Clone, Copy)]
 pub(super) struct LineStyle {
     pub colour: RGBColor,
     /// Pixels of a dash and of the gap after it; none for a whole line.
     pub dash: Option<[u32; 2]>,
     pub mark: Mark,
-    /// Of the line, in pixels.
+    /// Width of the line, in pixels.
     pub width: u32,
 }
 
-/// What stands at the points of a line.
+/// Mark at the points of a line.
 #[derive(Clone, Copy)]
 pub(super) struct Mark {
     /// In pixels, from the point.
@@ -40,7 +40,7 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// Of its inside, from 0 to 1.
+    /// Opacity of its inside, from 0 to 1.
     pub(super) fn opacity(self) -> f64 {
         if self.filled { 1.0 } else { 0.15 }
     }
@@ -86,7 +86,7 @@ const SIZE: (u32, u32) = (560, 380);
 
 /// A plot with both axes logarithmic.
 pub(super) struct Plot<'a> {
-    /// What the axis along is of, as [`Plot::y`] the one upwards.
+    /// Label of the axis along, as [`Plot::y`] of the one upwards.
     pub x: &'a str,
     /// Marks along x; at round numbers if there are none.
     pub marks: &'a [f64],
