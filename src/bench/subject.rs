@@ -5,7 +5,7 @@ use crate::mesh::{ControlMesh, MeshData};
 use crate::named::named;
 use crate::patch::{Fallback, Scheme};
 use crate::table::{PatchPlan, TableError, prepare};
-use crate::topology::{PatchKind, Topology};
+use crate::topology::PatchKind;
 
 named! {
     /// Which patches of a mesh are drawn.
@@ -50,8 +50,7 @@ impl Subject {
     /// [`BenchError::NoPatches`] if the subset has no patches; a refined mesh that cannot be addressed.
     pub fn new(name: &str, mesh: ControlMesh, refine: u32, subset: Subset) -> Result<Self, BenchError> {
         let prepared = prepare(&mesh, refine)?;
-        let topology = Topology::new(&prepared.mesh);
-        let plan = PatchPlan::new(&topology, Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
+        let plan = PatchPlan::new(prepared.topology(), Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
         let counts = PatchKind::ALL.map(|kind| if subset.has(kind) { plan.count(kind) } else { 0 });
         if counts == [0; PatchKind::ALL.len()] {
             return Err(BenchError::NoPatches { mesh: name.to_owned(), subset: subset.name() });
@@ -62,7 +61,7 @@ impl Subject {
         }
         // The faces of a refined mesh become holes, not those of the control mesh.
         let holes = plan.patches().iter().filter(|patch| !subset.has(patch.kind)).map(|patch| patch.face);
-        let data = prepared.mesh.data();
+        let data = prepared.mesh().data();
         let holes = data.holes.iter().copied().chain(holes).collect();
         let mesh = ControlMesh::new(MeshData { holes, ..data.clone() })?;
         Ok(Self { name, mesh, refine: 0, counts })
@@ -83,6 +82,7 @@ impl Subject {
 mod tests {
     use super::*;
     use crate::shape;
+    use crate::topology::Topology;
 
     #[test]
     fn subsets_are_drawn_alone_and_look_the_same() {

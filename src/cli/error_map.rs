@@ -47,7 +47,7 @@ impl ErrorMap {
         let columns = (count as f64).sqrt().ceil() as u32;
         let tile = (side * side) as usize;
         let mut values = vec![0.0; tile * count];
-        let mesh = &*surface.prepared().mesh;
+        let mesh = surface.prepared().mesh();
         let mut places = vec![[0.0; 2]; mesh.corner_count()];
         for ((number, patch), errors) in patches.iter().enumerate().zip(&field) {
             let corners = mesh.face_corners(patch.face);

@@ -6,7 +6,7 @@ use super::output::{self, Progress, Table};
 use super::parse;
 use super::source::MeshArgs;
 use ash_subdiv::renderer::ModelTables;
-use ash_subdiv::topology::{PatchKind, Topology};
+use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions};
 use clap::Args;
 use serde::Serialize;
@@ -121,7 +121,7 @@ impl Info {
             face_sizes,
             holes: data.holes.len(),
             boundary_edges: mesh.boundary_edge_count(),
-            creased_edges: Topology::new(mesh).creased_edge_count(),
+            creased_edges: mesh.creased_edge_count(),
             sharp_corners: data.corners.iter().filter(|corner| corner.sharpness > 0.0).count(),
             valence: valence(mesh),
             bounds: mesh.bounds().map(Into::into),

@@ -61,11 +61,7 @@ impl MeshArgs {
     }
 
     /// The patches of the mesh on the CPU; reports the notices about it.
-    pub(super) fn cpu_surface<'m>(
-        &self,
-        mesh: &'m ControlMesh,
-        progress: &Progress,
-    ) -> Result<CpuSurface<'m>, CliError> {
+    pub(super) fn cpu_surface(&self, mesh: &ControlMesh, progress: &Progress) -> Result<CpuSurface, CliError> {
         self.source.cpu_surface(mesh, self.scheme, progress)
     }
 
@@ -96,12 +92,12 @@ impl SourceArgs {
     }
 
     /// The patches of the mesh on the CPU; reports the notices about it.
-    pub(super) fn cpu_surface<'m>(
+    pub(super) fn cpu_surface(
         &self,
-        mesh: &'m ControlMesh,
+        mesh: &ControlMesh,
         scheme: Scheme,
         progress: &Progress,
-    ) -> Result<CpuSurface<'m>, CliError> {
+    ) -> Result<CpuSurface, CliError> {
         let surface = CpuSurface::with_fallback(mesh, scheme, self.fallback(), self.refine)?;
         report_notices(&surface.notices(), progress);
         Ok(surface)

@@ -1,9 +1,9 @@
 //! Refinement of what may differ at one vertex from face to face.
 
-use super::local::Tags;
-use super::refine::{refine, touching_vertices};
+use super::refine::refine;
 use crate::mesh::{
-    BoundaryRule, ControlMesh, Corner, Crease, FaceVarying, FaceVaryingRule, MeshData, MeshError, SHARPNESS_INFINITE,
+    BoundaryRule, ControlMesh, Corner, Crease, FaceVarying, FaceVaryingRule, MeshData, MeshError, NO_TWIN,
+    SHARPNESS_INFINITE,
 };
 use crate::topology::Topology;
 use std::collections::HashMap;
@@ -80,16 +80,13 @@ fn value_mesh(topology: &Topology, coarse: &FaceVarying<[f32; 2]>) -> Result<Con
         triangle_rule: data.triangle_rule,
         ..MeshData::default()
     })?;
-    let tags = Tags::new(data);
     let mut creases = Vec::new();
-    let corner_count = if tags.has_edges() { mesh.corner_count() as u32 } else { 0 };
-    for h in (0..corner_count).filter(|&h| h < values.twins()[h as usize]) {
-        let ends = [h, topology.next(h)];
-        let [a, b] = ends.map(|h| topology.mesh_vertex(h));
-        let vertices = ends.map(|h| values.data().face_vertices[h as usize]);
-        creases.extend(tags.edge(a, b).map(|sharpness| Crease { vertices, sharpness }));
+    for h in (0..mesh.corner_count() as u32).filter(|&h| (h + 1..NO_TWIN).contains(&values.twins()[h as usize])) {
+        let (vertices, sharpness) = ([h, topology.next(h)], topology.sharpness(h));
+        let vertices = vertices.map(|h| values.data().face_vertices[h as usize]);
+        creases.extend((sharpness > 0.0).then_some(Crease { vertices, sharpness }));
     }
-    let corners = sharp_values(topology, &values, &tags);
+    let corners = sharp_values(topology, &values);
     ControlMesh::new(MeshData { creases, corners, ..values.into_data() })
 }
 
@@ -111,7 +108,7 @@ impl Values {
 }
 
 /// The values that stay where they are, and those at vertices that are sharp themselves.
-fn sharp_values(topology: &Topology, values: &ControlMesh, tags: &Tags) -> Vec<Corner> {
+fn sharp_values(topology: &Topology, values: &ControlMesh) -> Vec<Corner> {
     let data = topology.mesh().data();
     let value_topology = Topology::new(values);
     let mut at_vertices: Vec<Values> = std::iter::repeat_with(Values::default).take(data.positions.len()).collect();
@@ -126,7 +123,7 @@ fn sharp_values(topology: &Topology, values: &ControlMesh, tags: &Tags) -> Vec<C
             None => here.faces.push((value, 1)),
         }
         here.divided |= value_topology.source(value_topology.vertex(h)) != value_topology.vertex(h);
-        let infinite = tags.edge(ends[0], ends[1]).is_some_and(|sharpness| sharpness >= SHARPNESS_INFINITE);
+        let infinite = topology.sharpness(h) >= SHARPNESS_INFINITE;
         for end in ends {
             let there = &mut at_vertices[end as usize];
             there.open |= value_topology.twin(h).is_none();
@@ -134,13 +131,12 @@ fn sharp_values(topology: &Topology, values: &ControlMesh, tags: &Tags) -> Vec<C
             on_boundary[end as usize] |= topology.twin(h).is_none();
         }
     }
-    let touching = touching_vertices(topology);
     let rule = data.face_varying_rule;
     let depends = matches!(rule, FaceVaryingRule::CornersPlus1 | FaceVaryingRule::CornersPlus2);
     let mut corners = Vec::new();
     for (vertex, at) in at_vertices.iter().enumerate() {
         let of_one_face = |(_, faces): &(u32, usize)| *faces == 1;
-        let all_sharp = touching.contains(&(vertex as u32))
+        let all_sharp = topology.touches(vertex as u32)
             || match at.faces.len() {
                 1 if rule == FaceVaryingRule::CornersPlus2 => at.open && !on_boundary[vertex],
                 1 => false,
@@ -152,9 +148,9 @@ fn sharp_values(topology: &Topology, values: &ControlMesh, tags: &Tags) -> Vec<C
         let lone = at.face_count() == 1 && data.boundary == BoundaryRule::EdgeAndCorner;
         for (value, faces) in &at.faces {
             let corner = *faces == 1 && (rule != FaceVaryingRule::None || lone);
-            let own = tags.vertex(vertex as u32);
-            let sharpness = if all_sharp || corner { Some(SHARPNESS_INFINITE) } else { own };
-            corners.extend(sharpness.map(|sharpness| Corner { vertex: *value, sharpness }));
+            let own = topology.mesh().vertex_sharpness(vertex as u32);
+            let sharpness = if all_sharp || corner { SHARPNESS_INFINITE } else { own };
+            corners.extend((sharpness > 0.0).then_some(Corner { vertex: *value, sharpness }));
         }
     }
     corners

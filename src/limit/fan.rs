@@ -1,8 +1,8 @@
 //! How the neighbourhood of a vertex is refined, as weights of its one-ring: what a face that is subdivided on its own takes
 //! from the faces around its corners.
 
-use super::local::{Local, Tags};
-use super::refine::{refine, touching_vertices};
+use super::local::Local;
+use super::refine::refine;
 use super::sharpness::{children, is_semi_sharp};
 use crate::mesh::{ControlMesh, Corner, Crease, CreaseMethod, MeshData, MeshError, SHARPNESS_INFINITE};
 use crate::patch::{Blend, Frame, RingValues, Row};
@@ -68,29 +68,22 @@ pub(crate) struct FanRows {
 }
 
 /// The fans of a mesh of quads.
-pub(crate) struct Fans<'t, 'm> {
-    topology: &'t Topology<'m>,
-    tags: Tags,
+pub(crate) struct Fans<'t> {
+    topology: &'t Topology,
 }
 
-impl<'t, 'm> Fans<'t, 'm> {
-    pub(crate) fn new(topology: &'t Topology<'m>) -> Self {
-        let mut tags = Tags::new(topology.mesh().data());
-        tags.sharpen(touching_vertices(topology));
-        Self { topology, tags }
+impl<'t> Fans<'t> {
+    pub(crate) fn new(topology: &'t Topology) -> Self {
+        Self { topology }
     }
 
     /// The fan around the vertex from which a half-edge starts.
     pub(crate) fn around(&self, half_edge: u32) -> Fan {
         let topology = self.topology;
         let (half_edges, open) = walk(topology, half_edge);
-        let sharpness = |&h: &u32| match topology.twin(h) {
-            Some(_) => self.tags.edge(topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h))).unwrap_or(0.0),
-            None => SHARPNESS_INFINITE,
-        };
         let end = open.then_some(SHARPNESS_INFINITE);
-        let sharpness = half_edges.iter().map(sharpness).chain(end).collect();
-        let vertex_sharpness = self.tags.vertex(topology.mesh_vertex(half_edge)).unwrap_or(0.0);
+        let sharpness = half_edges.iter().map(|&h| topology.sharpness(h)).chain(end).collect();
+        let vertex_sharpness = topology.vertex_sharpness(topology.mesh_vertex(half_edge));
         Fan { half_edges, open, sharpness, vertex_sharpness, method: topology.mesh().data().crease_method }
     }
 
@@ -98,23 +91,21 @@ impl<'t, 'm> Fans<'t, 'm> {
     /// what is sharp.
     pub(crate) fn rows(&self, fan: &Fan) -> Result<FanRows, MeshError> {
         if !fan.looks_further() {
-            let mesh = ControlMesh::new(self.alone(fan))?;
-            let rows = (0..mesh.vertex_count() as u32).map(Row::unit).collect();
-            return follow(mesh, rows);
+            let topology = Topology::new(&ControlMesh::new(self.alone(fan))?);
+            let rows = (0..topology.mesh().vertex_count() as u32).map(Row::unit).collect();
+            return follow(topology, rows);
         }
         let start = fan.half_edges[0];
         let face = self.topology.face(start);
         let first = start as usize - self.topology.mesh().face_corners(face).start;
-        let part = Local::cut(self.topology.mesh(), &self.tags, face, first, DVec3::ZERO);
-        let mesh = ControlMesh::new(part.data)?;
-        let topology = Topology::new(&mesh);
-        let mut rows = vec![Row::default(); mesh.vertex_count()];
+        let part = Local::cut(self.topology, face, first, DVec3::ZERO);
+        let topology = Topology::new(&ControlMesh::new(part.data)?);
+        let mut rows = vec![Row::default(); topology.mesh().vertex_count()];
         // A vertex that is there twice may be either.
         for (unknown, vertex) in ring_vertices(&topology).into_iter().enumerate() {
             rows[vertex as usize] = Row::unit(unknown as u32);
         }
-        drop(topology);
-        follow(mesh, rows)
+        follow(topology, rows)
     }
 
     /// The fan as a mesh, in which it starts with half-edge 0.
@@ -139,7 +130,7 @@ impl<'t, 'm> Fans<'t, 'm> {
 }
 
 /// The half-edges around the vertex from which one starts, counter-clockwise, from the boundary if there is one, which is told.
-fn walk(topology: &Topology, half_edge: u32) -> (Vec<u32>, bool) {
+pub(super) fn walk(topology: &Topology, half_edge: u32) -> (Vec<u32>, bool) {
     let mut start = half_edge;
     let open = loop {
         match topology.twin(start) {
@@ -169,10 +160,9 @@ fn ring_vertices(topology: &Topology) -> Vec<u32> {
 
 /// Refines a mesh and follows the vertex from which half-edge 0 starts: in each refined mesh half-edge 0 starts from its child,
 /// along the child of the same edge. `rows` are the vertices of the mesh.
-fn follow(mut mesh: ControlMesh, mut rows: Vec<Row>) -> Result<FanRows, MeshError> {
+fn follow(mut topology: Topology, mut rows: Vec<Row>) -> Result<FanRows, MeshError> {
     let mut of_fan = FanRows { vertex: Vec::new(), spokes: Default::default(), tangents: Vec::new() };
     for level in 0..=LEVELS {
-        let topology = Topology::new(&mesh);
         of_fan.tangents.push(tangents(&topology, &rows));
         if level > 0 {
             of_fan.vertex.push(rows[topology.mesh_vertex(0) as usize].clone());
@@ -184,13 +174,14 @@ fn follow(mut mesh: ControlMesh, mut rows: Vec<Row>) -> Result<FanRows, MeshErro
         if level < LEVELS {
             let refined = refine(&topology)?;
             let mut next = vec![Row::default(); refined.mesh.vertex_count()];
-            for vertex in ring_vertices(&Topology::new(&refined.mesh)) {
+            let fine = Topology::new(&refined.mesh);
+            for vertex in ring_vertices(&fine) {
                 let stencil = &refined.stencils;
                 let terms = stencil.offsets[vertex as usize] as usize..stencil.offsets[vertex as usize + 1] as usize;
                 let terms = stencil.weights[terms.clone()].iter().zip(&stencil.indices[terms]);
                 next[vertex as usize] = Row::sum(terms.map(|(&weight, &index)| (weight, &rows[index as usize])));
             }
-            (mesh, rows) = (refined.mesh, next);
+            (topology, rows) = (fine, next);
         }
     }
     Ok(of_fan)

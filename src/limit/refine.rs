@@ -9,7 +9,7 @@ use crate::patch::{Blend, Row};
 use crate::topology::{Topology, draws_face};
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// A refined mesh and where it came from.
 #[derive(Debug, Clone)]
@@ -85,22 +85,20 @@ struct SharpEnd {
     child: f32,
 }
 
-struct Step<'t, 'm> {
-    topology: &'t Topology<'m>,
+struct Step<'t> {
+    topology: &'t Topology,
     /// The edge of each half-edge.
     edges: Vec<u32>,
     /// A half-edge of each edge.
     edge_half_edges: Vec<u32>,
-    /// Sharpness of the edges that have any, boundaries included.
-    sharpness: HashMap<u32, f32>,
     /// The sharp edge ends of the vertices that have any.
     sharp_ends: HashMap<u32, Vec<(u32, SharpEnd)>>,
     /// Sharpness of the manifold vertices that have any.
     vertex_sharpness: HashMap<u32, f32>,
 }
 
-impl<'t, 'm> Step<'t, 'm> {
-    fn new(topology: &'t Topology<'m>) -> Self {
+impl<'t> Step<'t> {
+    fn new(topology: &'t Topology) -> Self {
         let corners = topology.mesh().corner_count() as u32;
         let mut edges = vec![0; corners as usize];
         let mut edge_half_edges = Vec::new();
@@ -113,15 +111,9 @@ impl<'t, 'm> Step<'t, 'm> {
                 }
             };
         }
-        let mut step = Self {
-            topology,
-            edges,
-            edge_half_edges,
-            sharpness: HashMap::new(),
-            sharp_ends: HashMap::new(),
-            vertex_sharpness: HashMap::new(),
-        };
-        step.find_sharp_edges();
+        let mut step =
+            Self { topology, edges, edge_half_edges, sharp_ends: HashMap::new(), vertex_sharpness: HashMap::new() };
+        step.find_sharp_ends();
         step.find_sharp_vertices();
         step
     }
@@ -140,34 +132,19 @@ impl<'t, 'm> Step<'t, 'm> {
         [self.topology.vertex(h), self.topology.vertex(self.topology.next(h))]
     }
 
-    fn find_sharp_edges(&mut self) {
+    fn find_sharp_ends(&mut self) {
         let topology = self.topology;
-        let key = |a: u32, b: u32| (a.min(b), a.max(b));
-        let creases: HashMap<_, _> =
-            topology.mesh().data().creases.iter().map(|c| (key(c.vertices[0], c.vertices[1]), c.sharpness)).collect();
-        for (edge, &h) in self.edge_half_edges.iter().enumerate() {
-            let sharpness = if topology.twin(h).is_none() {
-                SHARPNESS_INFINITE
-            } else if creases.is_empty() {
-                0.0
-            } else {
-                let ends = key(topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h)));
-                creases.get(&ends).copied().unwrap_or(0.0)
-            };
+        for (edge, &h) in (0..).zip(&self.edge_half_edges) {
+            let sharpness = topology.sharpness(h);
             if sharpness > 0.0 {
-                self.sharpness.insert(edge as u32, sharpness);
-            }
-        }
-        for (&edge, &sharpness) in &self.sharpness {
-            let [a, b] = self.ends(edge);
-            for (near, far) in [(a, b), (b, a)] {
-                let end = SharpEnd { far: topology.source(far), sharpness, child: 0.0 };
-                self.sharp_ends.entry(near).or_default().push((edge, end));
+                let [a, b] = self.ends(edge);
+                for (near, far) in [(a, b), (b, a)] {
+                    let end = SharpEnd { far: topology.source(far), sharpness, child: 0.0 };
+                    self.sharp_ends.entry(near).or_default().push((edge, end));
+                }
             }
         }
         for ends in self.sharp_ends.values_mut() {
-            // A hash map gave them in any order.
-            ends.sort_unstable_by_key(|(edge, _)| *edge);
             let sharpness: Vec<f32> = ends.iter().map(|(_, end)| end.sharpness).collect();
             let children = children(topology.mesh().data().crease_method, &sharpness);
             ends.iter_mut().zip(children).for_each(|((_, end), child)| end.child = child);
@@ -176,19 +153,15 @@ impl<'t, 'm> Step<'t, 'm> {
 
     fn find_sharp_vertices(&mut self) {
         let topology = self.topology;
-        let data = topology.mesh().data();
-        let tagged: HashMap<u32, f32> = data.corners.iter().map(|c| (c.vertex, c.sharpness)).collect();
-        let touching = touching_vertices(topology);
-        let corners_are_sharp = data.boundary == BoundaryRule::EdgeAndCorner;
+        let corners_are_sharp = topology.mesh().data().boundary == BoundaryRule::EdgeAndCorner;
         for h in 0..topology.mesh().corner_count() as u32 {
-            let vertex = topology.vertex(h);
             let lone = topology.twin(h).is_none() && topology.twin(topology.prev(h)).is_none();
-            if (lone && corners_are_sharp) || touching.contains(&topology.source(vertex)) {
-                self.vertex_sharpness.insert(vertex, SHARPNESS_INFINITE);
-            } else if let Some(&sharpness) = tagged.get(&topology.source(vertex))
-                && sharpness > 0.0
-            {
-                self.vertex_sharpness.insert(vertex, sharpness);
+            let sharpness = match lone && corners_are_sharp {
+                true => SHARPNESS_INFINITE,
+                false => topology.vertex_sharpness(topology.mesh_vertex(h)),
+            };
+            if sharpness > 0.0 {
+                self.vertex_sharpness.insert(topology.vertex(h), sharpness);
             }
         }
     }
@@ -227,7 +200,7 @@ impl<'t, 'm> Step<'t, 'm> {
         let (from, to) = (self.unit(h), self.unit(topology.next(h)));
         let sharp = Row::sum([(0.5, &from), (0.5, &to)]);
         let Some(twin) = topology.twin(h) else { return sharp };
-        let sharpness = self.sharpness.get(&edge).copied().unwrap_or(0.0);
+        let sharpness = topology.sharpness(h);
         let children = self.ends(edge).map(|vertex| self.child_sharpness(edge, vertex));
         let weight = f64::from(edge_weight(topology.mesh().data().crease_method, sharpness, children));
         if weight == 1.0 {
@@ -313,7 +286,7 @@ impl<'t, 'm> Step<'t, 'm> {
         let mut creases = Vec::new();
         for (edge, &h) in self.edge_half_edges.iter().enumerate() {
             let edge = edge as u32;
-            if self.topology.twin(h).is_none() || !self.sharpness.contains_key(&edge) {
+            if self.topology.twin(h).is_none() || self.topology.sharpness(h) == 0.0 {
                 continue;
             }
             for vertex in self.ends(edge) {
@@ -327,24 +300,10 @@ impl<'t, 'm> Step<'t, 'm> {
     }
 
     fn child_corners(&self) -> Vec<Corner> {
-        let mut tagged: HashMap<u32, f32> =
-            self.topology.mesh().data().corners.iter().map(|c| (c.vertex, c.sharpness)).collect();
-        // In the refined mesh the fans are apart: from now on a tag keeps them together.
-        tagged.extend(touching_vertices(self.topology).into_iter().map(|v| (v, SHARPNESS_INFINITE)));
-        let mut corners: Vec<Corner> = (0..self.topology.vertex_count() as u32)
-            .filter(|_| !tagged.is_empty())
-            .filter_map(|vertex| {
-                let sharpness = decrement(*tagged.get(&self.topology.source(vertex))?);
-                (sharpness > 0.0).then_some(Corner { vertex, sharpness })
-            })
-            .collect();
-        corners.sort_unstable_by_key(|c| c.vertex);
-        corners
+        // In the refined mesh touching fans are apart: from now on a tag keeps them together.
+        let sharpness = |vertex| decrement(self.topology.vertex_sharpness(self.topology.source(vertex)));
+        let vertices =
+            (0..self.topology.vertex_count() as u32).map(|vertex| Corner { vertex, sharpness: sharpness(vertex) });
+        vertices.filter(|corner| corner.sharpness > 0.0).collect()
     }
-}
-
-/// The mesh vertices in which several fans of faces touch: infinitely sharp.
-pub(super) fn touching_vertices(topology: &Topology) -> HashSet<u32> {
-    let split = topology.mesh().vertex_count() as u32..topology.vertex_count() as u32;
-    split.map(|v| topology.source(v)).collect()
 }

@@ -1,14 +1,16 @@
 //! The limit surface at any parameters.
 
-use super::local::{Local, Tags};
+use super::fan::walk;
+use super::local::Local;
 use super::masks::{corner_limit, dart_edge};
-use super::refine::{refine, touching_vertices};
-use crate::mesh::{ControlMesh, MeshError, SHARPNESS_INFINITE};
+use super::refine::refine;
+use super::sharpness::is_semi_sharp;
+use crate::mesh::{ControlMesh, MeshError};
 use crate::patch::bicubic::Basis;
 use crate::patch::{Sample, Scheme};
 use crate::topology::{PatchKind, Topology, draws_face};
 use glam::DVec3;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// How often a face is quartered around a point before the point counts as the vertex it is so close to.
 ///
@@ -55,9 +57,8 @@ const MAX_COORDINATE: f64 = 1e38;
 /// assert!(centre.normal.dot(centre.position) > 0.0);
 /// # Ok::<(), ash_subdiv::MeshError>(())
 /// ```
-pub struct LimitSurface<'m> {
-    mesh: &'m ControlMesh,
-    tags: Tags,
+pub struct LimitSurface {
+    topology: Arc<Topology>,
     drawn: Vec<bool>,
     /// A face corner at each vertex.
     corners: Vec<(u32, u32)>,
@@ -77,12 +78,21 @@ pub struct LimitSample {
     pub normal: DVec3,
 }
 
-impl<'m> LimitSurface<'m> {
+impl LimitSurface {
     /// Nothing is refined yet.
     ///
     /// # Errors
     /// [`MeshError::TooFar`] if a coordinate is beyond 1e38.
-    pub fn new(mesh: &'m ControlMesh) -> Result<Self, MeshError> {
+    pub fn new(mesh: &ControlMesh) -> Result<Self, MeshError> {
+        Self::over(&Arc::new(Topology::new(mesh)))
+    }
+
+    /// As [`LimitSurface::new`], of the mesh of a topology that there is.
+    ///
+    /// # Errors
+    /// As [`LimitSurface::new`].
+    pub fn over(topology: &Arc<Topology>) -> Result<Self, MeshError> {
+        let mesh = topology.mesh();
         let positions = &mesh.data().positions;
         if let Some(vertex) = positions.iter().position(|p| p.iter().any(|x| x.abs() > MAX_COORDINATE)) {
             let (position, max) = (positions[vertex], MAX_COORDINATE);
@@ -96,10 +106,7 @@ impl<'m> LimitSurface<'m> {
             }
         }
         let faces = (0..mesh.face_count()).map(|_| OnceLock::new()).collect();
-        let topology = Topology::new(mesh);
-        let mut tags = Tags::new(mesh.data());
-        tags.sharpen(touching_vertices(&topology));
-        Ok(Self { mesh, tags, drawn: draws_face(&topology), corners, faces })
+        Ok(Self { topology: topology.clone(), drawn: draws_face(topology), corners, faces })
     }
 
     /// Whether the face is part of the surface: no hole and, under [`crate::mesh::BoundaryRule::None`], on no boundary.
@@ -109,7 +116,7 @@ impl<'m> LimitSurface<'m> {
 
     /// The parts of a face: -1 for a quad, else the corners.
     pub fn subs(&self, face: u32) -> std::ops::Range<i32> {
-        match self.mesh.face(face).len() {
+        match self.topology.mesh().face(face).len() {
             4 => -1..0,
             size => 0..size as i32,
         }
@@ -122,9 +129,8 @@ impl<'m> LimitSurface<'m> {
     pub fn evaluate(&self, face: u32, sub: i32, u: f64, v: f64) -> LimitSample {
         let subs = self.subs(face);
         assert!(subs.contains(&sub), "face {face} has parts {subs:?}, not {sub}");
-        let root = get_or_set(&self.faces[face as usize], || {
-            Node::new(Local::cut(self.mesh, &self.tags, face, 0, DVec3::ZERO))
-        });
+        let root =
+            get_or_set(&self.faces[face as usize], || Node::new(Local::cut(&self.topology, face, 0, DVec3::ZERO)));
         let start = if sub < 0 { root } else { root.child(sub as usize) };
         start.evaluate(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0))
     }
@@ -138,7 +144,7 @@ impl<'m> LimitSurface<'m> {
     /// If there is no such vertex.
     pub fn limit_vertex(&self, vertex: u32) -> Sample<DVec3> {
         let (face, k) = self.corners[vertex as usize];
-        let sample = match self.mesh.face(face).len() {
+        let sample = match self.topology.mesh().face(face).len() {
             4 => {
                 let [u, v] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][k as usize];
                 self.evaluate(face, -1, u, v)
@@ -164,8 +170,8 @@ enum Shape {
 
 struct Irregular {
     /// The face is face 0.
-    mesh: ControlMesh,
-    refined: OnceLock<(ControlMesh, Tags)>,
+    topology: Topology,
+    refined: OnceLock<Topology>,
     /// Of a quad: by quadrant, corner k of child k being corner k of the face.
     children: Box<[OnceLock<Node>]>,
 }
@@ -187,34 +193,29 @@ const SOUND: &str = "a part of a control mesh is a control mesh";
 
 impl Node {
     fn new(local: Local) -> Self {
-        let mesh = ControlMesh::new(local.data).expect(SOUND);
-        let topology = Topology::new(&mesh);
+        let topology = Topology::new(&ControlMesh::new(local.data).expect(SOUND));
+        let mesh = topology.mesh();
         let mut corners = mesh.face_corners(0);
         let is_plain = |h: usize| {
             let ring = &topology.rings()[topology.place(h as u32).ring as usize];
-            dart_edge(&topology, ring).is_none() && !is_semi_sharp_at(&mesh, topology.mesh_vertex(h as u32))
+            dart_edge(&topology, ring).is_none() && !is_semi_sharp_at(&topology, h as u32)
         };
         let shape = if topology.patch_kind(0) == Some(PatchKind::Regular) && corners.all(is_plain) {
             let points = Scheme::Gregory.control_points(&topology, 0, PatchKind::Regular, |v| mesh.position(v));
             Shape::Regular(Box::new(points.try_into().expect("16 points of a regular patch")))
         } else {
-            drop(topology);
             let children = (0..mesh.face(0).len()).map(|_| OnceLock::new()).collect();
-            Shape::Irregular(Box::new(Irregular { mesh, refined: OnceLock::new(), children }))
+            Shape::Irregular(Box::new(Irregular { topology, refined: OnceLock::new(), children }))
         };
         Self { origin: local.origin, shape }
     }
 
     fn child(&self, k: usize) -> &Self {
         let Shape::Irregular(irregular) = &self.shape else { unreachable!("regular faces are evaluated as they are") };
-        let (mesh, tags) = get_or_set(&irregular.refined, || {
-            let refined = refine(&Topology::new(&irregular.mesh)).expect(SOUND).mesh;
-            let tags = Tags::new(refined.data());
-            (refined, tags)
-        });
+        let refined = get_or_set(&irregular.refined, || Topology::new(&refine(&irregular.topology).expect(SOUND).mesh));
         // Child k begins at corner k; that of a quad is turned so that u and v run as in its parent.
         let first = if irregular.children.len() == 4 { (4 - k) % 4 } else { 0 };
-        get_or_set(&irregular.children[k], || Self::new(Local::cut(mesh, tags, k as u32, first, self.origin)))
+        get_or_set(&irregular.children[k], || Self::new(Local::cut(refined, k as u32, first, self.origin)))
     }
 
     /// The surface over a quad.
@@ -260,12 +261,12 @@ impl Irregular {
             return None;
         }
         let k = quadrant(u, v);
-        let topology = Topology::new(&self.mesh);
+        let topology = &self.topology;
         let ring = &topology.rings()[topology.place(k as u32).ring as usize];
-        if !ring.quads || is_semi_sharp_at(&self.mesh, self.mesh.face(0)[k]) {
+        if !ring.quads || is_semi_sharp_at(topology, k as u32) {
             return None;
         }
-        let mut limit = corner_limit(&topology, k as u32);
+        let mut limit = corner_limit(topology, k as u32);
         // Tangents along the plus and the minus edge of corner k.
         let (plus, minus) = (limit.du, limit.dv);
         (limit.du, limit.dv) = [(plus, minus), (-minus, plus), (-plus, -minus), (minus, -plus)][k];
@@ -273,11 +274,11 @@ impl Irregular {
     }
 }
 
-/// Whether an edge or the vertex has a sharpness that refinement will use up.
-fn is_semi_sharp_at(mesh: &ControlMesh, vertex: u32) -> bool {
-    let data = mesh.data();
-    data.creases.iter().any(|c| c.vertices.contains(&vertex) && c.sharpness < SHARPNESS_INFINITE)
-        || data.corners.iter().any(|c| c.vertex == vertex && c.sharpness < SHARPNESS_INFINITE)
+/// Whether the vertex that a half-edge starts from, or an edge there, has a sharpness that refinement will use up.
+fn is_semi_sharp_at(topology: &Topology, half_edge: u32) -> bool {
+    let edges = walk(topology, half_edge).0;
+    is_semi_sharp(topology.vertex_sharpness(topology.mesh_vertex(half_edge)))
+        || edges.into_iter().any(|h| is_semi_sharp(topology.sharpness(h)))
 }
 
 fn evaluate_regular(points: &[DVec3; 16], u: f64, v: f64) -> LimitSample {

@@ -7,7 +7,7 @@ use crate::limit::LimitSurface;
 use crate::mesh::{ControlMesh, MeshError};
 use crate::patch::{Fallback, Scheme, Undefined};
 use crate::table::{PatchPlan, prepare};
-use crate::topology::{PatchKind, Topology};
+use crate::topology::PatchKind;
 
 /// Options of the measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,16 +120,12 @@ pub fn surface_errors(
     let [low, high] = mesh.bounds();
     let diagonal = low.distance(high);
     let prepared = prepare(mesh, options.refine)?;
-    let topology = Topology::new(&prepared.mesh);
-    let plan = |scheme: &Scheme| (*scheme, PatchPlan::new(&topology, *scheme, options.fallback));
+    let topology = prepared.topology();
+    let plan = |scheme: &Scheme| (*scheme, PatchPlan::new(topology, *scheme, options.fallback));
     let plans: Vec<_> = schemes.iter().map(plan).collect();
     let defined = plans.iter().filter_map(|(_, plan)| plan.as_ref().ok());
-    let surfaces = Surfaces {
-        mesh: &prepared.mesh,
-        topology: &topology,
-        faces: drawn_faces(&topology),
-        schemes: defined.map(SchemePatches::new).collect(),
-    };
+    let surfaces =
+        Surfaces { topology, faces: drawn_faces(topology), schemes: defined.map(SchemePatches::new).collect() };
 
     let faces = surfaces.for_each(|limit, face| measure_face(&surfaces, limit, face, options.samples))?;
     let areas: Vec<f64> = faces.iter().map(|face| face.area).collect();

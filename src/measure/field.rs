@@ -3,7 +3,6 @@
 use super::surfaces::{Parameters, Surfaces, angle};
 use crate::mesh::MeshError;
 use crate::table::{CpuSurface, grid_parameters};
-use crate::topology::Topology;
 
 /// Quantity that an error is measured of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -36,11 +35,9 @@ pub enum Quantity {
 /// # Panics
 /// If `n` is below 2.
 pub fn error_field(surface: &CpuSurface, quantity: Quantity, n: u32) -> Result<Vec<Vec<f64>>, MeshError> {
-    let mesh = &*surface.prepared().mesh;
-    let topology = Topology::new(mesh);
     let patches = surface.plan().patches();
     let faces = patches.iter().map(|patch| (patch.face, patch.kind)).collect();
-    let surfaces = Surfaces { mesh, topology: &topology, faces, schemes: Vec::new() };
+    let surfaces = Surfaces { topology: surface.prepared().topology(), faces, schemes: Vec::new() };
     let samples = surface.grid(&surface.control_points(|p| p), n);
     surfaces.for_each(|limit, patch| {
         let kind = patches[patch].kind;

@@ -6,7 +6,6 @@ use crate::limit::LimitSurface;
 use crate::mesh::ControlMesh;
 use crate::renderer::{Error, View, is_size};
 use crate::table::{Patch, prepare};
-use crate::topology::Topology;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec3};
 use rayon::prelude::*;
 
@@ -82,7 +81,7 @@ pub fn screen_error(
     let screen = Screen::new(&draw.view)?;
     let both_sides = mesh.boundary_edge_count() > 0 || !mesh.data().holes.is_empty();
     let prepared = prepare(mesh, refine)?;
-    let topology = Topology::new(&prepared.mesh);
+    let (mesh, topology) = (prepared.mesh(), prepared.topology());
     let plan = captured.tables().plan();
     let (mut triangles, mut shift, mut shape, mut facets) = (0, Spread::new(), Spread::new(), Spread::new());
     captured.triangles(draw, |captured| {
@@ -91,10 +90,10 @@ pub fn screen_error(
         captured.par_sort_unstable_by_key(key);
         let of_patches: Vec<_> = captured.chunk_by(|a, b| a[0].patch == b[0].patch).collect();
         for chunk in of_patches.chunks(CHUNK) {
-            let limit = LimitSurface::new(&prepared.mesh)?;
+            let limit = LimitSurface::over(topology)?;
             let measure = |triangles: &&[[CapturedVertex; 3]]| {
                 let patch = plan.patches()[triangles[0][0].patch as usize];
-                let points = patch.control_points(&topology, plan.fallback_rings(), |v| prepared.mesh.position(v));
+                let points = patch.control_points(topology, plan.fallback_rings(), |v| mesh.position(v));
                 let surface = Surface { limit: &limit, both_sides, patch, points };
                 triangles.iter().flat_map(|triangle| screen.measure(&surface, triangle)).collect()
             };
@@ -129,7 +128,7 @@ struct Seen {
 
 /// What a patch and the triangles over it approximate.
 struct Surface<'s> {
-    limit: &'s LimitSurface<'s>,
+    limit: &'s LimitSurface,
     /// Whether what faces away is seen.
     both_sides: bool,
     patch: Patch,

@@ -1,12 +1,13 @@
 //! The surfaces that are compared: the patches of schemes, the limit surface, and where both are asked at.
 
 use crate::limit::{LimitSample, LimitSurface};
-use crate::mesh::{ControlMesh, MeshError};
+use crate::mesh::MeshError;
 use crate::patch::Sample;
 use crate::table::{Patch, PatchPlan};
 use crate::topology::{PatchKind, Topology, draws_face};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Patches measured with one limit surface, which remembers what it has refined: about 0.1 MB an irregular face.
 const CHUNK: usize = 4096;
@@ -34,8 +35,7 @@ impl<'p> SchemePatches<'p> {
 
 /// The patches of all schemes that have them, and the surface they approximate.
 pub(super) struct Surfaces<'s> {
-    pub mesh: &'s ControlMesh,
-    pub topology: &'s Topology<'s>,
+    pub topology: &'s Arc<Topology>,
     /// Faces that are drawn, and the patches they become.
     pub faces: Vec<(u32, PatchKind)>,
     pub schemes: Vec<SchemePatches<'s>>,
@@ -49,7 +49,7 @@ impl Surfaces<'_> {
     ) -> Result<Vec<R>, MeshError> {
         let mut results = Vec::with_capacity(self.faces.len());
         for start in (0..self.faces.len()).step_by(CHUNK) {
-            let limit = LimitSurface::new(self.mesh)?;
+            let limit = LimitSurface::over(self.topology)?;
             let chunk = start..(start + CHUNK).min(self.faces.len());
             results.par_extend(chunk.into_par_iter().map(|face| work(&limit, face)));
         }
@@ -59,7 +59,7 @@ impl Surfaces<'_> {
     /// Control points of one of the schemes over one of the faces.
     pub(super) fn control_points(&self, scheme: usize, face: usize) -> Vec<DVec3> {
         let SchemePatches { plan, patches } = &self.schemes[scheme];
-        patches[face].control_points(self.topology, plan.fallback_rings(), |vertex| self.mesh.position(vertex))
+        patches[face].control_points(self.topology, plan.fallback_rings(), |vertex| self.topology.mesh().position(vertex))
     }
 
     /// The patch at parameters of a part of the limit surface.

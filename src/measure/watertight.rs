@@ -8,7 +8,7 @@ use crate::renderer::{
     DrawItem, Edges, Error, Factor, Fragment, ModelOptions, ModelTables, Options, Renderer, Style, Target, View,
 };
 use crate::table::{Patch, prepare};
-use crate::topology::{PatchKind, Topology};
+use crate::topology::PatchKind;
 use ash::vk;
 use rayon::prelude::*;
 
@@ -78,13 +78,13 @@ impl Seams {
     /// As [`prepare`].
     pub fn new(mesh: &ControlMesh, refine: u32, tables: &ModelTables) -> Result<Self, Error> {
         let prepared = prepare(mesh, refine)?;
-        let topology = Topology::new(&prepared.mesh);
+        let topology = prepared.topology();
         let plan = tables.plan();
-        let edges = Edges::new(&topology, plan);
+        let edges = Edges::new(topology, plan);
         let mut patches = vec![0; edges.vertices.len()];
         edges.of_corners.iter().for_each(|&edge| patches[edge as usize] += 1);
         let mut smooth = vec![true; edges.vertices.len()];
-        let half_edges = plan.corners(&topology);
+        let half_edges = plan.corners(topology);
         for (&h, &edge) in half_edges.iter().zip(&edges.of_corners) {
             smooth[edge as usize] = topology.is_within_rings(h);
         }

@@ -88,7 +88,7 @@ fn for_each_half_edge(face_offsets: &[u32], face_vertices: &[u32], mut visit: im
     }
 }
 
-/// A half-edge of each crease's edge, [`NO_TWIN`] where there is no such edge.
+/// The lower half-edge of each crease's edge, [`NO_TWIN`] where there is no such edge.
 pub(crate) fn edges_of_creases(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Vec<u32> {
     if data.creases.is_empty() {
         return Vec::new();

@@ -1,5 +1,6 @@
 use super::{MeshError, adjacency};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A sharpness from which on an edge or vertex is infinitely sharp, as in OpenSubdiv.
 pub const SHARPNESS_INFINITE: f32 = 10.0;
@@ -110,7 +111,7 @@ pub struct MeshData {
     pub normals: Option<FaceVarying<[f32; 3]>>,
     /// Sharp edges. Of several for one edge the last counts.
     pub creases: Vec<Crease>,
-    /// Sharp vertices.
+    /// Sharp vertices. Of several for one vertex the last counts.
     pub corners: Vec<Corner>,
     /// Faces that shape the surface but are not drawn.
     pub holes: Vec<u32>,
@@ -129,13 +130,25 @@ pub struct MeshData {
 /// Vertices, faces and face corners keep the numbers they were given. A *corner number* (also: half-edge number) is
 /// an index into [`MeshData::face_vertices`]; half-edge `h` runs from its corner to the next corner of the face.
 ///
+/// A mesh does not change: a clone of it is another handle to the same arrays.
+///
 /// # Panics
 /// Methods that take the number of a vertex or a face panic if there is none with that number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControlMesh {
+    checked: Arc<Checked>,
+}
+
+/// The parts of a mesh, and what was found while they were checked.
+#[derive(Debug, PartialEq)]
+struct Checked {
     data: MeshData,
     face_offsets: Vec<u32>,
     twins: Vec<u32>,
+    /// The crease sharpness of each half-edge's edge; empty where there are no creases.
+    edge_sharpness: Vec<f32>,
+    /// The corner sharpness of each vertex; empty where there are no corners.
+    vertex_sharpness: Vec<f32>,
 }
 
 impl ControlMesh {
@@ -148,76 +161,101 @@ impl ControlMesh {
     pub fn new(mut data: MeshData) -> Result<Self, MeshError> {
         let face_offsets = check(&data)?;
         let twins = adjacency::twins(data.positions.len(), &face_offsets, &data.face_vertices)?;
-        check_tags(&data, &face_offsets, &twins)?;
+        check_tags(&data)?;
+        let edge_sharpness = edge_sharpness(&data, &face_offsets, &twins)?;
+        let vertex_sharpness = vertex_sharpness(&data);
         data.holes.sort_unstable();
         data.holes.dedup();
-        Ok(Self { data, face_offsets, twins })
+        Ok(Self { checked: Arc::new(Checked { data, face_offsets, twins, edge_sharpness, vertex_sharpness }) })
     }
 
     /// The parts, as given (holes sorted).
     pub fn data(&self) -> &MeshData {
-        &self.data
+        &self.checked.data
     }
 
     /// Gives the parts back, to be changed and checked again.
     pub fn into_data(self) -> MeshData {
-        self.data
+        match Arc::try_unwrap(self.checked) {
+            Ok(checked) => checked.data,
+            Err(shared) => shared.data.clone(),
+        }
     }
 
     /// The number of vertices.
     pub fn vertex_count(&self) -> usize {
-        self.data.positions.len()
+        self.checked.data.positions.len()
     }
 
     /// The number of faces, holes included.
     pub fn face_count(&self) -> usize {
-        self.data.face_sizes.len()
+        self.checked.data.face_sizes.len()
     }
 
     /// Corners (half-edges) of all faces together.
     pub fn corner_count(&self) -> usize {
-        self.data.face_vertices.len()
+        self.checked.data.face_vertices.len()
     }
 
     /// Edges, each counted once.
     pub fn edge_count(&self) -> usize {
-        self.corner_count() - self.twins.iter().enumerate().filter(|&(h, &t)| t < h as u32).count()
+        self.corner_count() - self.checked.twins.iter().enumerate().filter(|&(h, &t)| t < h as u32).count()
     }
 
     /// Edges with one face.
     pub fn boundary_edge_count(&self) -> usize {
-        self.twins.iter().filter(|&&t| t == adjacency::NO_TWIN).count()
+        self.checked.twins.iter().filter(|&&t| t == adjacency::NO_TWIN).count()
     }
 
     /// Where a vertex is, in object space.
     pub fn position(&self, vertex: u32) -> DVec3 {
-        self.data.positions[vertex as usize].into()
+        self.checked.data.positions[vertex as usize].into()
     }
 
     /// The vertices of a face, counter-clockwise.
     pub fn face(&self, face: u32) -> &[u32] {
-        &self.data.face_vertices[self.face_corners(face)]
+        &self.checked.data.face_vertices[self.face_corners(face)]
     }
 
     /// The corner numbers of a face.
     pub fn face_corners(&self, face: u32) -> std::ops::Range<usize> {
-        self.face_offsets[face as usize] as usize..self.face_offsets[face as usize + 1] as usize
+        self.checked.face_offsets[face as usize] as usize..self.checked.face_offsets[face as usize + 1] as usize
     }
 
     /// Prefix sums of the face sizes: one more than there are faces.
     pub fn face_offsets(&self) -> &[u32] {
-        &self.face_offsets
+        &self.checked.face_offsets
     }
 
     /// The half-edge on the other side of each half-edge, `u32::MAX` on a boundary.
     pub fn twins(&self) -> &[u32] {
-        &self.twins
+        &self.checked.twins
+    }
+
+    /// The sharpness of a half-edge's edge: that of its crease, else 0; [`SHARPNESS_INFINITE`] on a boundary.
+    pub fn sharpness(&self, half_edge: u32) -> f32 {
+        if self.checked.twins[half_edge as usize] == adjacency::NO_TWIN {
+            return SHARPNESS_INFINITE;
+        }
+        self.checked.edge_sharpness.get(half_edge as usize).copied().unwrap_or(0.0)
+    }
+
+    /// The sharpness of a vertex that is tagged as a corner, else 0.
+    pub fn vertex_sharpness(&self, vertex: u32) -> f32 {
+        self.checked.vertex_sharpness.get(vertex as usize).copied().unwrap_or(0.0)
+    }
+
+    /// Edges tagged as creases with a sharpness above zero, boundaries among them, each counted once.
+    pub fn creased_edge_count(&self) -> usize {
+        let Checked { edge_sharpness, twins, .. } = &*self.checked;
+        let lower = edge_sharpness.iter().zip(twins).zip(0..).filter(|&((&s, &twin), h)| s > 0.0 && h < twin);
+        lower.count()
     }
 
     /// Smallest and largest coordinates of the control points.
     pub fn bounds(&self) -> [DVec3; 2] {
         let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        for &position in &self.data.positions {
+        for &position in &self.checked.data.positions {
             bounds[0] = bounds[0].min(position.into());
             bounds[1] = bounds[1].max(position.into());
         }
@@ -232,7 +270,7 @@ impl ControlMesh {
 
     /// Positions in the precision of the GPU, in vertex order.
     pub fn positions_f32(&self) -> Vec<[f32; 3]> {
-        self.data.positions.iter().map(|p| p.map(|x| x as f32)).collect()
+        self.checked.data.positions.iter().map(|p| p.map(|x| x as f32)).collect()
     }
 }
 
@@ -309,7 +347,7 @@ fn check_face_varying<const N: usize>(
     Ok(())
 }
 
-fn check_tags(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Result<(), MeshError> {
+fn check_tags(data: &MeshData) -> Result<(), MeshError> {
     for (index, corner) in data.corners.iter().enumerate() {
         if corner.vertex as usize >= data.positions.len() {
             let count = data.positions.len();
@@ -322,14 +360,33 @@ fn check_tags(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Result<()
             return Err(MeshError::NoSuchFace { face, count: data.face_sizes.len() });
         }
     }
+    Ok(())
+}
+
+/// Crease sharpness by half-edge. Of several creases for one edge the last counts.
+fn edge_sharpness(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Result<Vec<f32>, MeshError> {
+    let mut sharpness = vec![0.0; if data.creases.is_empty() { 0 } else { twins.len() }];
     let found = adjacency::edges_of_creases(data, face_offsets, twins);
     for (index, (crease, edge)) in data.creases.iter().zip(found).enumerate() {
         check_sharpness("crease", index, crease.sharpness)?;
         if edge == adjacency::NO_TWIN {
             return Err(MeshError::NoSuchEdge { crease: index, edge: crease.vertices });
         }
+        sharpness[edge as usize] = crease.sharpness;
+        if let Some(of_twin) = sharpness.get_mut(twins[edge as usize] as usize) {
+            *of_twin = crease.sharpness;
+        }
     }
-    Ok(())
+    Ok(sharpness)
+}
+
+/// Corner sharpness by vertex. Of several corners for one vertex the last counts.
+fn vertex_sharpness(data: &MeshData) -> Vec<f32> {
+    let mut sharpness = vec![0.0; if data.corners.is_empty() { 0 } else { data.positions.len() }];
+    for corner in &data.corners {
+        sharpness[corner.vertex as usize] = corner.sharpness;
+    }
+    sharpness
 }
 
 fn check_sharpness(what: &'static str, index: usize, sharpness: f32) -> Result<(), MeshError> {

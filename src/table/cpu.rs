@@ -3,7 +3,7 @@
 use super::{FaceOrigin, Notice, PatchPlan, Prepared, TableError, prepare_patches};
 use crate::mesh::ControlMesh;
 use crate::patch::{Blend, Fallback, Point, Sample, Scheme};
-use crate::topology::{PatchKind, Topology};
+use crate::topology::PatchKind;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -19,17 +19,17 @@ use rayon::prelude::*;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct CpuSurface<'m> {
-    prepared: Prepared<'m>,
+pub struct CpuSurface {
+    prepared: Prepared,
     plan: PatchPlan,
 }
 
-impl<'m> CpuSurface<'m> {
+impl CpuSurface {
     /// Prepares `mesh` as [`prepare_patches`] does, with at least `refine` steps of refinement.
     ///
     /// # Errors
     /// A refined mesh that cannot be addressed; faces that the scheme has no patch for.
-    pub fn new(mesh: &'m ControlMesh, scheme: Scheme, refine: u32) -> Result<Self, TableError> {
+    pub fn new(mesh: &ControlMesh, scheme: Scheme, refine: u32) -> Result<Self, TableError> {
         Self::with_fallback(mesh, scheme, Fallback::Refuse, refine)
     }
 
@@ -38,7 +38,7 @@ impl<'m> CpuSurface<'m> {
     /// # Errors
     /// As [`CpuSurface::new`].
     pub fn with_fallback(
-        mesh: &'m ControlMesh,
+        mesh: &ControlMesh,
         scheme: Scheme,
         fallback: Fallback,
         refine: u32,
@@ -53,13 +53,13 @@ impl<'m> CpuSurface<'m> {
     }
 
     /// The mesh that the patches are of.
-    pub fn prepared(&self) -> &Prepared<'m> {
+    pub fn prepared(&self) -> &Prepared {
         &self.prepared
     }
 
     /// What a user will want to know about how the mesh is drawn.
     pub fn notices(&self) -> Vec<Notice> {
-        self.prepared.notices(&Topology::new(&self.prepared.mesh), &self.plan)
+        self.prepared.notices(&self.plan)
     }
 
     /// Where each patch comes from.
@@ -69,10 +69,9 @@ impl<'m> CpuSurface<'m> {
 
     /// The control points of every patch, combined from `value` of each position.
     pub fn control_points<T: Blend + Send>(&self, value: impl Fn(DVec3) -> T + Sync) -> Vec<Vec<T>> {
-        let mesh = &*self.prepared.mesh;
-        let topology = Topology::new(mesh);
+        let (mesh, topology) = (self.prepared.mesh(), self.prepared.topology());
         let of_patch = |patch: &super::Patch| {
-            patch.control_points(&topology, self.plan.fallback_rings(), |vertex| value(mesh.position(vertex)))
+            patch.control_points(topology, self.plan.fallback_rings(), |vertex| value(mesh.position(vertex)))
         };
         self.plan.patches().par_iter().map(of_patch).collect()
     }

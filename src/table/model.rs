@@ -87,30 +87,28 @@ impl ModelTables {
             true => prepare_quads(mesh, refine)?,
             false => prepare_patches(mesh, scheme, fallback, refine)?,
         };
-        let topology = Topology::new(&prepared.mesh);
-        let fans = subdivides.then(|| SubdivisionTable::new(&topology, &plan)).transpose()?;
+        let topology = prepared.topology();
+        let fans = subdivides.then(|| SubdivisionTable::new(topology, &plan)).transpose()?;
         let converts = options.evaluation == Evaluation::GeometryTwoPass;
         // The stencil table puts the patches in its own order, so it comes first.
         let stencils = (options.construction == Construction::Stencil && !subdivides || converts)
-            .then(|| StencilTable::new(&topology, &mut plan))
+            .then(|| StencilTable::new(topology, &mut plan))
             .transpose()?;
         let sharing = options.sharing();
         let shared = match sharing {
-            Sharing::Displacement => {
-                Some(SharedTable::with_texcoords(&topology, &plan).ok_or(TableError::NoTexcoords)?)
-            }
-            Sharing::Normals => Some(SharedTable::new(&topology, &plan)),
+            Sharing::Displacement => Some(SharedTable::with_texcoords(topology, &plan).ok_or(TableError::NoTexcoords)?),
+            Sharing::Normals => Some(SharedTable::new(topology, &plan)),
             Sharing::Positions => None,
         };
         if shared.is_some() && !scheme.is_watertight() {
             return Err(TableError::NothingShared { scheme });
         }
-        let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(&topology, &plan));
+        let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(topology, &plan));
         Ok(Self {
-            texcoords: plan.texcoords(&topology),
-            edges: options.edge_factors.then(|| Edges::new(&topology, &plan)),
+            texcoords: plan.texcoords(topology),
+            edges: options.edge_factors.then(|| Edges::new(topology, &plan)),
             origins: prepared.origins(&plan),
-            notices: prepared.notices(&topology, &plan),
+            notices: prepared.notices(&plan),
             plan,
             options,
             rings,
@@ -120,7 +118,7 @@ impl ModelTables {
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
-            patch_vertices: prepared.mesh.vertex_count(),
+            patch_vertices: prepared.mesh().vertex_count(),
             steps: prepared.steps,
         })
     }

@@ -6,8 +6,8 @@ use crate::mesh::{ControlMesh, MAX_CORNERS, MeshError, SHARPNESS_INFINITE};
 use crate::patch::{Fallback, Scheme};
 use crate::table::{Patch, PatchPlan, TableError};
 use crate::topology::{PatchKind, Ring, RingKind, SHARP_FROM, Topology};
-use std::borrow::Cow;
 use std::fmt;
+use std::sync::Arc;
 
 /// Where a face of the prepared mesh comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,9 +103,8 @@ impl fmt::Display for Notice {
 
 /// A mesh whose faces are patches, and the way there from the caller's mesh.
 #[derive(Debug, Clone)]
-pub struct Prepared<'m> {
-    /// Triangles and quads only, or pentagons too where the scheme has patches for them.
-    pub mesh: Cow<'m, ControlMesh>,
+pub struct Prepared {
+    topology: Arc<Topology>,
     /// The refinement steps, in order. Each step's inputs are the outputs of the one before.
     pub steps: Vec<Stencils>,
     /// For each face of the prepared mesh; empty where nothing was refined.
@@ -117,17 +116,27 @@ pub struct Prepared<'m> {
     split_vertices: usize,
 }
 
-impl<'m> Prepared<'m> {
+impl Prepared {
     /// The mesh as it is.
-    fn of(mesh: &'m ControlMesh) -> Self {
+    fn of(mesh: &ControlMesh) -> Self {
         Self {
-            mesh: Cow::Borrowed(mesh),
+            topology: Arc::new(Topology::new(mesh)),
             steps: Vec::new(),
             origins: Vec::new(),
             refined_faces: None,
             rounds_sharpness: true,
             split_vertices: 0,
         }
+    }
+
+    /// The prepared mesh: triangles and quads only, or pentagons too where the scheme has patches for them.
+    pub fn mesh(&self) -> &ControlMesh {
+        self.topology.mesh()
+    }
+
+    /// How its faces hang together.
+    pub fn topology(&self) -> &Arc<Topology> {
+        &self.topology
     }
 
     /// Where a face comes from.
@@ -144,9 +153,9 @@ impl<'m> Prepared<'m> {
         plan.patches().iter().map(origin).collect()
     }
 
-    /// What a user will want to know; `topology` and `plan` are those of the prepared mesh.
-    pub fn notices(&self, topology: &Topology, plan: &PatchPlan) -> Vec<Notice> {
-        let splits = self.split_vertices + topology.split_count();
+    /// What a user will want to know, once the prepared mesh is planned.
+    pub fn notices(&self, plan: &PatchPlan) -> Vec<Notice> {
+        let splits = self.split_vertices + self.topology.split_count();
         let split = (splits > 0).then_some(Notice::SplitVertices { count: splits });
         let fell_back = plan.fallen_back().min_by_key(|patch| patch.face).map(|patch| Notice::FellBack {
             faces: plan.fallen_back().count(),
@@ -155,8 +164,8 @@ impl<'m> Prepared<'m> {
             fallback: patch.scheme,
         });
         let refined = self.refined_faces.clone();
-        let rounded = semi_sharp(&self.mesh).filter(|_| self.rounds_sharpness);
-        let darts = darts(topology).filter(|_| self.rounds_sharpness);
+        let rounded = semi_sharp(self.mesh()).filter(|_| self.rounds_sharpness);
+        let darts = darts(&self.topology).filter(|_| self.rounds_sharpness);
         refined.into_iter().chain(split).chain(fell_back).chain(darts).chain(rounded).collect()
     }
 }
@@ -173,16 +182,17 @@ pub fn prepare_patches(
     scheme: Scheme,
     fallback: Fallback,
     levels: u32,
-) -> Result<(Prepared<'_>, PatchPlan), TableError> {
+) -> Result<(Prepared, PatchPlan), TableError> {
     if levels == 0 && scheme.has_pentagons() {
-        match PatchPlan::new(&Topology::new(mesh), scheme, Fallback::Refuse) {
-            Ok(plan) => return Ok((Prepared::of(mesh), plan)),
+        let prepared = Prepared::of(mesh);
+        match PatchPlan::new(&prepared.topology, scheme, Fallback::Refuse) {
+            Ok(plan) => return Ok((prepared, plan)),
             Err(undefined) if fallback == Fallback::Refuse => return Err(undefined.into()),
             Err(_) => {}
         }
     }
     let prepared = prepare(mesh, levels)?;
-    let plan = PatchPlan::new(&Topology::new(&prepared.mesh), scheme, fallback)?;
+    let plan = PatchPlan::new(&prepared.topology, scheme, fallback)?;
     Ok((prepared, plan))
 }
 
@@ -190,7 +200,7 @@ pub fn prepare_patches(
 ///
 /// # Errors
 /// [`MeshError::TooLarge`] if the refined mesh cannot be addressed.
-pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared<'_>, MeshError> {
+pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared, MeshError> {
     let notice = |polygons, first| Notice::RefinedPolygons { polygons, first };
     refine_faces(mesh, levels, |size| size > 4, notice)
 }
@@ -200,10 +210,10 @@ pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared<'_>, MeshErro
 ///
 /// # Errors
 /// A refined mesh that cannot be addressed.
-pub fn prepare_quads(mesh: &ControlMesh, levels: u32) -> Result<(Prepared<'_>, PatchPlan), TableError> {
+pub fn prepare_quads(mesh: &ControlMesh, levels: u32) -> Result<(Prepared, PatchPlan), TableError> {
     let notice = |faces, first| Notice::RefinedToQuads { faces, first };
     let prepared = Prepared { rounds_sharpness: false, ..refine_faces(mesh, levels, |size| size != 4, notice)? };
-    let plan = PatchPlan::new(&Topology::new(&prepared.mesh), Scheme::Gregory, Fallback::Refuse)?;
+    let plan = PatchPlan::new(&prepared.topology, Scheme::Gregory, Fallback::Refuse)?;
     Ok((prepared, plan))
 }
 
@@ -213,7 +223,7 @@ fn refine_faces(
     levels: u32,
     misfit: impl Fn(u32) -> bool,
     notice: impl Fn(usize, u32) -> Notice,
-) -> Result<Prepared<'_>, MeshError> {
+) -> Result<Prepared, MeshError> {
     let mut prepared = Prepared::of(mesh);
     let mut misfits = (0..).zip(&mesh.data().face_sizes).filter(|&(_, &size)| misfit(size));
     let mut needed = levels;
@@ -229,12 +239,11 @@ fn refine_faces(
         return Err(MeshError::TooLarge { what: "face corners when refined", count: corners, max: MAX_CORNERS });
     }
     for _ in 0..needed {
-        let topology = Topology::new(&prepared.mesh);
-        prepared.split_vertices += topology.split_count();
-        let refined = refine(&topology)?;
-        let offsets = prepared.mesh.face_offsets();
+        prepared.split_vertices += prepared.topology.split_count();
+        let refined = refine(&prepared.topology)?;
+        let offsets = prepared.mesh().face_offsets();
         let mut origins = Vec::with_capacity(refined.parents.len());
-        for face in 0..prepared.mesh.face_count() as u32 {
+        for face in 0..prepared.mesh().face_count() as u32 {
             let parent = prepared.origin(face);
             for (corner, _) in (offsets[face as usize]..offsets[face as usize + 1]).enumerate() {
                 let sub = if parent.sub < 0 { corner as i64 } else { 4 * parent.sub + corner as i64 };
@@ -243,7 +252,7 @@ fn refine_faces(
         }
         prepared.origins = origins;
         prepared.steps.push(refined.stencils);
-        prepared.mesh = Cow::Owned(refined.mesh);
+        prepared.topology = Arc::new(Topology::new(&refined.mesh));
     }
     Ok(prepared)
 }

@@ -74,16 +74,16 @@ impl SharedTable {
 }
 
 /// Who speaks for edges and vertices.
-pub(crate) struct Speakers<'t, 'm> {
-    topology: &'t Topology<'m>,
+pub(crate) struct Speakers<'t> {
+    topology: &'t Topology,
     /// The first ring of each vertex of the mesh.
     first_rings: Vec<u32>,
 }
 
 const NO_RING: u32 = u32::MAX;
 
-impl<'t, 'm> Speakers<'t, 'm> {
-    pub(crate) fn new(topology: &'t Topology<'m>) -> Self {
+impl<'t> Speakers<'t> {
+    pub(crate) fn new(topology: &'t Topology) -> Self {
         let mut first_rings = vec![NO_RING; topology.mesh().vertex_count()];
         for (ring, index) in topology.rings().iter().zip(0..) {
             let first = &mut first_rings[topology.mesh_vertex(ring.start) as usize];

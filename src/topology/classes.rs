@@ -40,7 +40,7 @@ impl PatchKind {
     }
 }
 
-impl Topology<'_> {
+impl Topology {
     /// The patch that a face becomes, or its pieces; `None` for a face with six or more corners, which must be refined
     /// first.
     pub fn patch_kind(&self, face: u32) -> Option<PatchKind> {

@@ -6,9 +6,8 @@ mod rings;
 pub use classes::{PatchKind, draws_face};
 pub use rings::{Ring, RingKind};
 
-use crate::mesh::{BoundaryRule, ControlMesh, NO_TWIN};
+use crate::mesh::{BoundaryRule, ControlMesh, NO_TWIN, SHARPNESS_INFINITE};
 use rings::RingBuilder;
-use std::borrow::Cow;
 
 /// Sharpness from which on the patch schemes draw an edge or vertex as infinitely sharp. Below, it is smooth.
 ///
@@ -26,16 +25,17 @@ pub const SHARP_FROM: f32 = 1.0;
 ///
 /// # Panics
 /// Methods that take the number of a half-edge, a face or a vertex panic if there is none with that number.
-pub struct Topology<'m> {
-    mesh: &'m ControlMesh,
+#[derive(Debug, Clone)]
+pub struct Topology {
+    mesh: ControlMesh,
     /// The face of each half-edge.
     faces: Vec<u32>,
-    /// The manifold vertex of each half-edge; the mesh's own array where nothing had to be split.
-    vertices: Cow<'m, [u32]>,
+    /// The manifold vertex of each half-edge; empty where nothing had to be split.
+    vertices: Vec<u32>,
     /// The mesh vertices of the manifold vertices beyond `mesh.vertex_count()`.
     split_sources: Vec<u32>,
-    /// Whether each half-edge's edge is drawn sharp; empty where the mesh has no such crease.
-    sharp: Vec<bool>,
+    /// The vertices of the mesh that were split, in ascending order.
+    touching: Vec<u32>,
     rings: Vec<Ring>,
     /// The ring of each half-edge, and the index of the half-edge in it.
     places: Vec<Place>,
@@ -51,9 +51,9 @@ pub struct Place {
     pub index: u32,
 }
 
-impl<'m> Topology<'m> {
+impl Topology {
     /// Walks the mesh once: linear in the number of face corners.
-    pub fn new(mesh: &'m ControlMesh) -> Self {
+    pub fn new(mesh: &ControlMesh) -> Self {
         let faces: Vec<u32> = mesh
             .data()
             .face_sizes
@@ -62,22 +62,21 @@ impl<'m> Topology<'m> {
             .flat_map(|(face, &size)| std::iter::repeat_n(face as u32, size as usize))
             .collect();
         let mut topology = Self {
-            mesh,
+            mesh: mesh.clone(),
             faces,
-            vertices: Cow::Borrowed(&mesh.data().face_vertices),
+            vertices: Vec::new(),
             split_sources: Vec::new(),
-            sharp: Vec::new(),
+            touching: Vec::new(),
             rings: Vec::new(),
             places: Vec::new(),
         };
-        topology.sharp = topology.sharp_edges();
         RingBuilder::new(&topology).build().store(&mut topology);
         topology
     }
 
     /// The mesh this is the topology of.
-    pub fn mesh(&self) -> &'m ControlMesh {
-        self.mesh
+    pub fn mesh(&self) -> &ControlMesh {
+        &self.mesh
     }
 
     /// Manifold vertices: those of the mesh, then those that splitting added.
@@ -98,7 +97,7 @@ impl<'m> Topology<'m> {
 
     /// The manifold vertex a half-edge starts from.
     pub fn vertex(&self, half_edge: u32) -> u32 {
-        self.vertices[half_edge as usize]
+        if self.vertices.is_empty() { self.mesh_vertex(half_edge) } else { self.vertices[half_edge as usize] }
     }
 
     /// The vertex of the mesh a half-edge starts from.
@@ -136,9 +135,24 @@ impl<'m> Topology<'m> {
         (twin != NO_TWIN).then_some(twin)
     }
 
-    /// Whether the surface has a sharp edge here: a crease that is drawn sharp. A boundary is not a crease.
+    /// The sharpness of a half-edge's edge, as it was authored: see [`ControlMesh::sharpness`].
+    pub fn sharpness(&self, half_edge: u32) -> f32 {
+        self.mesh.sharpness(half_edge)
+    }
+
+    /// The sharpness of a vertex of the mesh: as it was authored, [`SHARPNESS_INFINITE`] where several fans of faces touch.
+    pub fn vertex_sharpness(&self, vertex: u32) -> f32 {
+        if self.touches(vertex) { SHARPNESS_INFINITE } else { self.mesh.vertex_sharpness(vertex) }
+    }
+
+    /// Whether several fans of faces touch in a vertex of the mesh.
+    pub fn touches(&self, vertex: u32) -> bool {
+        self.touching.binary_search(&vertex).is_ok()
+    }
+
+    /// Whether the patch schemes draw an edge sharp: a crease of [`SHARP_FROM`] or more. A boundary is not a crease.
     pub fn is_sharp(&self, half_edge: u32) -> bool {
-        self.sharp.get(half_edge as usize).copied().unwrap_or(false)
+        self.twin(half_edge).is_some() && self.sharpness(half_edge) >= SHARP_FROM
     }
 
     /// Whether the faces on both sides of an edge are neighbours in the one-rings of both its ends, as they are along smooth
@@ -171,43 +185,7 @@ impl<'m> Topology<'m> {
         })
     }
 
-    /// Edges tagged as creases with a sharpness above zero, each counted once.
-    pub fn creased_edge_count(&self) -> usize {
-        let mut edges: Vec<_> = self.mesh.data().creases.iter().filter(|c| c.sharpness > 0.0).map(crease_key).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        edges.len()
-    }
-
-    fn sharp_edges(&self) -> Vec<bool> {
-        let mut sharpness = std::collections::HashMap::new();
-        for crease in &self.mesh.data().creases {
-            sharpness.insert(crease_key(crease), crease.sharpness);
-        }
-        sharpness.retain(|_, s| *s >= SHARP_FROM);
-        if sharpness.is_empty() {
-            return Vec::new();
-        }
-        (0..self.mesh.corner_count() as u32)
-            .map(|h| {
-                let (a, b) = (self.mesh_vertex(h), self.mesh_vertex(self.next(h)));
-                // A boundary that is tagged as well would count twice.
-                self.twin(h).is_some() && sharpness.contains_key(&(a.min(b), a.max(b)))
-            })
-            .collect()
-    }
-
-    /// Corner sharpness by mesh vertex, where it is drawn sharp.
-    fn sharp_vertices(&self) -> std::collections::HashSet<u32> {
-        self.mesh.data().corners.iter().filter(|c| c.sharpness >= SHARP_FROM).map(|c| c.vertex).collect()
-    }
-
     fn interpolates_corners(&self) -> bool {
         self.mesh.data().boundary == BoundaryRule::EdgeAndCorner
     }
-}
-
-fn crease_key(crease: &crate::mesh::Crease) -> (u32, u32) {
-    let [a, b] = crease.vertices;
-    (a.min(b), a.max(b))
 }

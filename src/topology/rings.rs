@@ -1,8 +1,6 @@
 //! Ordered one-rings, found by walking around every vertex once.
 
-use super::{Place, Topology};
-use std::borrow::Cow;
-use std::collections::HashSet;
+use super::{Place, SHARP_FROM, Topology};
 
 /// The rule by which a ring's limit point and tangents are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -54,9 +52,8 @@ impl Ring {
 }
 
 /// What the walk finds, beside the topology it reads.
-pub(super) struct RingBuilder<'t, 'm> {
-    topology: &'t Topology<'m>,
-    sharp_vertices: HashSet<u32>,
+pub(super) struct RingBuilder<'t> {
+    topology: &'t Topology,
     /// How many faces there are at each mesh vertex.
     faces_at: Vec<u32>,
     found: Found,
@@ -72,8 +69,8 @@ pub(super) struct Found {
 
 const NO_PLACE: Place = Place { ring: u32::MAX, index: 0 };
 
-impl<'t, 'm> RingBuilder<'t, 'm> {
-    pub(super) fn new(topology: &'t Topology<'m>) -> Self {
+impl<'t> RingBuilder<'t> {
+    pub(super) fn new(topology: &'t Topology) -> Self {
         let corners = topology.mesh.corner_count();
         let found = Found {
             rings: Vec::with_capacity(topology.mesh.vertex_count()),
@@ -85,7 +82,7 @@ impl<'t, 'm> RingBuilder<'t, 'm> {
         for &vertex in &topology.mesh.data().face_vertices {
             faces_at[vertex as usize] += 1;
         }
-        Self { topology, sharp_vertices: topology.sharp_vertices(), faces_at, found }
+        Self { topology, faces_at, found }
     }
 
     pub(super) fn build(mut self) -> Found {
@@ -141,7 +138,7 @@ impl<'t, 'm> RingBuilder<'t, 'm> {
         let is_cut = |h: &u32| topology.is_sharp(*h);
         let inner_cuts = fan.iter().filter(|h| is_cut(h)).count();
         let cuts = if closed { inner_cuts } else { inner_cuts + 2 };
-        let tagged = self.sharp_vertices.contains(&source);
+        let tagged = topology.mesh.vertex_sharpness(source) >= SHARP_FROM;
         let lone_corner = !closed && fan.len() == 1 && topology.interpolates_corners();
         let touches = fan.len() < self.faces_at[source as usize] as usize;
         let kind = match cuts {
@@ -185,16 +182,18 @@ impl<'t, 'm> RingBuilder<'t, 'm> {
 }
 
 impl Found {
-    pub(super) fn store(self, topology: &mut Topology<'_>) {
+    pub(super) fn store(self, topology: &mut Topology) {
         topology.rings = self.rings;
         topology.places = self.places;
+        topology.touching = self.split_sources.clone();
+        topology.touching.sort_unstable();
+        topology.touching.dedup();
         topology.split_sources = self.split_sources;
         if !self.moved.is_empty() {
-            let mut vertices = topology.vertices.to_vec();
+            topology.vertices = topology.mesh.data().face_vertices.clone();
             for (half_edge, vertex) in self.moved {
-                vertices[half_edge as usize] = vertex;
+                topology.vertices[half_edge as usize] = vertex;
             }
-            topology.vertices = Cow::Owned(vertices);
         }
     }
 }

@@ -14,7 +14,7 @@ const SCHEMES: [Scheme; 2] = [Scheme::Gregory, Scheme::GregoryFitted];
 fn meshes() -> Vec<(String, ControlMesh)> {
     let built_in = shapes().iter().map(|info| {
         let mesh = shape(info.name).expect("built in");
-        (info.name.to_owned(), prepare(&mesh, 0).expect("small").mesh.into_owned())
+        (info.name.to_owned(), prepare(&mesh, 0).expect("small").mesh().clone())
     });
     let random = (0..20).flat_map(|seed| {
         [(format!("random {seed}"), random_mesh(seed)), (format!("random creased {seed}"), random_creased_mesh(seed))]

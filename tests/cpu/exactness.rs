@@ -261,7 +261,7 @@ fn polygons_are_refined_once_and_know_where_they_come_from() {
     let mesh = shape("polygons").unwrap();
     let [once, twice] = [1, 2].map(|levels| CpuSurface::new(&mesh, Scheme::Gregory, levels).unwrap());
     let needed = CpuSurface::new(&mesh, Scheme::Gregory, 0).unwrap();
-    assert_eq!(needed.prepared().mesh, once.prepared().mesh);
+    assert_eq!(needed.prepared().mesh(), once.prepared().mesh());
     // One part a corner, of a quad too; then four of each.
     let parts = |factor: i64| -> Vec<FaceOrigin> {
         let parts = |face: u32| (0..factor * mesh.face(face).len() as i64).map(move |sub| FaceOrigin { face, sub });

@@ -19,23 +19,23 @@ fn meshes() -> Vec<(String, ControlMesh)> {
     built_in.chain(random).chain(creased).collect()
 }
 
-struct Mixed<'m> {
-    surface: CpuSurface<'m>,
+struct Mixed {
+    surface: CpuSurface,
     points: Vec<Vec<DVec3>>,
     /// The number of the patch of each face, if it has one.
     of_face: Vec<Option<usize>>,
 }
 
-impl<'m> Mixed<'m> {
-    fn new(mesh: &'m ControlMesh, scheme: Scheme) -> Self {
+impl Mixed {
+    fn new(mesh: &ControlMesh, scheme: Scheme) -> Self {
         let surface = CpuSurface::with_fallback(mesh, scheme, Fallback::Gregory, 0).expect("small");
-        let mut of_face = vec![None; surface.prepared().mesh.face_count()];
+        let mut of_face = vec![None; surface.prepared().mesh().face_count()];
         surface.plan().patches().iter().enumerate().for_each(|(i, patch)| of_face[patch.face as usize] = Some(i));
         Self { points: surface.control_points(|p| p), of_face, surface }
     }
 
     fn mesh(&self) -> &ControlMesh {
-        &self.surface.prepared().mesh
+        self.surface.prepared().mesh()
     }
 
     /// The patches on both sides, with the number of the edge in each.

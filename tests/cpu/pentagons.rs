@@ -10,13 +10,13 @@ use glam::DVec3;
 use std::collections::HashMap;
 
 /// The patches by face and first corner.
-struct Pieces<'m> {
-    surface: CpuSurface<'m>,
+struct Pieces {
+    surface: CpuSurface,
     points: HashMap<(u32, u32), (PatchKind, Vec<DVec3>)>,
 }
 
-impl<'m> Pieces<'m> {
-    fn new(mesh: &'m ControlMesh) -> Self {
+impl Pieces {
+    fn new(mesh: &ControlMesh) -> Self {
         let surface = CpuSurface::new(mesh, Scheme::Pm, 0).expect("closed, of faces with up to five corners");
         let patches = surface.plan().patches().iter().zip(surface.control_points(|p| p));
         let points = patches.map(|(patch, points)| ((patch.face, patch.first), (patch.kind, points))).collect();
@@ -24,7 +24,7 @@ impl<'m> Pieces<'m> {
     }
 
     fn is_pentagon(&self, face: u32) -> bool {
-        self.surface.prepared().mesh.face(face).len() == 5
+        self.surface.prepared().mesh().face(face).len() == 5
     }
 
     /// Position and normal at barycentric (x, y, z) of a sector of a pentagon.

@@ -15,7 +15,7 @@ fn meshes() -> Vec<(String, ControlMesh)> {
     let mut meshes = Vec::new();
     for info in shapes() {
         let mesh = shape(info.name).expect("built in");
-        meshes.push((info.name.to_owned(), prepare(&mesh, 0).expect("small").mesh.into_owned()));
+        meshes.push((info.name.to_owned(), prepare(&mesh, 0).expect("small").mesh().clone()));
     }
     for seed in 0..40 {
         meshes.push((format!("random {seed}"), random_mesh(seed)));
@@ -96,7 +96,7 @@ fn smooth_edges_of_models_have_one_tangent_plane() {
     for name in ["monsterfrog", "bigguy", "car", "rook"].into_iter().chain(patches) {
         let path = common::shared().join("meshes").join(name).with_extension("obj");
         let mesh = read(&path, &ReadOptions::default()).unwrap();
-        let mesh = prepare(&mesh, 0).unwrap().mesh;
+        let mesh = prepare(&mesh, 0).unwrap().mesh().clone();
         let topology = Topology::new(&mesh);
         for scheme in [Scheme::Gregory, Scheme::GregoryFitted] {
             let (gap, edges) = normal_gap(scheme, &topology, |p| p, |n| n, |t| t);

@@ -13,15 +13,15 @@ const QUADS: [&str; 4] = ["creature", "cube", "torus", "valences"];
 /// Such meshes with triangles.
 const MIXED: [&str; 2] = ["creature-mixed", "tetrahedron"];
 
-struct Surface<'m> {
+struct Surface {
     name: String,
     scheme: Scheme,
-    topology: Topology<'m>,
+    topology: Topology,
     patches: Vec<Vec<DVec3>>,
 }
 
-impl<'m> Surface<'m> {
-    fn new(name: &str, mesh: &'m ControlMesh, scheme: Scheme) -> Self {
+impl Surface {
+    fn new(name: &str, mesh: &ControlMesh, scheme: Scheme) -> Self {
         let topology = Topology::new(mesh);
         let patch = |f| scheme.control_points(&topology, f, kind(&topology, f), |v| mesh.position(v));
         let patches = (0..mesh.face_count() as u32).map(patch).collect();
@@ -241,8 +241,8 @@ fn weights_are_affine() {
                 continue;
             }
             let prepared = ash_subdiv::table::prepare(&mesh, 0).expect("small");
-            let topology = Topology::new(&prepared.mesh);
-            for face in 0..prepared.mesh.face_count() as u32 {
+            let topology = Topology::new(prepared.mesh());
+            for face in 0..prepared.mesh().face_count() as u32 {
                 let kind = kind(&topology, face);
                 let rows = scheme.control_points(&topology, face, kind, Row::unit);
                 for (i, row) in rows.iter().enumerate() {

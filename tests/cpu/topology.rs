@@ -1,7 +1,7 @@
 //! One-rings, sectors between creases, corners, darts, boundaries, holes and vertices where fans touch.
 
 use crate::common::random::{random_creased_mesh, random_mesh};
-use ash_subdiv::mesh::{BoundaryRule, Corner, Crease};
+use ash_subdiv::mesh::{BoundaryRule, Corner, Crease, SHARPNESS_INFINITE};
 use ash_subdiv::table::{Notice, PatchPlan, prepare};
 use ash_subdiv::topology::{PatchKind, Ring, RingKind, Topology};
 use ash_subdiv::{ControlMesh, Fallback, MeshData, Scheme, shape, shapes};
@@ -163,6 +163,43 @@ fn creases_on_a_boundary_change_nothing() {
 }
 
 #[test]
+fn sharpness_is_kept_as_it_was_authored() {
+    let crease = |vertices, sharpness| Crease { vertices, sharpness };
+    // Vertex 4 is the middle of 9. Of two creases for an edge the last counts, of two corners likewise.
+    let creases = vec![crease([4, 1], 7.0), crease([1, 4], 0.25), crease([4, 5], 3.5), crease([0, 1], 2.0)];
+    let corners = [5.0, 1.5].map(|sharpness| Corner { vertex: 4, sharpness }).into();
+    let mesh = ControlMesh::new(MeshData { creases, corners, ..grid(2, 2) }).unwrap();
+    assert_eq!(mesh.creased_edge_count(), 3);
+    let topology = Topology::new(&mesh);
+    let mut found = Vec::new();
+    for h in 0..mesh.corner_count() as u32 {
+        let mut ends = [topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h))];
+        ends.sort();
+        match topology.twin(h) {
+            // Boundaries are infinitely sharp, tagged or not, and no creases.
+            None => assert!(topology.sharpness(h) == SHARPNESS_INFINITE && !topology.is_sharp(h)),
+            Some(twin) => assert_eq!(topology.sharpness(h), topology.sharpness(twin)),
+        }
+        if topology.twin(h).is_some_and(|twin| h < twin) {
+            assert_eq!(topology.is_sharp(h), ends == [4, 5]);
+            found.push((ends, topology.sharpness(h)));
+        }
+    }
+    found.sort_by_key(|edge| edge.0);
+    assert_eq!(found, [([1, 4], 0.25), ([3, 4], 0.0), ([4, 5], 3.5), ([4, 7], 0.0)]);
+    assert_eq!([3, 4].map(|vertex| topology.vertex_sharpness(vertex)), [0.0, 1.5]);
+}
+
+#[test]
+fn clones_of_a_mesh_are_the_same_arrays() {
+    let mesh = ControlMesh::new(grid(2, 2)).unwrap();
+    let topology = Topology::new(&mesh);
+    assert!(std::ptr::eq(topology.mesh().data(), mesh.data()));
+    assert!(std::ptr::eq(prepare(&mesh, 0).unwrap().mesh().data(), mesh.data()));
+    assert_eq!(mesh.into_data(), topology.mesh().clone().into_data());
+}
+
+#[test]
 fn vertices_where_fans_touch_are_split() {
     // Two quads that share vertex 0 only, and a third that shares an edge with the first.
     let mesh = ControlMesh::new(MeshData {
@@ -174,11 +211,12 @@ fn vertices_where_fans_touch_are_split() {
     .unwrap();
     let topology = Topology::new(&mesh);
     assert_eq!((topology.split_count(), topology.vertex_count()), (1, 10));
+    assert_eq!([0, 1].map(|vertex| topology.vertex_sharpness(vertex)), [SHARPNESS_INFINITE, 0.0]);
     // The first face keeps the vertex.
     assert_eq!([topology.vertex(0), topology.vertex(4)], [0, 9]);
     assert_eq!([topology.source(0), topology.source(9)], [0, 0]);
     assert_eq!(shapes_of(&rings_at(&mesh, 0)), [(RingKind::Corner, 1, true); 2]);
-    assert_eq!(prepare(&mesh, 0).unwrap().notices(&topology, &plan(&mesh)), [Notice::SplitVertices { count: 1 }]);
+    assert_eq!(prepare(&mesh, 0).unwrap().notices(&plan(&mesh)), [Notice::SplitVertices { count: 1 }]);
 }
 
 #[test]
@@ -188,7 +226,7 @@ fn creases_that_end_within_the_surface_are_told() {
         let creases = creases.iter().map(|&vertices| Crease { vertices, sharpness }).collect();
         let corners = corners.iter().map(|&vertex| Corner { vertex, sharpness }).collect();
         let mesh = ControlMesh::new(MeshData { creases, corners, ..grid(4, 4) }).unwrap();
-        let notices = prepare(&mesh, 0).unwrap().notices(&Topology::new(&mesh), &plan(&mesh));
+        let notices = prepare(&mesh, 0).unwrap().notices(&plan(&mesh));
         notices.into_iter().find(|notice| matches!(notice, Notice::Darts { .. }))
     };
     assert_eq!(told(&[[10, 11], [11, 12]], &[], 10.0), Some(Notice::Darts { count: 1, first: 12 }));
@@ -220,7 +258,7 @@ fn holes_and_faces_at_a_free_boundary_are_not_drawn() {
     let mesh = ControlMesh::new(MeshData { boundary: BoundaryRule::None, ..grid(4, 3) }).unwrap();
     for (refine, children) in [(1, 4), (2, 16)] {
         let prepared = prepare(&mesh, refine).unwrap();
-        let origins = prepared.origins(&plan(&prepared.mesh));
+        let origins = prepared.origins(&plan(prepared.mesh()));
         let of = |face| origins.iter().filter(|origin| origin.face == face).count();
         assert_eq!((origins.len(), of(5), of(6)), (2 * children, children, children), "refined {refine} times");
     }

@@ -61,7 +61,7 @@ fn check(headless: &Headless, name: &str, mesh: &ControlMesh, faces: u32) -> f64
     let captured = Captured::new(headless, mesh, &options()).expect("a model");
     let (prepared, plan) = prepare_quads(mesh, 0).expect("small");
     assert_eq!(captured.tables().plan(), &plan);
-    let mut data = prepared.mesh.into_owned().into_data();
+    let mut data = prepared.mesh().clone().into_data();
     // The GPU starts from these.
     data.positions.iter_mut().for_each(|p| *p = p.map(|x| f64::from(x as f32)));
     let mut refined = ControlMesh::new(data).expect("as before");

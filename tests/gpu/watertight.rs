@@ -6,7 +6,7 @@ use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::Scheme;
 use ash_subdiv::capture::{Captured, CapturedVertex};
 use ash_subdiv::table::{CpuSurface, grid_parameters, prepare};
-use ash_subdiv::topology::{PatchKind, Topology};
+use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, Spacing, shape};
 use glam::Vec3;
 use std::collections::HashMap;
@@ -21,7 +21,7 @@ fn meshes() -> Vec<(String, ControlMesh, Vec<SharedEdge>)> {
         meshes.push((format!("random creased {seed}"), random_creased_mesh(seed)));
     }
     let with_edges = |(name, mesh): (String, ControlMesh)| {
-        let edges = shared_edges(&Topology::new(&prepare(&mesh, 0).expect("small").mesh));
+        let edges = shared_edges(prepare(&mesh, 0).expect("small").topology());
         (name, mesh, edges)
     };
     meshes.into_iter().map(with_edges).collect()

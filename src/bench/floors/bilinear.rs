@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Domain, Owned, Shader, Spacing, Specialization, tessell
 use crate::patch::{Fallback, Scheme};
 use crate::renderer::{DrawConstants, TableBytes, reads_texels, spaced};
 use crate::table::{PatchPlan, TableError, prepare};
-use crate::topology::{PatchKind, Topology};
+use crate::topology::PatchKind;
 use ash::vk;
 
 pub(crate) struct Bilinear {
@@ -33,13 +33,12 @@ impl Bilinear {
         let Lane { headless, subject, spacing, .. } = lane;
         let ((positions, corners, plan), tables) = timed(|| {
             let prepared = prepare(&subject.mesh, subject.refine)?;
-            let topology = Topology::new(&prepared.mesh);
-            let plan = PatchPlan::new(&topology, Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
-            let face_vertices = &prepared.mesh.data().face_vertices;
-            let corners = plan.corners(&topology).into_iter().map(|h| face_vertices[h as usize]);
+            let plan =
+                PatchPlan::new(prepared.topology(), Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
+            let face_vertices = &prepared.mesh().data().face_vertices;
+            let corners = plan.corners(prepared.topology()).into_iter().map(|h| face_vertices[h as usize]);
             let corners: Vec<u32> = corners.collect();
-            drop(topology);
-            let positions: Vec<_> = prepared.mesh.positions_f32().iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+            let positions: Vec<_> = prepared.mesh().positions_f32().iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
             Ok::<_, BenchError>((positions, corners, plan))
         })?;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;

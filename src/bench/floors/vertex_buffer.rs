@@ -15,7 +15,7 @@ pub(crate) struct VertexBuffer<'a> {
     lane: Lane<'a>,
     kit: Kit,
     pipelines: [Owned<vk::Pipeline>; 2],
-    surface: CpuSurface<'a>,
+    surface: CpuSurface,
     points: Vec<Vec<Vec3>>,
     drawn: Option<Triangles>,
     setup: Setup,
