@@ -26,14 +26,15 @@
 //!
 //! | floor | module | holds | knows nothing of |
 //! |---|---|---|---|
-//! | 9 | `bench` (features `measure` and `headless`) | how long each way to draw takes | files, printing |
-//! | 8 | `measure` (feature `measure`) | how far schemes, and triangles on the screen, are from the limit surface; whether patches meet; statistics | files, printing |
-//! | 7 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
-//! | 6 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
-//! | 5 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
-//! | 4 | [`table`] | what the GPU reads | Vulkan |
+//! | 10 | `bench` (features `measure` and `headless`) | how long each way to draw takes | files, printing |
+//! | 9 | `measure` (feature `measure`) | how far schemes, and triangles on the screen, are from the limit surface; whether patches meet; statistics | files, printing |
+//! | 8 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
+//! | 7 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
+//! | 6 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
+//! | 5 | [`table`] | what the GPU reads | Vulkan |
 //! | 4 | [`limit`] | Catmull-Clark refinement and its limit surface | patch schemes |
-//! | 3 | [`patch`] | construction and evaluation of patches, generic over the value | Vulkan |
+//! | 4 | [`patch`] | construction and evaluation of patches, generic over the value | Vulkan |
+//! | 3 | `blend` (public in [`patch`]) | weighted sums: values, one-rings with tangent frames, Bezier curves, the regular patch | schemes |
 //! | 2 | [`topology`] | half-edges, one-rings, sharp edges, patch kinds | positions |
 //! | 1 | [`mesh`] | control meshes, the readers (OBJ, glTF), built-in shapes | all above |
 //! | 1 | [`gpu`] | device facts, memory, shaders, pipelines | meshes |
@@ -113,6 +114,7 @@
 
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub mod bench;
+mod blend;
 #[cfg(feature = "headless")]
 pub mod capture;
 mod constants;

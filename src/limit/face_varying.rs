@@ -1,6 +1,6 @@
 //! Refinement of what may differ at one vertex from face to face.
 
-use super::refine::refine;
+use super::step::refine_vertices;
 use crate::mesh::{
     BoundaryRule, ControlMesh, Corner, Crease, FaceVarying, FaceVaryingRule, MeshData, MeshError, NO_TWIN,
     SHARPNESS_INFINITE,
@@ -43,7 +43,7 @@ pub(super) fn refine_texcoords(
     }
     let values = value_mesh(topology, coarse)?;
     let value_topology = Topology::new(&values);
-    let refined = refine(&value_topology)?.mesh.into_data();
+    let (refined, _) = refine_vertices(&value_topology);
     // Where a value is in several places around a vertex, refinement has set them apart. They stay one value, and are
     // known by that in the next step.
     let split = value_topology.vertex_count() as u32;

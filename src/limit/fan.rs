@@ -3,14 +3,11 @@
 
 use super::local::Local;
 use super::refine::refine;
-use super::sharpness::{children, is_semi_sharp};
+use super::sharpness::{LEVELS, children, is_semi_sharp};
+use crate::blend::{Blend, Frame, RingValues, Row};
 use crate::mesh::{ControlMesh, Corner, Crease, CreaseMethod, MeshData, MeshError, SHARPNESS_INFINITE};
-use crate::patch::{Blend, Frame, RingValues, Row};
 use crate::topology::{RingKind, Topology};
 use glam::DVec3;
-
-/// Levels of refinement that are followed.
-pub(crate) const LEVELS: usize = 3;
 
 /// All faces around a manifold vertex, whatever is sharp between them. Edges and faces count as in a
 /// [`Ring`](crate::topology::Ring).
@@ -80,7 +77,7 @@ impl<'t> Fans<'t> {
     /// The fan around the vertex from which a half-edge starts.
     pub(crate) fn around(&self, half_edge: u32) -> Fan {
         let topology = self.topology;
-        let (half_edges, open) = walk(topology, half_edge);
+        let (half_edges, open) = topology.fan(half_edge);
         let end = open.then_some(SHARPNESS_INFINITE);
         let sharpness = half_edges.iter().map(|&h| topology.sharpness(h)).chain(end).collect();
         let vertex_sharpness = topology.vertex_sharpness(topology.mesh_vertex(half_edge));
@@ -129,25 +126,9 @@ impl<'t> Fans<'t> {
     }
 }
 
-/// The half-edges around the vertex from which one starts, counter-clockwise, from the boundary if there is one, which is told.
-pub(super) fn walk(topology: &Topology, half_edge: u32) -> (Vec<u32>, bool) {
-    let mut start = half_edge;
-    let open = loop {
-        match topology.twin(start) {
-            None => break true,
-            Some(twin) => start = topology.next(twin),
-        }
-        if start == half_edge {
-            break false;
-        }
-    };
-    let next = |&h: &u32| topology.twin(topology.prev(h)).filter(|&h| h != start);
-    (std::iter::successors(Some(start), next).collect(), open)
-}
-
 /// The vertex from which half-edge 0 starts, and those around it, in the order of the unknowns.
 fn ring_vertices(topology: &Topology) -> Vec<u32> {
-    let (half_edges, open) = walk(topology, 0);
+    let (half_edges, open) = topology.fan(0);
     let vertex = |h| topology.mesh_vertex(h);
     let mut vertices = vec![vertex(0)];
     for &h in &half_edges {
@@ -189,7 +170,7 @@ fn follow(mut topology: Topology, mut rows: Vec<Row>) -> Result<FanRows, MeshErr
 
 /// Tangents at the vertex from which half-edge 0 starts, from each face, or one pair where they are the same from all.
 fn tangents(topology: &Topology, rows: &[Row]) -> Vec<[Row; 2]> {
-    let (half_edges, _) = walk(topology, 0);
+    let (half_edges, _) = topology.fan(0);
     let mut of_faces = Vec::with_capacity(half_edges.len());
     let mut last: Option<(u32, RingValues<Row>, Frame<Row>)> = None;
     for &h in &half_edges {

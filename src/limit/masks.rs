@@ -1,7 +1,7 @@
 //! The limit at a vertex: the left eigenvectors of the subdivision matrix of its one-ring (patch_maths A).
 
-use super::LimitSample;
-use crate::patch::{Frame, RingValues};
+use super::sample::LimitSample;
+use crate::blend::{Frame, RingValues};
 use crate::topology::{Ring, RingKind, Topology};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};

@@ -6,12 +6,15 @@ mod fan;
 mod local;
 mod masks;
 mod refine;
+mod sample;
 mod sharpness;
 mod stencils;
+mod step;
 mod surface;
 
-pub(crate) use fan::{Fan, FanRows, Fans, LEVELS};
+pub(crate) use fan::{Fan, FanRows, Fans};
 pub use refine::{Refined, refine};
-pub(crate) use sharpness::EdgeProfile;
+pub use sample::LimitSample;
+pub(crate) use sharpness::{EdgeProfile, LEVELS};
 pub use stencils::Stencils;
-pub use surface::{LimitSample, LimitSurface};
+pub use surface::LimitSurface;

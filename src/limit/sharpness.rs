@@ -1,9 +1,11 @@
 //! How sharp edges and vertices lose their sharpness, and what it does to the points meanwhile (patch_maths A; DeRose, Kass,
 //! Truong 1998).
 
-use super::fan::LEVELS;
 use crate::mesh::{CreaseMethod, SHARPNESS_INFINITE};
 use crate::topology::SHARP_FROM;
+
+/// Levels of refinement that an [`EdgeProfile`] follows.
+pub(crate) const LEVELS: usize = 3;
 
 /// Sharpness after one uniform step.
 pub(super) fn decrement(sharpness: f32) -> f32 {

@@ -1,6 +1,6 @@
 //! Weighted sums of one step of refinement.
 
-use crate::patch::{Blend, Row};
+use crate::blend::{Blend, Row};
 use rayon::prelude::*;
 
 /// Rows for one thread at least: handing out fewer takes longer than making them.

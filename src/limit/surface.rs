@@ -1,13 +1,13 @@
 //! The limit surface at any parameters.
 
-use super::fan::walk;
 use super::local::Local;
 use super::masks::{corner_limit, dart_edge};
 use super::refine::refine;
+use super::sample::LimitSample;
 use super::sharpness::is_semi_sharp;
+use crate::blend::bicubic::regular_points;
+use crate::blend::{Basis, Sample};
 use crate::mesh::{ControlMesh, MeshError};
-use crate::patch::bicubic::Basis;
-use crate::patch::{Sample, Scheme};
 use crate::topology::{PatchKind, Topology, draws_face};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
@@ -63,19 +63,6 @@ pub struct LimitSurface {
     /// A face corner at each vertex.
     corners: Vec<(u32, u32)>,
     faces: Vec<OnceLock<Node>>,
-}
-
-/// A point of a limit surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LimitSample {
-    /// In object space.
-    pub position: DVec3,
-    /// Derivative by u.
-    pub du: DVec3,
-    /// Derivative by v.
-    pub dv: DVec3,
-    /// Of length one along `du x dv`, or zero where there is none.
-    pub normal: DVec3,
 }
 
 impl LimitSurface {
@@ -201,8 +188,7 @@ impl Node {
             dart_edge(&topology, ring).is_none() && !is_semi_sharp_at(&topology, h as u32)
         };
         let shape = if topology.patch_kind(0) == Some(PatchKind::Regular) && corners.all(is_plain) {
-            let points = Scheme::Gregory.control_points(&topology, 0, PatchKind::Regular, |v| mesh.position(v));
-            Shape::Regular(Box::new(points.try_into().expect("16 points of a regular patch")))
+            Shape::Regular(Box::new(regular_points(&topology, 0, |v| mesh.position(v))))
         } else {
             let children = (0..mesh.face(0).len()).map(|_| OnceLock::new()).collect();
             Shape::Irregular(Box::new(Irregular { topology, refined: OnceLock::new(), children }))
@@ -276,7 +262,7 @@ impl Irregular {
 
 /// Whether the vertex that a half-edge starts from, or an edge there, has a sharpness that refinement will use up.
 fn is_semi_sharp_at(topology: &Topology, half_edge: u32) -> bool {
-    let edges = walk(topology, half_edge).0;
+    let edges = topology.fan(half_edge).0;
     is_semi_sharp(topology.vertex_sharpness(topology.mesh_vertex(half_edge)))
         || edges.into_iter().any(|h| is_semi_sharp(topology.sharpness(h)))
 }

@@ -1,6 +1,6 @@
 //! Which half-edge lies opposite which.
 
-use super::{MeshData, MeshError};
+use super::error::MeshError;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -88,18 +88,17 @@ fn for_each_half_edge(face_offsets: &[u32], face_vertices: &[u32], mut visit: im
     }
 }
 
-/// The lower half-edge of each crease's edge, [`NO_TWIN`] where there is no such edge.
-pub(crate) fn edges_of_creases(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Vec<u32> {
-    if data.creases.is_empty() {
+/// The lower half-edge of the edge between each pair of vertices, [`NO_TWIN`] where there is no such edge.
+pub(crate) fn find_edges(edges: &[[u32; 2]], face_offsets: &[u32], face_vertices: &[u32], twins: &[u32]) -> Vec<u32> {
+    if edges.is_empty() {
         return Vec::new();
     }
     let key = |a: u32, b: u32| (a.min(b), a.max(b));
-    let mut wanted: HashMap<(u32, u32), u32> =
-        data.creases.iter().map(|c| (key(c.vertices[0], c.vertices[1]), NO_TWIN)).collect();
-    for_each_half_edge(face_offsets, &data.face_vertices, |half_edge, from, to| {
+    let mut wanted: HashMap<(u32, u32), u32> = edges.iter().map(|&[a, b]| (key(a, b), NO_TWIN)).collect();
+    for_each_half_edge(face_offsets, face_vertices, |half_edge, from, to| {
         if let Some(found) = wanted.get_mut(&key(from, to)) {
             *found = half_edge.min(twins[half_edge as usize]);
         }
     });
-    data.creases.iter().map(|c| wanted[&key(c.vertices[0], c.vertices[1])]).collect()
+    edges.iter().map(|&[a, b]| wanted[&key(a, b)]).collect()
 }

@@ -366,7 +366,8 @@ fn check_tags(data: &MeshData) -> Result<(), MeshError> {
 /// Crease sharpness by half-edge. Of several creases for one edge the last counts.
 fn edge_sharpness(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Result<Vec<f32>, MeshError> {
     let mut sharpness = vec![0.0; if data.creases.is_empty() { 0 } else { twins.len() }];
-    let found = adjacency::edges_of_creases(data, face_offsets, twins);
+    let edges: Vec<[u32; 2]> = data.creases.iter().map(|crease| crease.vertices).collect();
+    let found = adjacency::find_edges(&edges, face_offsets, &data.face_vertices, twins);
     for (index, (crease, edge)) in data.creases.iter().zip(found).enumerate() {
         check_sharpness("crease", index, crease.sharpness)?;
         if edge == adjacency::NO_TWIN {

@@ -6,10 +6,10 @@
 //! along u; then for each corner k the vectors `t_k+, t_k-` (derivatives at the corner along its plus and minus edge)
 //! and `x_k+, x_k-` (inner control vectors, near corner k, of the derivative across those edges, pointing inwards).
 
-use super::bicubic::{Basis, CORNER_SLOTS, cubic};
-use super::gregory::PatchCorner;
-use super::point::{scalar, unit_normal};
-use super::{Blend, Frame, Point, RingValues, Sample};
+use crate::blend::bicubic::CORNER_SLOTS;
+use crate::blend::{
+    Basis, Blend, Frame, PatchCorner, Point, RingValues, Sample, cubic, scalar, tangent_scale, unit_normal,
+};
 use crate::topology::RingKind;
 
 /// Control points of a patch.
@@ -23,7 +23,7 @@ pub fn acc_frame<T: Blend>(ring: &RingValues<T>) -> Frame<T> {
     if ring.shape.kind != RingKind::Smooth {
         return Frame { p, a, b };
     }
-    let scale = 1.0 / (2.0 * super::ring::tangent_scale(ring.shape.faces()));
+    let scale = 1.0 / (2.0 * tangent_scale(ring.shape.faces()));
     Frame { p, a: T::sum([(scale, &a)]), b: T::sum([(scale, &b)]) }
 }
 

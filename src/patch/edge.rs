@@ -3,9 +3,10 @@
 //!
 //! From either end the sums are the same to the bit, but for the sign of those that point along the edge or across it.
 
-use super::bicubic::{CurveBasis, curve_point, curve_slope, seen_from_ends};
-use super::point::{scalar, unit_normal};
-use super::{Blend, Frame, Point, RingValues, Scheme};
+use super::scheme::Scheme;
+use crate::blend::{
+    Blend, CurveBasis, Frame, Point, RingValues, curve_point, curve_slope, scalar, seen_from_ends, unit_normal,
+};
 
 /// An edge from one vertex to another.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -44,7 +44,7 @@
 //!
 //! [`gregory`]: super::gregory
 
-use super::{Blend, Frame, RingShape, RingValues};
+use crate::blend::{Blend, Frame, RingShape, RingValues};
 use crate::topology::RingKind;
 
 /// The numbers that [`fitted`](self) patches are made with.

@@ -5,34 +5,10 @@
 //! e_1+, e_1-, ..`, then the face points `f_0+, f_0-, ..`. `e_k+` and `f_k+` belong to the edge from corner k to
 //! corner k + 1, `e_k-` and `f_k-` to the edge from corner k to corner k - 1.
 
-use super::point::{scalar, unit_normal};
-use super::{Blend, Frame, Point, RingValues, Sample};
-use crate::patch::bicubic::{CurveBasis, TensorCorner, curve_point, evaluate_tensor, seen_from_ends};
-
-/// What a corner of a patch takes from its one-ring.
-#[derive(Debug)]
-pub struct PatchCorner<'r, T> {
-    /// The one-ring around the corner.
-    pub ring: &'r RingValues<T>,
-    /// Its limit point and tangents.
-    pub frame: &'r Frame<T>,
-    /// The ring edge that is the corner's plus edge; the next one is its minus edge.
-    pub index: usize,
-}
-
-impl<T: Blend> PatchCorner<'_, T> {
-    pub(crate) fn plus(&self) -> T {
-        self.ring.edge_point(self.frame, self.index)
-    }
-
-    pub(crate) fn minus(&self) -> T {
-        self.ring.edge_point(self.frame, self.minus_index())
-    }
-
-    pub(crate) fn minus_index(&self) -> usize {
-        (self.index + 1) % self.ring.shape.edges()
-    }
-}
+use crate::blend::{
+    Blend, CurveBasis, PatchCorner, Point, Sample, TensorCorner, curve_point, evaluate_tensor, scalar, seen_from_ends,
+    unit_normal,
+};
 
 /// The control points of the patch with these corners: 20 for four, 15 for three.
 ///

@@ -10,20 +10,15 @@
 //! *minus* edge to corner k - 1.
 
 pub mod acc;
-pub mod bicubic;
-mod blend;
 pub mod edge;
 mod fallback;
+mod fallback_rings;
 pub mod fitted;
 pub mod gregory;
 pub mod pm;
-mod point;
-mod ring;
 mod scheme;
 
-pub use blend::{Blend, Row};
-pub use fallback::{Fallback, FallbackRings};
-pub(crate) use point::scalar;
-pub use point::{Point, Sample};
-pub use ring::{Frame, RingShape, RingValues};
+pub use crate::blend::{Blend, Frame, PatchCorner, Point, RingShape, RingValues, Row, Sample, bicubic};
+pub use fallback::Fallback;
+pub use fallback_rings::FallbackRings;
 pub use scheme::{Scheme, Undefined};

@@ -11,9 +11,7 @@
 //!
 //! There is no rule at boundaries, creases and corners.
 
-use super::gregory::PatchCorner;
-use super::point::{scalar, unit_normal};
-use super::{Blend, Frame, Point, RingValues, Sample};
+use crate::blend::{Blend, Frame, PatchCorner, Point, RingValues, Sample, scalar, tangent_scale, unit_normal};
 use crate::topology::RingKind;
 use std::f64::consts::TAU;
 
@@ -31,7 +29,7 @@ pub fn pm_frame<T: Blend>(ring: &RingValues<T>) -> Frame<T> {
     let faces = ring.shape.faces();
     let n = faces as f64;
     let mut frame = Frame { p: T::sum([(n / (n + 5.0), &ring.centre)]), ..Frame::default() };
-    let scale = 1.0 / (n * super::ring::tangent_scale(faces));
+    let scale = 1.0 / (n * tangent_scale(faces));
     for l in 0..faces {
         frame.p.add_scaled(4.0 / (n * (n + 5.0)), &ring.edges[l]);
         frame.p.add_scaled(1.0 / (n * (n + 5.0)), &ring.pm_diagonal(l));

@@ -5,8 +5,8 @@
 //! bicubic patches in every scheme.
 
 use super::fitted::Fit;
-use super::gregory::PatchCorner;
-use super::{Blend, FallbackRings, Frame, Point, RingShape, RingValues, Sample, acc, bicubic, fitted, gregory, pm};
+use super::{FallbackRings, acc, fitted, gregory, pm};
+use crate::blend::{Blend, CornerRings, Frame, Point, RingShape, RingValues, Sample, bicubic};
 use crate::named::named;
 use crate::topology::{PatchKind, RingKind, Topology};
 
@@ -191,17 +191,11 @@ impl Scheme {
         fallback: &FallbackRings,
         vertex: impl Fn(u32) -> T,
     ) -> Vec<T> {
-        let rings: Vec<_> = half_edges
-            .map(|h| {
-                let place = topology.place(h);
-                let mut ring = RingValues::new(topology, &topology.rings()[place.ring as usize], &vertex);
-                ring.shape.fallback = fallback.contains(place.ring);
-                let frame = self.frame(&ring);
-                (ring, frame, place.index as usize)
-            })
-            .collect();
-        let corners: Vec<_> =
-            rings.iter().map(|(ring, frame, index)| PatchCorner { ring, frame, index: *index }).collect();
+        let rings = CornerRings::new(topology, half_edges, vertex, |ring, number| {
+            ring.shape.fallback = fallback.contains(number);
+            self.frame(ring)
+        });
+        let corners = rings.corners();
         let four = || <&[_; 4]>::try_from(corners.as_slice()).expect("the patch is a quad");
         match (kind, self) {
             (PatchKind::Regular, _) => bicubic::bicubic_points(four()).into(),

@@ -1,8 +1,9 @@
 //! The CPU twin: every patch of a mesh, constructed and evaluated on the host.
 
 use super::{FaceOrigin, Notice, PatchPlan, Prepared, TableError, prepare_patches};
+use crate::blend::{Blend, Point, Sample, scalar};
 use crate::mesh::ControlMesh;
-use crate::patch::{Blend, Fallback, Point, Sample, Scheme};
+use crate::patch::{Fallback, Scheme};
 use crate::topology::PatchKind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -84,7 +85,7 @@ impl CpuSurface {
         assert_eq!(points.len(), self.plan.patches().len(), "control points of every patch");
         let grids = PatchKind::ALL.map(|kind| grid_parameters(kind, n));
         let patches = self.plan.patches().par_iter().zip(points);
-        let scalar = crate::patch::scalar::<P>;
+        let scalar = scalar::<P>;
         let sample = |(patch, points): (&super::Patch, &Vec<P>)| {
             let parameters = grids[patch.kind as usize].iter();
             parameters.map(|&[u, v]| patch.scheme.evaluate(patch.kind, points, scalar(u), scalar(v))).collect()

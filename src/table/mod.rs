@@ -6,6 +6,7 @@
 //! texel buffers that are large enough for any table
 //! ([`DeviceProperties::reads_texels`](crate::gpu::DeviceProperties::reads_texels)).
 
+mod bytes;
 mod cpu;
 mod error;
 mod lattice;
@@ -19,6 +20,7 @@ mod sharing;
 mod stencils;
 mod subdivision;
 
+pub(crate) use bytes::bytes;
 pub use cpu::{CpuSurface, grid_parameters};
 pub use error::TableError;
 pub(crate) use lattice::{LatticeIndices, MAX_SEGMENTS, TILE_VERTICES, lattice_tiles, lattice_vertices};
@@ -32,8 +34,3 @@ pub use shared::{SharedCorner, SharedTable, SharedTexcoord};
 pub(crate) use sharing::Sharing;
 pub use stencils::StencilTable;
 pub use subdivision::SubdivisionTable;
-
-/// Bytes of a table's array.
-pub(crate) fn bytes<T>(array: &[T]) -> u64 {
-    size_of_val(array) as u64
-}

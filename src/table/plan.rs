@@ -1,6 +1,7 @@
 //! Which faces become which patches, in the order in which they are stored and drawn.
 
-use crate::patch::{Blend, Fallback, FallbackRings, Scheme, Undefined};
+use crate::blend::Blend;
+use crate::patch::{Fallback, FallbackRings, Scheme, Undefined};
 use crate::topology::{PatchKind, Topology, draws_face};
 use rayon::prelude::*;
 use std::ops::Range;

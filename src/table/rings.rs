@@ -1,8 +1,9 @@
 //! The connectivity of the two-stage construction: every one-ring in order, and what its weights are.
 
 use super::PatchPlan;
+use crate::blend::{RingShape, RingValues, Row};
 use crate::constants;
-use crate::patch::{RingShape, RingValues, Row, Scheme};
+use crate::patch::Scheme;
 use crate::topology::{Ring, RingKind, Topology};
 use rayon::prelude::*;
 use std::collections::HashMap;

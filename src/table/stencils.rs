@@ -1,8 +1,9 @@
 //! The weights of the stencil construction, one set for each type of connectivity around a patch.
 
 use super::PatchPlan;
+use crate::blend::{RingShape, RingValues, Row};
 use crate::mesh::MeshError;
-use crate::patch::{FallbackRings, RingShape, RingValues, Row, Scheme};
+use crate::patch::{FallbackRings, Scheme};
 use crate::table::Patch;
 use crate::topology::Topology;
 use rayon::prelude::*;

@@ -1,11 +1,12 @@
 //! What a geometry shader needs to subdivide a face on its own: the vertices around each corner, and what the rules make of
 //! them.
 
-use super::{PatchPlan, bytes};
+use super::PatchPlan;
+use super::bytes::bytes;
+use crate::blend::Row;
 use crate::constants;
 use crate::limit::{EdgeProfile, Fan, FanRows, Fans, LEVELS};
 use crate::mesh::{CreaseMethod, MeshError, SHARPNESS_INFINITE};
-use crate::patch::Row;
 use crate::topology::Topology;
 use std::collections::HashMap;
 

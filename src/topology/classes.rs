@@ -1,6 +1,6 @@
 //! Which patch a face becomes.
 
-use super::Topology;
+use super::half_edges::Topology;
 use crate::mesh::BoundaryRule;
 use crate::named::named;
 

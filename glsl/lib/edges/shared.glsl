@@ -17,7 +17,7 @@ struct SharedEdge {
 };
 
 // The vector across edge j; e0 and e1 are the edge vectors before and after it. Rust twin: `RingValues::across` in
-// src/patch/ring.rs.
+// src/blend/ring.rs.
 vec3 across(Ring ring, uint j, vec3 e0, vec3 e, vec3 e1) {
     float cosine = ring_cosine(ring);
     precise vec3 first = 3.0 * e1 - (3.0 * cosine) * e;

@@ -1,4 +1,4 @@
-// Evaluation that patches share. Rust twins: src/patch/bicubic.rs, src/patch/point.rs.
+// Evaluation that patches share. Rust twins: src/blend/bezier.rs, src/blend/point.rs.
 //
 // glslang does not carry `precise` into called functions: every local of a shared edge's arithmetic says it itself, and so
 // does all else, for a vertex to be the same wherever a shader evaluates it.

@@ -1,4 +1,4 @@
-// A regular patch. Rust twin: `evaluate_bicubic` in src/patch/bicubic.rs.
+// A regular patch. Rust twin: `evaluate_bicubic` in src/blend/bicubic.rs.
 // Of the control points `owned[corner][number]` of whatever stage includes it.
 #ifndef EVALUATE_BICUBIC_GLSL
 #define EVALUATE_BICUBIC_GLSL

@@ -1,5 +1,5 @@
 // What corner k of a bicubic Bezier patch keeps of the control points that it owns, its corner point, two edge points and an inner
-// point: see CONTROL_POINT. Rust twin: `bicubic_points` in src/patch/bicubic.rs.
+// point: see CONTROL_POINT. Rust twin: `bicubic_points` in src/blend/bicubic.rs.
 #ifndef BICUBIC_POINTS_GLSL
 #define BICUBIC_POINTS_GLSL
 

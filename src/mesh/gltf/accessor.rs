@@ -1,7 +1,7 @@
 //! Reading numbers out of buffers, with every range checked: nothing in a file can make this panic or allocate more
 //! than the file is long.
 
-use super::format_error;
+use super::error::format_error;
 use crate::mesh::MeshError;
 use ::gltf::json;
 use json::accessor::{ComponentType, Type};

@@ -1,6 +1,6 @@
 //! From the bytes of a file to its JSON and its buffers.
 
-use super::format_error;
+use super::error::format_error;
 use crate::mesh::MeshError;
 use ::gltf::json;
 use base64::Engine as _;

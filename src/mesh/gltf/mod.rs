@@ -5,6 +5,7 @@
 
 mod accessor;
 mod container;
+mod error;
 mod polygons;
 mod scene;
 
@@ -33,6 +34,7 @@ mod tests;
 use super::{ControlMesh, FaceVarying, MeshData, MeshError};
 use ::gltf::json;
 use accessor::Accessor;
+use error::format_error;
 use glam::{DMat3, DVec3};
 use json::accessor::Type;
 use json::mesh::{Primitive, Semantic};
@@ -92,10 +94,6 @@ impl ControlMesh {
         }
         Self::new(builder.finish())
     }
-}
-
-fn format_error(message: impl Into<String>) -> MeshError {
-    MeshError::Format { message: message.into() }
 }
 
 fn check_extensions(root: &json::Root) -> Result<(), MeshError> {

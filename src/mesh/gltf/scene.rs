@@ -1,6 +1,6 @@
 //! Which meshes a scene shows, and where.
 
-use super::format_error;
+use super::error::format_error;
 use crate::mesh::MeshError;
 use ::gltf::json;
 use glam::{DMat4, DQuat, DVec3};

@@ -1,6 +1,6 @@
 //! One-rings with values at their vertices, and what every corner of a Gregory patch takes from them.
 
-use super::Blend;
+use super::values::Blend;
 use crate::topology::{Ring, RingKind, Topology};
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ pub struct RingShape {
     /// For each face of the ring, whether it is a triangle (else a quad).
     pub triangles: Vec<bool>,
     /// Whether the edges have the curves of Gregory patches, whichever scheme draws the faces: one of
-    /// [`FallbackRings`](super::FallbackRings).
+    /// [`FallbackRings`](crate::patch::FallbackRings).
     pub fallback: bool,
 }
 
@@ -292,7 +292,7 @@ impl<T: Blend> RingValues<T> {
 }
 
 /// The subdominant eigenvalue of Catmull-Clark subdivision around a vertex with `n` faces.
-pub(super) fn tangent_scale(n: usize) -> f64 {
+pub(crate) fn tangent_scale(n: usize) -> f64 {
     let (cos, cos_half) = (cos_sin(1, n)[0], cos_sin(1, 2 * n)[0]);
     (5.0 + cos + cos_half * (18.0 + 2.0 * cos).sqrt()) / 16.0
 }

@@ -1,48 +1,6 @@
-//! Regular faces: bicubic Bezier patches that equal the Catmull-Clark limit surface.
-//!
-//! 16 control points, row-major 4 x 4: point `4 i + j` has index i along u and j along v.
+//! Bezier curves and tensor products of them, whose sums are the same to the bit from either end.
 
-use super::gregory::PatchCorner;
-use super::point::{scalar, unit_normal};
-use super::{Blend, Point, Sample};
-
-/// Control points of a patch.
-pub const POINTS: usize = 16;
-
-/// Where corner k's point, plus edge point, minus edge point and face point stand among the 16.
-pub const CORNER_SLOTS: [[usize; 4]; 4] = [[0, 4, 1, 5], [12, 13, 8, 9], [15, 11, 14, 10], [3, 2, 7, 6]];
-
-/// The Bezier points of a regular quad, from its four corners.
-///
-/// Corner and edge points are those of the rings, as for every other patch; the inner point of a corner is
-/// `(4 v + 2 a + 2 b + d) / 9` with the vertices of the face itself, at a boundary too.
-///
-/// GLSL twin: `glsl/lib/construct/bicubic_points.glsl`.
-pub fn bicubic_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> [T; 16] {
-    let mut points: [T; 16] = std::array::from_fn(|_| T::default());
-    for (k, corner) in corners.iter().enumerate() {
-        let centre = |step: usize| &corners[(k + step) % 4].ring.centre;
-        let inner =
-            T::sum([(4.0 / 9.0, centre(0)), (2.0 / 9.0, centre(1)), (2.0 / 9.0, centre(3)), (1.0 / 9.0, centre(2))]);
-        for (slot, point) in
-            CORNER_SLOTS[k].into_iter().zip([corner.frame.p.clone(), corner.plus(), corner.minus(), inner])
-        {
-            points[slot] = point;
-        }
-    }
-    points
-}
-
-/// A bicubic Bezier patch at (u, v).
-///
-/// GLSL twin: `glsl/lib/evaluate/evaluate_bicubic.glsl`.
-pub fn evaluate_bicubic<P: Point>(points: &[P; 16], u: P::Scalar, v: P::Scalar) -> Sample<P> {
-    let corner = |slots: [usize; 4]| {
-        let [p, plus, minus, inner] = slots.map(|slot| points[slot]);
-        TensorCorner::new(p, plus - p, minus - p, inner - p)
-    };
-    evaluate_tensor(&CORNER_SLOTS.map(corner), u, v)
-}
+use super::point::{Point, Sample, scalar, unit_normal};
 
 /// The cubic Bernstein polynomials at a parameter.
 pub(crate) struct Basis<S> {

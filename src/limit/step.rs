@@ -1,0 +1,280 @@
+//! One step of Catmull-Clark refinement of positions and tags: any face sizes, boundaries, semi-sharp creases and corners,
+//! both crease methods and both triangle rules (patch_maths A).
+
+use super::sharpness::{children, decrement, edge_weight, parent_weight};
+use super::stencils::{MIN_LEN, Stencils};
+use crate::blend::{Blend, Row};
+use crate::mesh::{BoundaryRule, Corner, Crease, MeshData, SHARPNESS_INFINITE, TriangleRule};
+use crate::topology::Topology;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// The refined mesh without what it has by face corner, and without holes; its positions as sums of the coarse mesh's.
+pub(super) fn refine_vertices(topology: &Topology) -> (MeshData, Stencils) {
+    let step = Step::new(topology);
+    let stencils = Stencils::new(step.rows());
+    let mesh = topology.mesh();
+    let coarse: Vec<DVec3> = mesh.data().positions.iter().map(|&p| p.into()).collect();
+    let corners = mesh.corner_count();
+    let corner = |h: usize| {
+        let h = h as u32;
+        [topology.vertex(h), step.edge_vertex(h), step.face_vertex(h), step.edge_vertex(topology.prev(h))]
+    };
+    let refined = MeshData {
+        positions: stencils.apply(&coarse).into_iter().map(Into::into).collect(),
+        face_sizes: vec![4; corners],
+        face_vertices: (0..corners).flat_map(corner).collect(),
+        creases: step.child_creases(),
+        corners: step.child_corners(),
+        boundary: mesh.data().boundary,
+        crease_method: mesh.data().crease_method,
+        // After one step there are no triangles.
+        triangle_rule: TriangleRule::CatmullClark,
+        ..MeshData::default()
+    };
+    (refined, stencils)
+}
+
+/// The rule at a vertex, by what is sharp there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Rule {
+    /// Nothing or one edge (a dart) is sharp.
+    Smooth,
+    /// Two edges are sharp: their half-edges' far vertices.
+    Crease([u32; 2]),
+    Corner,
+}
+
+/// An edge end that is sharp: seen from one vertex.
+#[derive(Clone, Copy)]
+struct SharpEnd {
+    /// The vertex of the mesh at the other end.
+    far: u32,
+    sharpness: f32,
+    /// What is left of it in the child edge at this vertex.
+    child: f32,
+}
+
+struct Step<'t> {
+    topology: &'t Topology,
+    /// The edge of each half-edge.
+    edges: Vec<u32>,
+    /// A half-edge of each edge.
+    edge_half_edges: Vec<u32>,
+    /// The sharp edge ends of the vertices that have any.
+    sharp_ends: HashMap<u32, Vec<(u32, SharpEnd)>>,
+    /// Sharpness of the manifold vertices that have any.
+    vertex_sharpness: HashMap<u32, f32>,
+}
+
+impl<'t> Step<'t> {
+    fn new(topology: &'t Topology) -> Self {
+        let corners = topology.mesh().corner_count() as u32;
+        let mut edges = vec![0; corners as usize];
+        let mut edge_half_edges = Vec::new();
+        for h in 0..corners {
+            edges[h as usize] = match topology.twin(h) {
+                Some(twin) if twin < h => edges[twin as usize],
+                _ => {
+                    edge_half_edges.push(h);
+                    edge_half_edges.len() as u32 - 1
+                }
+            };
+        }
+        let mut step =
+            Self { topology, edges, edge_half_edges, sharp_ends: HashMap::new(), vertex_sharpness: HashMap::new() };
+        step.find_sharp_ends();
+        step.find_sharp_vertices();
+        step
+    }
+
+    fn edge_vertex(&self, h: u32) -> u32 {
+        self.topology.vertex_count() as u32 + self.edges[h as usize]
+    }
+
+    fn face_vertex(&self, h: u32) -> u32 {
+        (self.topology.vertex_count() + self.edge_half_edges.len()) as u32 + self.topology.face(h)
+    }
+
+    /// The manifold vertices at the two ends of an edge.
+    fn ends(&self, edge: u32) -> [u32; 2] {
+        let h = self.edge_half_edges[edge as usize];
+        [self.topology.vertex(h), self.topology.vertex(self.topology.next(h))]
+    }
+
+    fn find_sharp_ends(&mut self) {
+        let topology = self.topology;
+        for (edge, &h) in (0..).zip(&self.edge_half_edges) {
+            let sharpness = topology.sharpness(h);
+            if sharpness > 0.0 {
+                let [a, b] = self.ends(edge);
+                for (near, far) in [(a, b), (b, a)] {
+                    let end = SharpEnd { far: topology.source(far), sharpness, child: 0.0 };
+                    self.sharp_ends.entry(near).or_default().push((edge, end));
+                }
+            }
+        }
+        for ends in self.sharp_ends.values_mut() {
+            let sharpness: Vec<f32> = ends.iter().map(|(_, end)| end.sharpness).collect();
+            let children = children(topology.mesh().data().crease_method, &sharpness);
+            ends.iter_mut().zip(children).for_each(|((_, end), child)| end.child = child);
+        }
+    }
+
+    fn find_sharp_vertices(&mut self) {
+        let topology = self.topology;
+        let corners_are_sharp = topology.mesh().data().boundary == BoundaryRule::EdgeAndCorner;
+        for h in 0..topology.mesh().corner_count() as u32 {
+            let lone = topology.twin(h).is_none() && topology.twin(topology.prev(h)).is_none();
+            let sharpness = match lone && corners_are_sharp {
+                true => SHARPNESS_INFINITE,
+                false => topology.vertex_sharpness(topology.mesh_vertex(h)),
+            };
+            if sharpness > 0.0 {
+                self.vertex_sharpness.insert(topology.vertex(h), sharpness);
+            }
+        }
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let topology = self.topology;
+        let mut start = vec![u32::MAX; topology.vertex_count()];
+        for h in 0..topology.mesh().corner_count() as u32 {
+            let first = &mut start[topology.vertex(h) as usize];
+            *first = (*first).min(h);
+        }
+        let vertices = start.into_par_iter().with_min_len(MIN_LEN).map(|h| self.vertex_row(h));
+        let edges =
+            (0..self.edge_half_edges.len() as u32).into_par_iter().with_min_len(MIN_LEN).map(|e| self.edge_row(e));
+        let faces =
+            (0..topology.mesh().face_count() as u32).into_par_iter().with_min_len(MIN_LEN).map(|f| self.face_row(f));
+        vertices.chain(edges).chain(faces).collect()
+    }
+
+    fn unit(&self, half_edge: u32) -> Row {
+        Row::unit(self.topology.mesh_vertex(half_edge))
+    }
+
+    fn face_row(&self, face: u32) -> Row {
+        let vertices = self.topology.mesh().face(face);
+        let mut row = Row::default();
+        for &vertex in vertices {
+            row.add_scaled(1.0 / vertices.len() as f64, &Row::unit(vertex));
+        }
+        row
+    }
+
+    fn edge_row(&self, edge: u32) -> Row {
+        let topology = self.topology;
+        let h = self.edge_half_edges[edge as usize];
+        let (from, to) = (self.unit(h), self.unit(topology.next(h)));
+        let sharp = Row::sum([(0.5, &from), (0.5, &to)]);
+        let Some(twin) = topology.twin(h) else { return sharp };
+        let sharpness = topology.sharpness(h);
+        let children = self.ends(edge).map(|vertex| self.child_sharpness(edge, vertex));
+        let weight = f64::from(edge_weight(topology.mesh().data().crease_method, sharpness, children));
+        if weight == 1.0 {
+            return sharp;
+        }
+        let (left, right) = (self.face_row(topology.face(h)), self.face_row(topology.face(twin)));
+        let face_weight = self.edge_face_weight(h, twin);
+        let end_weight = 0.5 - face_weight;
+        let smooth = [(end_weight, &from), (end_weight, &to), (face_weight, &left), (face_weight, &right)];
+        let smooth = Row::sum(smooth);
+        if weight == 0.0 { smooth } else { Row::sum([(weight, &sharp), (1.0 - weight, &smooth)]) }
+    }
+
+    /// The weight of each face point in a smooth edge point: 1/4, more next to triangles under OpenSubdiv's smooth
+    /// triangle rule (0.47 stands for a triangle).
+    fn edge_face_weight(&self, h: u32, twin: u32) -> f64 {
+        if self.topology.mesh().data().triangle_rule == TriangleRule::CatmullClark {
+            return 0.25;
+        }
+        let weight = |h: u32| if self.topology.face_size(h) == 3 { 0.470 } else { 0.25 };
+        0.5 * (weight(h) + weight(twin))
+    }
+
+    fn child_sharpness(&self, edge: u32, vertex: u32) -> f32 {
+        let ends = self.sharp_ends.get(&vertex).map_or(&[][..], Vec::as_slice);
+        ends.iter().find(|(e, _)| *e == edge).map_or(0.0, |(_, end)| end.child)
+    }
+
+    fn vertex_row(&self, half_edge: u32) -> Row {
+        let vertex = self.topology.vertex(half_edge);
+        let none = Vec::new();
+        let ends = self.sharp_ends.get(&vertex).unwrap_or(&none);
+        let sharpness = self.vertex_sharpness.get(&vertex).copied().unwrap_or(0.0);
+        let rule = |sharpness: f32, of: fn(&SharpEnd) -> f32| {
+            let sharp: Vec<u32> = ends.iter().filter(|(_, e)| of(e) > 0.0).map(|(_, e)| e.far).collect();
+            match *sharp {
+                _ if sharpness > 0.0 => Rule::Corner,
+                [] | [_] => Rule::Smooth,
+                [a, b] => Rule::Crease([a, b]),
+                _ => Rule::Corner,
+            }
+        };
+        let parent = rule(sharpness, |e| e.sharpness);
+        let child = rule(decrement(sharpness), |e| e.child);
+        let row = self.masked(half_edge, parent);
+        if parent == Rule::Smooth || std::mem::discriminant(&parent) == std::mem::discriminant(&child) {
+            return row;
+        }
+        let edges: Vec<(f32, f32)> = ends.iter().map(|(_, e)| (e.sharpness, e.child)).collect();
+        let weight = f64::from(parent_weight(self.topology.mesh().data().crease_method, &edges, sharpness));
+        Row::sum([(weight, &row), (1.0 - weight, &self.masked(half_edge, child))])
+    }
+
+    fn masked(&self, half_edge: u32, rule: Rule) -> Row {
+        let centre = self.unit(half_edge);
+        match rule {
+            Rule::Corner => centre,
+            Rule::Crease([a, b]) => Row::sum([(0.75, &centre), (0.125, &Row::unit(a)), (0.125, &Row::unit(b))]),
+            Rule::Smooth => {
+                let topology = self.topology;
+                let mut around = vec![half_edge];
+                let mut at = half_edge;
+                while let Some(next) = topology.twin(topology.prev(at)) {
+                    if next == half_edge {
+                        break;
+                    }
+                    around.push(next);
+                    at = next;
+                }
+                let n = around.len() as f64;
+                let mut row = Row::default();
+                row.add_scaled((n - 2.0) / n, &centre);
+                for h in around {
+                    row.add_scaled(1.0 / (n * n), &self.unit(topology.next(h)));
+                    row.add_scaled(1.0 / (n * n), &self.face_row(topology.face(h)));
+                }
+                row
+            }
+        }
+    }
+
+    fn child_creases(&self) -> Vec<Crease> {
+        let mut creases = Vec::new();
+        for (edge, &h) in self.edge_half_edges.iter().enumerate() {
+            let edge = edge as u32;
+            if self.topology.twin(h).is_none() || self.topology.sharpness(h) == 0.0 {
+                continue;
+            }
+            for vertex in self.ends(edge) {
+                let sharpness = self.child_sharpness(edge, vertex);
+                if sharpness > 0.0 {
+                    creases.push(Crease { vertices: [vertex, self.edge_vertex(h)], sharpness });
+                }
+            }
+        }
+        creases
+    }
+
+    fn child_corners(&self) -> Vec<Corner> {
+        // In the refined mesh touching fans are apart: from now on a tag keeps them together.
+        let sharpness = |vertex| decrement(self.topology.vertex_sharpness(self.topology.source(vertex)));
+        let vertices =
+            (0..self.topology.vertex_count() as u32).map(|vertex| Corner { vertex, sharpness: sharpness(vertex) });
+        vertices.filter(|corner| corner.sharpness > 0.0).collect()
+    }
+}
