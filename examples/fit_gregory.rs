@@ -9,8 +9,8 @@
 
 use ash_subdiv::limit::{LimitSurface, refine};
 use ash_subdiv::patch::fitted::{Fit, fitted_frame, fitted_transversal};
-use ash_subdiv::patch::gregory::{PatchCorner, gregory_points};
-use ash_subdiv::patch::{RingValues, Scheme};
+use ash_subdiv::patch::gregory::gregory_points;
+use ash_subdiv::patch::{PatchCorner, RingValues, Scheme};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData, MeshError};
 use glam::DVec3;

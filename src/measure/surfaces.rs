@@ -59,7 +59,8 @@ impl Surfaces<'_> {
     /// Control points of one of the schemes over one of the faces.
     pub(super) fn control_points(&self, scheme: usize, face: usize) -> Vec<DVec3> {
         let SchemePatches { plan, patches } = &self.schemes[scheme];
-        patches[face].control_points(self.topology, plan.fallback_rings(), |vertex| self.topology.mesh().position(vertex))
+        patches[face]
+            .control_points(self.topology, plan.fallback_rings(), |vertex| self.topology.mesh().position(vertex))
     }
 
     /// The patch at parameters of a part of the limit surface.
