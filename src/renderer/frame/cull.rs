@@ -6,6 +6,7 @@
 //! makes those of all patches, and the draws make those of the patches that are left again.
 
 use super::lists::{FrameLists, ListLayout};
+use super::resolved::ResolvedItem;
 use super::visible::{ItemLists, List, VisibleItem, VisibleItems};
 use super::{Renderer, RetiredObject};
 #[cfg(doc)]
@@ -46,7 +47,7 @@ impl Renderer {
         let view_offset = self.take_view(frame_index, view)?;
         let mut bytes = 0;
         for item in items {
-            self.check_item(view, item)?;
+            self.resolve(view, item)?;
             let lists = self.listed_groups(item)?.next().is_some();
             self.make_cuts(item.model, item.factor, item.cull, lists)?;
             for (_, stages, group) in self.listed_groups(item)? {
@@ -142,7 +143,7 @@ impl Renderer {
     }
 
     fn take_lists(&mut self, frame: u32, view: &View, item: &DrawItem) -> Result<Vec<List>, Error> {
-        let (model, most) = self.check_item(view, item)?;
+        let ResolvedItem { model, most, .. } = self.resolve(view, item)?;
         let mut lists = Vec::new();
         for (number, stages, group) in self.listed_groups(item)? {
             let layout = ListLayout::new(stages);
@@ -160,8 +161,7 @@ impl Renderer {
     unsafe fn cmd_lists(&self, cmd: vk::CommandBuffer, visible: &VisibleItems) -> Result<(), Error> {
         use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
         for VisibleItem { item, lists, .. } in &visible.items {
-            let (model, most) = self.check_item(&visible.view, item)?;
-            let of_draw = item.constants(model, self.style(item)?, &visible.view, most);
+            let ResolvedItem { model, constants: of_draw, .. } = self.resolve(&visible.view, item)?;
             let drawn = model.drawn(item.factor)?;
             for list in lists {
                 let constants = list.constants(model, drawn, &of_draw);

@@ -1,29 +1,15 @@
 //! Recording the draws of a view.
 
 use super::Renderer;
+use super::resolved::ResolvedItem;
 use super::visible::ItemLists;
-use crate::constants::COUNTER_CLOCKWISE_FLAG;
 use crate::renderer::evaluate::{Bound, BoundLattice, DrawnGroup, Recorder, path};
 use crate::renderer::model::Model;
-use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View, is_size};
-use crate::renderer::shader::{Cut, DrawConstants, GeometryKey, PatchStages, PipelineKey, ViewData};
+use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View};
+use crate::renderer::shader::{Cut, GeometryKey, PatchStages, PipelineKey, ViewData};
 #[cfg(doc)]
 use crate::table::Evaluation;
 use ash::vk;
-
-impl DrawItem {
-    /// What the shaders know of it, for all patches; `most` is the largest factor of an edge.
-    pub(crate) fn constants(&self, model: &Model, style: &Style, view: &View, most: f32) -> DrawConstants {
-        let [scale, bias] = self.displacement;
-        let value = match self.factor {
-            Factor::Uniform(factor) => factor.min(most),
-            factor => factor.value(),
-        };
-        let back = if style.leaves_out_counter_clockwise(&self.transform, view) { COUNTER_CLOCKWISE_FLAG } else { 0 };
-        let flags = model.displacement_flags(self.displacement) | back;
-        DrawConstants { flags, ..DrawConstants::new(&self.transform, [value, scale, bias]) }
-    }
-}
 
 impl Renderer {
     /// Records the draws of one view: items in their order, the kinds of patches of each in any. Viewport and scissor are the
@@ -123,8 +109,7 @@ impl Renderer {
         lists: Option<ItemLists>,
         bound: &mut Bound,
     ) -> Result<(), Error> {
-        let style = self.style(item)?;
-        let (model, most) = self.check_item(view, item)?;
+        let ResolvedItem { model, style, most, constants } = self.resolve(view, item)?;
         let (device, layout) = (self.context.device(), self.pipelines.draws.layout.raw());
         if bound.set != model.set.raw {
             bound.set = model.set.raw;
@@ -132,7 +117,6 @@ impl Renderer {
             // SAFETY: as the caller of `cmd_draw` promises.
             unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set.raw], &[]) };
         }
-        let constants = item.constants(model, style, view, most);
         let properties = self.context.properties();
         let mut recorder = Recorder { device, properties, layout, cmd, bound, constants };
         // SAFETY: as the caller of `cmd_draw` promises.
@@ -215,40 +199,6 @@ impl Renderer {
             unsafe { path.cmd_draw(recorder, drawn, &DrawnGroup { number, stages, group, most, control_points }) };
         }
         Ok(())
-    }
-
-    pub(crate) fn style(&self, item: &DrawItem) -> Result<&Style, Error> {
-        let styles = self.pipelines.draws.styles();
-        styles.get(item.style).ok_or(Error::NoSuchStyle { given: item.style, count: styles.len() })
-    }
-
-    /// Tells whether an item can be drawn. Gives its model, and the largest factor that any edge may have.
-    pub(crate) fn check_item(&self, view: &View, item: &DrawItem) -> Result<(&Model, f32), Error> {
-        let (id, factor) = (item.model, item.factor);
-        let model = self.model(id)?;
-        if !model.prepared {
-            return Err(Error::NotPrepared { id });
-        }
-        if !factor.is_valid() {
-            return Err(Error::BadFactor { id, factor });
-        }
-        if !is_size(view.measured().viewport) && (factor.needs_viewport() || item.cull.small) {
-            return Err(Error::NoViewport { id });
-        }
-        let [scale, bias] = item.displacement;
-        if !(scale.is_finite() && bias.is_finite()) {
-            return Err(Error::BadDisplacement { id, scale, bias });
-        }
-        let max = self.context.properties().max_tessellation_level as f32;
-        let most = match factor {
-            Factor::Uniform(factor) => factor.min(max),
-            Factor::Pixels(_) | Factor::Curvature(_) => max,
-            Factor::Edges(scale) => {
-                let largest = model.largest_edge_factor().ok_or(Error::NoEdgeFactors { id })?;
-                (scale * largest).clamp(1.0, max)
-            }
-        };
-        Ok((model, most))
     }
 
     unsafe fn bind(&self, cmd: vk::CommandBuffer, style: &Style, pipeline: Option<vk::Pipeline>, bound: &mut Bound) {

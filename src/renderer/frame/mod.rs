@@ -6,6 +6,7 @@ mod cull;
 mod draw;
 mod lists;
 mod prepare;
+mod resolved;
 pub(crate) mod segments;
 pub(crate) mod visible;
 
