@@ -57,7 +57,6 @@ layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 #ifdef TEXCOORD
 layout(location = 2) out vec2 out_texcoord;
-layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
 #endif
 #ifdef CAPTURE_GRID
 #include "capture/capture.glsl"
@@ -100,7 +99,7 @@ void gather(int k, Fan fan) {
     vec3 centre = vertex_position(fan.vertex);
     ivec2 place = CORNER[k];
     profiles[k] = fan_profile(fan, fan.face);
-    creased[k] = fan_words[profiles[k] + 11u];
+    creased[k] = table_words[profiles[k] + 11u];
     vec3 a_before = fan_neighbour(fan, fan.face - 1);
     vec3 a_after = fan_neighbour(fan, fan.face + 2);
     coarse[at(place)] = centre;
@@ -128,17 +127,17 @@ void gather(int k, Fan fan) {
     precise vec3 spoke_sums[LEVEL - 1][4];
     uint rows[4];
     UNROLL for (int i = 0; i < 4; ++i) {
-        int row = int(fan_words[fan.type]) + int(fan_words[fan.type + 1u]) * fan_edge(fan, fan.face - 1 + i);
+        int row = int(table_words[fan.type]) + int(table_words[fan.type + 1u]) * fan_edge(fan, fan.face - 1 + i);
         rows[i] = fan.type + uint(row);
         UNROLL for (int level = 0; level < LEVEL - 1; ++level) {
             spoke_sums[level][i] = vec3(0.0);
         }
     }
 #endif
-    uint of_tangents = fan.type + fan_words[fan.type + 2u + 2u * LEVEL] + fan_words[fan.type + 3u + 2u * LEVEL] * uint(fan.face);
+    uint of_tangents = fan.type + table_words[fan.type + 2u + 2u * LEVEL] + table_words[fan.type + 3u + 2u * LEVEL] * uint(fan.face);
     precise vec3 a = vec3(0.0), b = vec3(0.0);
     for (int i = 0; i < fan.faces + fan.edges; ++i) {
-        precise vec3 x = vertex_position(fan_entries[fan.entries + 3u * uint(i / 2) + uint(i % 2)]) - centre;
+        precise vec3 x = vertex_position(table_words[fan.entries + 3u * uint(i / 2) + uint(i % 2)]) - centre;
         a += fan_weight(of_tangents + 2u * uint(i)) * x;
         b += fan_weight(of_tangents + 2u * uint(i) + 1u) * x;
 #if LEVEL > 0
@@ -287,8 +286,8 @@ void emit(ivec2 p) {
     gl_Position = to_clip(world_position);
 #ifdef TEXCOORD
     uint corner = draw.first_corner + 4u * patch_number[0];
-    vec2 uv[4] = { texcoords[corner + turned(0)], texcoords[corner + turned(1)], texcoords[corner + turned(2)],
-                   texcoords[corner + turned(3)] };
+    vec2 uv[4] = { corner_texcoord(corner + turned(0)), corner_texcoord(corner + turned(1)),
+                   corner_texcoord(corner + turned(2)), corner_texcoord(corner + turned(3)) };
     out_texcoord = INTERPOLATED(uv, (vec2(p) / float(SIDE)));
 #endif
     EmitVertex();

@@ -1,7 +1,7 @@
 //! Renderers that are kept from one use to the next: making their pipelines takes longer than most of what they are asked for.
 
 use super::buffer::{HEAD_BYTES, Head, RECORD_BYTES, capture_buffer};
-use crate::gpu::{Buffer, DescriptorSet, Owned, descriptor_set_layout};
+use crate::gpu::{Buffer, DescriptorPool, DescriptorSet, SetLayout, descriptor_set_layout};
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::renderer::{
     Capture, DrawItem, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, ShaderId, Style, Target, View,
@@ -9,7 +9,7 @@ use crate::renderer::{
 use ash::vk;
 use bytemuck::Zeroable;
 use std::collections::VecDeque;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Entries that a pool keeps: a driver may take 20 MB for a pipeline.
 const KEPT: usize = 4;
@@ -47,7 +47,8 @@ impl<K: PartialEq, T> Idle<K, T> {
 pub(super) struct Watcher {
     pub renderer: Renderer,
     /// Layout of set 2.
-    pub layout: Owned<vk::DescriptorSetLayout>,
+    pub layout: SetLayout,
+    pub sets: Arc<DescriptorPool>,
     pub target: Offscreen,
     /// Where triangles are written down, the evaluation shader has a buffer to itself, and writes none of its vertices.
     pub idle: Option<Buffer>,
@@ -74,6 +75,7 @@ impl Watcher {
             idle = Some(buffer);
         }
         let layout = descriptor_set_layout(context, "capture", &bindings)?;
+        let sets = DescriptorPool::new(context, "capture", &[&layout]);
         let target = Offscreen::new(headless, &OffscreenDesc::new(4, 4))?;
         let options = Options {
             frames_in_flight: 1,
@@ -88,7 +90,7 @@ impl Watcher {
         // SAFETY: the set layout is that of the capture buffer and outlives the renderer, which is dropped when idle:
         // every submission is waited for.
         let renderer = unsafe { Renderer::with_capture(context, &render_target, &options, mode)? };
-        Ok(Self { renderer, layout, target, idle })
+        Ok(Self { renderer, layout, sets, target, idle })
     }
 
     /// Draws, and reads what the shaders wrote behind `head` into a buffer of `bytes` more.
@@ -101,16 +103,15 @@ impl Watcher {
         head: Head,
         bytes: u64,
     ) -> Result<Vec<f32>, Error> {
-        let Self { renderer, layout, target, idle } = self;
+        let Self { renderer, layout, sets, target, idle } = self;
         let size = HEAD_BYTES + bytes;
         let mut buffer = capture_buffer(headless.context(), size)?;
         // What no shader writes is NaN.
         buffer.write(0, &vec![f32::NAN; size as usize / 4])?;
         buffer.write(0, &[head])?;
-        let part = |buffer: &Buffer| (vk::DescriptorType::STORAGE_BUFFER, buffer.descriptor());
-        let parts: Vec<_> = idle.iter().chain([&buffer]).map(part).collect();
+        let parts: Vec<_> = idle.iter().chain([&buffer]).map(Buffer::descriptor).collect();
         // SAFETY: the layout is of this device, and has as many; every submission is waited for.
-        let set = unsafe { DescriptorSet::of_buffers(headless.context(), layout.raw(), "capture", &parts)? };
+        let set = unsafe { DescriptorSet::of_buffers(sets, layout, "capture", &parts)? };
         let pipeline_layout = renderer.pipeline_layout();
         // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
         headless.try_submit(|cmd| unsafe {

@@ -3,7 +3,9 @@
 use super::error::CliError;
 use super::legend::{self, COLOURS};
 use ash::vk;
-use ash_subdiv::gpu::{Buffer, BufferDesc, DescriptorSet, DeviceContext, MemoryLocation, Owned, descriptor_set_layout};
+use ash_subdiv::gpu::{
+    Buffer, BufferDesc, DescriptorPool, DescriptorSet, DeviceContext, MemoryLocation, SetLayout, descriptor_set_layout,
+};
 use ash_subdiv::headless::Headless;
 use ash_subdiv::measure::{Quantity, error_field};
 use ash_subdiv::mesh::{FaceVarying, MeshData};
@@ -108,7 +110,7 @@ fn round_up(value: f64) -> f64 {
 
 /// The errors on the device, with the descriptor set that the fragment shader finds them in.
 pub(super) struct ErrorSet {
-    pub layout: Owned<vk::DescriptorSetLayout>,
+    pub layout: SetLayout,
     pub set: DescriptorSet,
     _buffer: Buffer,
 }
@@ -130,8 +132,9 @@ impl ErrorSet {
         buffer.write(0, &bytes)?;
         let ty = vk::DescriptorType::STORAGE_BUFFER;
         let layout = descriptor_set_layout(context, NAME, &[(ty, vk::ShaderStageFlags::FRAGMENT)])?;
-        // SAFETY: the layout is of this device, with this descriptor; the buffer goes with the set.
-        let set = unsafe { DescriptorSet::of_buffers(context, layout.raw(), NAME, &[(ty, buffer.descriptor())])? };
+        let pool = DescriptorPool::new(context, NAME, &[&layout]);
+        // SAFETY: the layout is that of the pool, with this descriptor; the buffer goes with the set.
+        let set = unsafe { DescriptorSet::of_buffers(&pool, &layout, NAME, &[buffer.descriptor()])? };
         Ok(Self { layout, set, _buffer: buffer })
     }
 

@@ -4,13 +4,32 @@ use ash::vk;
 
 use super::{DeviceContext, GpuError, Owned, VkResultExt};
 
+/// A descriptor set layout, and its bindings.
+#[derive(Debug)]
+pub struct SetLayout {
+    raw: Owned<vk::DescriptorSetLayout>,
+    bindings: Vec<(vk::DescriptorType, vk::ShaderStageFlags)>,
+}
+
+impl SetLayout {
+    /// The handle.
+    pub fn raw(&self) -> vk::DescriptorSetLayout {
+        self.raw.raw()
+    }
+
+    /// The type of the descriptor at each of the bindings 0, 1, ..., and the stages that see it.
+    pub fn bindings(&self) -> &[(vk::DescriptorType, vk::ShaderStageFlags)] {
+        &self.bindings
+    }
+}
+
 /// A descriptor set layout with one descriptor at each of the bindings 0, 1, ...
 pub fn descriptor_set_layout(
     context: &Arc<DeviceContext>,
     name: &str,
     bindings: &[(vk::DescriptorType, vk::ShaderStageFlags)],
-) -> Result<Owned<vk::DescriptorSetLayout>, GpuError> {
-    let bindings: Vec<_> = (0..)
+) -> Result<SetLayout, GpuError> {
+    let described: Vec<_> = (0..)
         .zip(bindings)
         .map(|(binding, &(descriptor, stages))| {
             vk::DescriptorSetLayoutBinding::default()
@@ -20,80 +39,13 @@ pub fn descriptor_set_layout(
                 .stage_flags(stages)
         })
         .collect();
-    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&described);
     // SAFETY: the description is valid, and the layout is taken over by `Owned`.
     unsafe {
         let raw = context.device().create_descriptor_set_layout(&info, None).of("vkCreateDescriptorSetLayout", name)?;
-        Ok(Owned::new(context, raw, name))
-    }
-}
-
-/// A descriptor set, with a pool of its own that goes with it.
-#[derive(Debug)]
-pub struct DescriptorSet {
-    raw: vk::DescriptorSet,
-    _pool: Owned<vk::DescriptorPool>,
-}
-
-impl DescriptorSet {
-    /// A set with nothing in it, whose layout has so many descriptors of each type.
-    ///
-    /// # Safety
-    ///
-    /// The layout is of this device, and has these descriptors.
-    pub unsafe fn new(
-        context: &Arc<DeviceContext>,
-        layout: vk::DescriptorSetLayout,
-        name: &str,
-        descriptors: &[(vk::DescriptorType, u32)],
-    ) -> Result<Self, GpuError> {
-        let size = |&(ty, descriptor_count): &(_, _)| vk::DescriptorPoolSize { ty, descriptor_count };
-        let sizes: Vec<_> = descriptors.iter().map(size).collect();
-        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-        let (device, layouts) = (context.device(), [layout]);
-        // SAFETY: as the caller promises; the pool is taken over by `Owned` and has room for the set.
-        unsafe {
-            let pool = device.create_descriptor_pool(&info, None).of("vkCreateDescriptorPool", name)?;
-            let pool = Owned::new(context, pool, name);
-            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool.raw()).set_layouts(&layouts);
-            let sets = device.allocate_descriptor_sets(&info).of("vkAllocateDescriptorSets", name)?;
-            context.set_name(sets[0], name);
-            Ok(Self { raw: sets[0], _pool: pool })
-        }
-    }
-
-    /// A set with parts of buffers at the bindings 0, 1, ...
-    ///
-    /// # Safety
-    ///
-    /// The layout is of this device, and has these descriptors. The buffers live as long as the set is used.
-    pub unsafe fn of_buffers(
-        context: &Arc<DeviceContext>,
-        layout: vk::DescriptorSetLayout,
-        name: &str,
-        buffers: &[(vk::DescriptorType, vk::DescriptorBufferInfo)],
-    ) -> Result<Self, GpuError> {
-        let descriptors: Vec<_> = buffers.iter().map(|&(ty, _)| (ty, 1)).collect();
-        // SAFETY: as the caller promises.
-        let set = unsafe { Self::new(context, layout, name, &descriptors)? };
-        let writes: Vec<_> = (0..)
-            .zip(buffers)
-            .map(|(binding, (ty, buffer))| {
-                vk::WriteDescriptorSet::default()
-                    .dst_set(set.raw)
-                    .dst_binding(binding)
-                    .descriptor_type(*ty)
-                    .buffer_info(std::slice::from_ref(buffer))
-            })
-            .collect();
-        // SAFETY: as the caller promises; the set is new.
-        unsafe { context.device().update_descriptor_sets(&writes, &[]) };
-        Ok(set)
-    }
-
-    /// The handle.
-    pub fn raw(&self) -> vk::DescriptorSet {
-        self.raw
+        #[cfg(test)]
+        demand::set_made(raw, bindings);
+        Ok(SetLayout { raw: Owned::new(context, raw, name), bindings: bindings.to_vec() })
     }
 }
 
@@ -126,6 +78,44 @@ pub unsafe fn pipeline_layout(
     // SAFETY: as the caller promises; the layout is taken over by `Owned`.
     unsafe {
         let raw = context.device().create_pipeline_layout(&info, None).of("vkCreatePipelineLayout", name)?;
+        #[cfg(test)]
+        demand::layout_made(set_layouts);
         Ok(Owned::new(context, raw, name))
+    }
+}
+
+/// Storage buffers that the pipeline layouts made by this thread demand of a shader stage.
+#[cfg(test)]
+pub(crate) mod demand {
+    use ash::vk;
+    use std::cell::{Cell, RefCell};
+    use std::collections::HashMap;
+
+    type Bindings = Vec<(vk::DescriptorType, vk::ShaderStageFlags)>;
+
+    thread_local! {
+        static SETS: RefCell<HashMap<vk::DescriptorSetLayout, Bindings>> = RefCell::default();
+        static MOST: Cell<u32> = const { Cell::new(0) };
+    }
+
+    pub(super) fn set_made(layout: vk::DescriptorSetLayout, bindings: &[(vk::DescriptorType, vk::ShaderStageFlags)]) {
+        SETS.with_borrow_mut(|sets| sets.insert(layout, bindings.to_vec()));
+    }
+
+    pub(super) fn layout_made(sets: &[vk::DescriptorSetLayout]) {
+        let bindings: Bindings = SETS.with_borrow(|known| sets.iter().flat_map(|set| known[set].clone()).collect());
+        for stage in (0..32).map(|bit| vk::ShaderStageFlags::from_raw(1 << bit)) {
+            let counts = |&&(ty, stages): &&(vk::DescriptorType, vk::ShaderStageFlags)| {
+                use vk::DescriptorType as Type;
+                stages.contains(stage) && matches!(ty, Type::STORAGE_BUFFER | Type::STORAGE_BUFFER_DYNAMIC)
+            };
+            let count = bindings.iter().filter(counts).count() as u32;
+            MOST.set(MOST.get().max(count));
+        }
+    }
+
+    /// The most of any stage so far.
+    pub(crate) fn most() -> u32 {
+        MOST.get()
     }
 }

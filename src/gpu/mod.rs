@@ -10,6 +10,7 @@
 mod allocator;
 mod batch;
 mod buffer;
+mod descriptors;
 mod device;
 mod error;
 mod features;
@@ -22,11 +23,14 @@ mod stages;
 pub use allocator::{Allocation, AllocationRequest, Allocator, AllocatorError, Dedicated, MemoryLocation};
 pub use batch::{Domain, PatchBatch, PatchDraw, Spacing, tessellated_vertices};
 pub use buffer::{Buffer, BufferDesc};
+pub use descriptors::{DescriptorPool, DescriptorSet};
 pub use device::{ContextOptions, DeviceContext, DeviceProperties, MAX_OFFSET_ALIGNMENT, MAX_WORKGROUPS, version_text};
 pub use error::{GpuError, VkResultExt};
 pub use features::Features;
 pub use image::{Image, ImageDesc, aspects};
-pub use layout::{DescriptorSet, descriptor_set_layout, pipeline_layout};
+#[cfg(test)]
+pub(crate) use layout::demand;
+pub use layout::{SetLayout, descriptor_set_layout, pipeline_layout};
 pub use owned::{DeviceHandle, Owned};
 pub use pipeline::{Blend, ComputePipelineDesc, DepthBias, DepthState, GraphicsPipelineDesc, RenderTarget};
 pub use stages::{Shader, Specialization};

@@ -37,7 +37,7 @@ layout(location = 5) out vec3 owned[][OWNED];
 #define OWNED_BY(k) owned[gl_InvocationID]
 #endif
 #ifdef TEXCOORD
-layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
+#include "draw/tables.glsl"
 #endif
 #ifdef CAPTURE
 layout(location = 11) patch out uint captured_patch;
@@ -115,7 +115,7 @@ void finish_corner(uint patch_number) {
         PUT_VECTOR(numbers, 3 * i, points[i]);
     }
 #ifdef TEXCOORD
-    vec2 texcoord = texcoords[draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID)];
+    vec2 texcoord = corner_texcoord(draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID));
     PUT_PAIR(numbers, HANDED_TEXCOORD, texcoord);
 #endif
     for (int i = 0; i < HANDED_ROWS; ++i) {

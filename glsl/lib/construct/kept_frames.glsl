@@ -9,9 +9,8 @@ struct KeptFrame {
     vec3 p, a, b, normal;
 };
 
-// The bindings of the stencil table, which the cached construction does without.
 #ifdef MAKES_FRAMES
-layout(set = 1, binding = 5, std430) writeonly buffer Frames { vec4 frames[]; };
+layout(set = 1, binding = 2, std430) writeonly buffer Frames { vec4 frames[]; };
 
 void keep_frame(uint ring, KeptFrame frame) {
     frames[3u * ring] = vec4(frame.p, frame.normal.x);
@@ -19,8 +18,8 @@ void keep_frame(uint ring, KeptFrame frame) {
     frames[3u * ring + 2u] = vec4(frame.b, frame.normal.z);
 }
 #else
-layout(set = 1, binding = 5, std430) readonly buffer Frames { vec4 frames[]; };
-layout(set = 1, binding = 19) uniform samplerBuffer frame_texels;
+layout(set = 1, binding = 2, std430) readonly buffer Frames { vec4 frames[]; };
+layout(set = 1, binding = 12) uniform samplerBuffer frame_texels;
 
 vec4 frame_vector(uint i) {
     return READS_TEXELS ? texelFetch(frame_texels, int(i)) : frames[i];

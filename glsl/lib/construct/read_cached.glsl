@@ -23,12 +23,12 @@ void read_cached(uint first_corner, uint segments) {
         shared_bits[k] = kept_bits(texels);
 #endif
 #ifdef DISPLACED
-        SharedTexcoord shared_at = shared_texcoords[first_corner + k];
+        SharedTexcoord shared_at = shared_texcoord_of(first_corner + k);
         shared_texcoord[k] = vec2[3](shared_at.plus, shared_at.minus, shared_at.corner);
         shared_lod[k] = map_lod(shared_at.scale.x, float(segments));
 #endif
 #ifdef TEXCOORD
-        texcoord[k] = texcoords[first_corner + k];
+        texcoord[k] = corner_texcoord(first_corner + k);
 #endif
     }
 }

@@ -4,15 +4,12 @@
 
 #include "constants.glsl"
 #include "draw/positions.glsl"
+#include "draw/tables.glsl"
 
-layout(set = 1, binding = 1, std430) readonly buffer RingHeaders { uvec4 ring_headers[]; };
-layout(set = 1, binding = 2, std430) readonly buffer RingEntries { uint ring_entries[]; };
-layout(set = 1, binding = 3, std430) readonly buffer RingTypes { vec4 ring_types[]; };
-layout(set = 1, binding = 4, std430) readonly buffer PatchCorners { uvec2 patch_corners[]; };
-layout(set = 1, binding = 15) uniform usamplerBuffer ring_header_texels;
-layout(set = 1, binding = 16) uniform usamplerBuffer ring_entry_texels;
-layout(set = 1, binding = 17) uniform samplerBuffer ring_type_texels;
-layout(set = 1, binding = 18) uniform usamplerBuffer patch_corner_texels;
+layout(set = 1, binding = 8) uniform usamplerBuffer ring_header_texels;
+layout(set = 1, binding = 9) uniform usamplerBuffer ring_entry_texels;
+layout(set = 1, binding = 10) uniform samplerBuffer ring_type_texels;
+layout(set = 1, binding = 11) uniform usamplerBuffer patch_corner_texels;
 
 
 // What no ring of the scheme has need not be looked for. Rust twin: `PatchStages::specialization` in
@@ -33,20 +30,23 @@ struct Ring {
 };
 
 uint ring_entry(uint i) {
-    return READS_TEXELS ? texelFetch(ring_entry_texels, int(i)).x : ring_entries[i];
+    return READS_TEXELS ? texelFetch(ring_entry_texels, int(i)).x : table_words[tables.ring_entries + i];
 }
 
 vec4 ring_type(uint i) {
-    return READS_TEXELS ? texelFetch(ring_type_texels, int(i)) : ring_types[i];
+    return READS_TEXELS ? texelFetch(ring_type_texels, int(i))
+                        : uintBitsToFloat(table_fours[tables.ring_types / 4u + i]);
 }
 
 // The ring of a corner by its number among all, and which of its edges is the corner's plus edge.
 uvec2 patch_corner(uint number) {
-    return READS_TEXELS ? texelFetch(patch_corner_texels, int(number)).xy : patch_corners[number];
+    return READS_TEXELS ? texelFetch(patch_corner_texels, int(number)).xy
+                        : table_pairs[tables.patch_corners / 2u + number];
 }
 
 Ring ring_at(uint index) {
-    uvec4 header = READS_TEXELS ? texelFetch(ring_header_texels, int(index)) : ring_headers[index];
+    uvec4 header = READS_TEXELS ? texelFetch(ring_header_texels, int(index))
+                                : table_fours[tables.ring_headers / 4u + index];
     bool open = (header.w & OPEN_BIT) != 0u;
     uint faces = header.w & ~(OPEN_BIT | CONE_BIT | FALLBACK_BIT | FITTED_BIT);
     return Ring(header.x, header.y, header.z, faces, faces + uint(open), open, (header.w & CONE_BIT) != 0u,

@@ -4,22 +4,21 @@
 
 #include "constants.glsl"
 #include "draw/positions.glsl"
-
-layout(set = 1, binding = 5, std430) readonly buffer StencilPatches { uvec2 stencil_patches[]; };
-layout(set = 1, binding = 6, std430) readonly buffer StencilVertices { uint stencil_vertices[]; };
-layout(set = 1, binding = 7, std430) readonly buffer StencilTypes { uint stencil_types[]; };
+#include "draw/tables.glsl"
 
 const uint ENTRY_WORDS = 1u + OWNED;
 
 // The control points that a corner of a patch with so many corners owns. Those that faces around the corner share come out with the same bits
 // for all of them: the sums go around the corner's ring from where it starts.
 void stencil_points(uint patch_index, uint corner, uint corners, out vec3 points[OWNED]) {
-    uvec2 place = stencil_patches[patch_index];
+    // Where the vertices of the patch and the weights of its type start.
+    uvec2 place = table_pairs[tables.stencil_patches / 2u + patch_index]
+        + uvec2(tables.stencil_vertices, tables.stencil_types);
     uint head = place.y + HEAD_WORDS * corner;
-    uint first = place.y + stencil_types[head];
-    uint count = stencil_types[head + 1u];
-    uint turning = stencil_types[head + 2u];
-    uint turn = stencil_vertices[place.x + corner];
+    uint first = place.y + table_words[head];
+    uint count = table_words[head + 1u];
+    uint turning = table_words[head + 2u];
+    uint turn = table_words[place.x + corner];
     precise vec3 sums[OWNED];
     for (uint i = 0u; i < OWNED; ++i) {
         sums[i] = vec3(0.0);
@@ -28,9 +27,9 @@ void stencil_points(uint patch_index, uint corner, uint corners, out vec3 points
         uint turned = i + turn - 1u;
         turned = 1u + (turned < turning ? turned : turned - turning);
         uint at = first + ENTRY_WORDS * (i >= 1u && i <= turning ? turned : i);
-        vec3 x = vertex_position(stencil_vertices[place.x + corners + stencil_types[at]]);
+        vec3 x = vertex_position(table_words[place.x + corners + table_words[at]]);
         for (uint k = 0u; k < OWNED; ++k) {
-            precise vec3 term = uintBitsToFloat(stencil_types[at + 1u + k]) * x;
+            precise vec3 term = uintBitsToFloat(table_words[at + 1u + k]) * x;
             sums[k] += term;
         }
     }

@@ -9,7 +9,7 @@
 
 // At which an edge at the corner has as many texels as segments; `speaker` is the ring that speaks for the corner.
 float corner_lod(uint corner, FramedRing speaker) {
-    return map_lod(shared_texcoords[corner].scale.x, vertex_factor(speaker.p, speaker.a, speaker.b));
+    return map_lod(shared_texcoord_of(corner).scale.x, vertex_factor(speaker.p, speaker.a, speaker.b));
 }
 
 #endif

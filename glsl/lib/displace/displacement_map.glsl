@@ -3,7 +3,7 @@
 #define DISPLACEMENT_MAP_GLSL
 
 // Heights in red, or vectors in object space.
-layout(set = 1, binding = 13) uniform sampler2D displacement_map;
+layout(set = 1, binding = 6) uniform sampler2D displacement_map;
 
 // Texels along its longer side.
 float displacement_texels() {

@@ -10,7 +10,7 @@ layout(constant_id = ID_READS_TEXELS) const bool READS_TEXELS = false;
 
 layout(set = 1, binding = 0, std430) readonly buffer Positions { vec4 positions[]; };
 #ifndef POSITION_TEXELS
-#define POSITION_TEXELS 14
+#define POSITION_TEXELS 7
 #endif
 layout(set = 1, binding = POSITION_TEXELS) uniform samplerBuffer position_texels;
 

@@ -44,7 +44,7 @@ SharedEdge shared_edge(FramedRing at, uint j) {
 FramedRing corner_speaker(uint corner, FramedRing own) {
     FramedRing speaker = own;
     if (HAS_SPEAKERS) {
-        uint of_corner = shared_corners[SHARED_WORDS * corner];
+        uint of_corner = shared_word(corner, 0u);
         if (of_corner != own.index) {
             speaker = framed_ring(of_corner);
         }
@@ -54,17 +54,16 @@ FramedRing corner_speaker(uint corner, FramedRing own) {
 
 // What a corner of a patch shares: see SHARED_VECTORS. `own` is its ring, with its plus and minus edge.
 vec3[SHARED_VECTORS] share_corner(uint corner, FramedRing own, FramedRing speaker, SharedEdge own_plus, SharedEdge own_minus) {
-    uint first = SHARED_WORDS * corner;
-    uint plus_edge = shared_corners[first + 2u];
+    uint plus_edge = shared_word(corner, 2u);
     SharedEdge plus = own_plus, minus = own_minus;
     if (HAS_SPEAKERS) {
-        uint of_plus = shared_corners[first + 1u];
-        uint of_minus = shared_corners[first + 3u];
+        uint of_plus = shared_word(corner, 1u);
+        uint of_minus = shared_word(corner, 3u);
         if (of_plus != own.index) {
             plus = shared_edge(framed_ring(of_plus), plus_edge & EDGE_MASK);
         }
         if (of_minus != own.index) {
-            minus = shared_edge(framed_ring(of_minus), shared_corners[first + 4u]);
+            minus = shared_edge(framed_ring(of_minus), shared_word(corner, 4u));
         }
     }
     vec3 with[SHARED_VECTORS];

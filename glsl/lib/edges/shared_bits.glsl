@@ -2,6 +2,8 @@
 #ifndef SHARED_BITS_GLSL
 #define SHARED_BITS_GLSL
 
+#include "draw/tables.glsl"
+
 const uint SHARP_EDGE_BIT = 1u << 30;    // the faces at it are lit with normals of their own
 
 // Across the plus edge and its transversal, across the minus edge and its transversal, the normal at the corner, and where
@@ -12,14 +14,17 @@ const uint SHARP_EDGE_BIT = 1u << 30;    // the faces at it are lit with normals
 #define SHARED_VECTORS 5
 #endif
 
-layout(set = 1, binding = 9, std430) readonly buffer SharedCorners { uint shared_corners[]; };
-
 const uint SHARED_WORDS = 5u;
 const uint EDGE_MASK = ~SHARP_EDGE_BIT;
 
+// Word i of a corner by its number among all.
+uint shared_word(uint corner, uint i) {
+    return table_words[tables.shared_corners + SHARED_WORDS * corner + i];
+}
+
 // 1 where the plus edge of a corner is sharp, by its number among all; else 0.
 float corner_sharp(uint corner) {
-    return (shared_corners[SHARED_WORDS * corner + 2u] & SHARP_EDGE_BIT) != 0u ? 1.0 : 0.0;
+    return (shared_word(corner, 2u) & SHARP_EDGE_BIT) != 0u ? 1.0 : 0.0;
 }
 
 #endif

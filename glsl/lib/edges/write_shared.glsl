@@ -14,7 +14,7 @@ void write_shared(uint corner, vec3 vectors[SHARED_VECTORS], float sharp, float 
     }
     numbers[HANDED_SHARP] = sharp;
 #ifdef DISPLACED
-    SharedTexcoord texcoord = shared_texcoords[corner];
+    SharedTexcoord texcoord = shared_texcoord_of(corner);
     PUT_PAIR(numbers, HANDED_MAP, texcoord.plus);
     PUT_PAIR(numbers, HANDED_MAP + 2, texcoord.minus);
     PUT_PAIR(numbers, HANDED_MAP + 4, texcoord.corner);

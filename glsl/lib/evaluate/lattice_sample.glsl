@@ -5,7 +5,7 @@
 #include "draw/kinds.glsl"
 
 #ifdef TEXCOORD
-layout(set = 1, binding = 8, std430) readonly buffer Texcoords { vec2 texcoords[]; };
+#include "draw/tables.glsl"
 vec2 texcoord[CORNERS];
 #endif
 

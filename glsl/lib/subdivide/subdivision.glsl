@@ -4,18 +4,14 @@
 
 #include "constants.glsl"
 #include "draw/positions.glsl"
+#include "draw/tables.glsl"
 
-layout(set = 1, binding = 1, std430) readonly buffer FanHeaders { uvec4 fan_headers[]; };
-// a_i, d_i, and the profile of edge i.
-layout(set = 1, binding = 2, std430) readonly buffer FanEntries { uint fan_entries[]; };
-layout(set = 1, binding = 3, std430) readonly buffer FanWords { uint fan_words[]; };
-layout(set = 1, binding = 4, std430) readonly buffer FaceCorners { uvec2 face_corners[]; };
 
 
 // All faces around a corner of a face, and where that face is among them.
 struct Fan {
     uint vertex;
-    uint entries;
+    uint entries;  // words of the tables
     uint type;
     int faces;
     int edges;
@@ -24,11 +20,13 @@ struct Fan {
 
 // Corners are counted through all patches.
 Fan fan_at(uint corner) {
-    uvec2 place = face_corners[corner];
-    uvec4 header = fan_headers[place.x];
+    uvec2 place = table_pairs[tables.patch_corners / 2u + corner];
+    uvec4 header = table_fours[tables.ring_headers / 4u + place.x];
     int faces = int(header.w & ~FAN_OPEN_BIT);
     int edges = faces + int((header.w & FAN_OPEN_BIT) != 0u);
-    return Fan(header.x, 3u * header.y, header.z, faces, edges, int(place.y));
+    // Of the entries: a_i, d_i, and the profile of edge i.
+    uint entries = tables.ring_entries + 3u * header.y;
+    return Fan(header.x, entries, tables.ring_types + header.z, faces, edges, int(place.y));
 }
 
 // The number of edge j, which may be some edges before the first or after the last. Of an open fan the nearest that there is:
@@ -40,20 +38,20 @@ int fan_edge(Fan fan, int j) {
 
 // a_j, at the other end of edge j.
 vec3 fan_neighbour(Fan fan, int j) {
-    return vertex_position(fan_entries[fan.entries + 3u * uint(fan_edge(fan, j))]);
+    return vertex_position(table_words[fan.entries + 3u * uint(fan_edge(fan, j))]);
 }
 
 // d_j, in the face to the left of edge j.
 vec3 fan_diagonal(Fan fan, int j) {
-    return vertex_position(fan_entries[fan.entries + 3u * uint(fan_edge(fan, j)) + 1u]);
+    return vertex_position(table_words[fan.entries + 3u * uint(fan_edge(fan, j)) + 1u]);
 }
 
 uint fan_profile(Fan fan, int j) {
-    return fan_entries[fan.entries + 3u * uint(fan_edge(fan, j)) + 2u];
+    return tables.ring_types + table_words[fan.entries + 3u * uint(fan_edge(fan, j)) + 2u];
 }
 
 float fan_weight(uint word) {
-    return uintBitsToFloat(fan_words[word]);
+    return uintBitsToFloat(table_words[word]);
 }
 
 // The rules, each with the same bits from every face that a point is in: sums in pairs that are opposite. Rust twin of the rules:

@@ -10,8 +10,8 @@ pub(super) use vertex_buffer::VertexBuffer;
 use super::BenchError;
 use super::drawable::{Frame, Lane, Pass};
 use crate::gpu::{
-    Buffer, BufferDesc, DepthState, DescriptorSet, DeviceContext, GpuError, GraphicsPipelineDesc, MemoryLocation,
-    Owned, RenderTarget, Shader, descriptor_set_layout, pipeline_layout,
+    Buffer, BufferDesc, DepthState, DescriptorPool, DescriptorSet, DeviceContext, GpuError, GraphicsPipelineDesc,
+    MemoryLocation, Owned, RenderTarget, SetLayout, Shader, descriptor_set_layout, pipeline_layout,
 };
 use crate::headless::Headless;
 use crate::renderer::{DrawConstants, STAGES, ShaderId, View, ViewData};
@@ -36,7 +36,7 @@ struct Input<'a> {
 struct Kit {
     context: Arc<DeviceContext>,
     layout: Owned<vk::PipelineLayout>,
-    _set_layouts: [Owned<vk::DescriptorSetLayout>; 2],
+    _set_layouts: [SetLayout; 2],
     sets: [DescriptorSet; 2],
     view: Buffer,
     _position_texels: Owned<vk::BufferView>,
@@ -62,13 +62,10 @@ impl Kit {
         let desc =
             BufferDesc { name: NAME, size: size_of::<ViewData>() as u64, usage, location: MemoryLocation::Upload };
         let view = Buffer::new(context, &desc)?;
-        // SAFETY: the layouts are of this device, with these descriptors.
+        let pool = DescriptorPool::new(context, NAME, &set_layouts.each_ref());
+        // SAFETY: the layouts are those of the pool; every submission is waited for.
         let sets = unsafe {
-            let of_model = [(buffer, BINDINGS as u32), (texels, 1)];
-            [
-                DescriptorSet::new(context, raw[0], NAME, &[(uniform, 1)])?,
-                DescriptorSet::new(context, raw[1], NAME, &of_model)?,
-            ]
+            [DescriptorSet::new(&pool, &set_layouts[0], NAME)?, DescriptorSet::new(&pool, &set_layouts[1], NAME)?]
         };
         let device = context.device();
         let views = [view.descriptor()];

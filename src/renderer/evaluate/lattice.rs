@@ -3,10 +3,10 @@
 use super::indices::{IndexCache, LatticeShape, PatchIndices, SharedIndices};
 use crate::constants::{GROUP_VERTICES, ID_HAS_TEXCOORDS};
 use crate::gpu::Specialization;
-use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, descriptor_set_layout};
+use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS};
 use crate::renderer::options::{EVALUATED_VERTICES, Error, MemoryUsage, ModelId};
 use crate::renderer::pipelines::{ComputePipelines, vertex_bytes};
-use crate::renderer::shader::{Cut, Output, PatchStages, ShaderCode, Source};
+use crate::renderer::shader::{Cut, Output, PatchStages, SetLayouts, ShaderCode, Source};
 use crate::table::{Evaluation, Sharing};
 use crate::table::{PatchGroup, PatchPlan, lattice_vertices};
 use ash::vk;
@@ -28,7 +28,7 @@ struct Dispatch {
 
 /// Pipelines by what they evaluate.
 pub(crate) struct LatticePipelines {
-    set_layout: Owned<vk::DescriptorSetLayout>,
+    sets: Arc<SetLayouts>,
     texcoords: bool,
     indices: IndexCache,
     pipelines: ComputePipelines<PatchStages, Dispatch>,
@@ -39,17 +39,15 @@ impl LatticePipelines {
     /// with `wireframe` there are none.
     pub(crate) fn new(
         context: &Arc<DeviceContext>,
-        [view, model]: [vk::DescriptorSetLayout; 2],
+        sets: &Arc<SetLayouts>,
         cache: vk::PipelineCache,
         texcoords: bool,
         wireframe: bool,
     ) -> Result<Self, GpuError> {
-        let vertices = (vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::COMPUTE);
-        let set_layout = descriptor_set_layout(context, "subdiv vertices", &[vertices])?;
-        let sets = [view, model, set_layout.raw()];
-        let pipelines = ComputePipelines::new(context, "subdiv evaluation", &sets, cache)?;
+        let layouts = [sets.view.raw(), sets.model.raw(), sets.vertices.raw()];
+        let pipelines = ComputePipelines::new(context, "subdiv evaluation", &layouts, cache)?;
         let indices = IndexCache::new(if wireframe { u32::MAX } else { context.properties().indices_at_once });
-        Ok(Self { set_layout, texcoords, indices, pipelines })
+        Ok(Self { sets: sets.clone(), texcoords, indices, pipelines })
     }
 
     /// Makes what patches need.
@@ -258,11 +256,12 @@ impl LatticeVertices {
     fn new(pipelines: &LatticePipelines, bytes: u64) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC;
-        let (context, layout) = (pipelines.pipelines.context(), pipelines.set_layout.raw());
+        let (context, sets) = (pipelines.pipelines.context(), &pipelines.sets);
         let buffer = Buffer::device_local(context, "subdiv vertices", bytes.max(4), usage)?;
-        let parts = [(vk::DescriptorType::STORAGE_BUFFER, buffer.descriptor())];
-        // SAFETY: the layout is of this device, with this descriptor; the buffer goes with the set.
-        let set = unsafe { DescriptorSet::of_buffers(context, layout, "subdiv vertices", &parts)? };
+        // SAFETY: the layout is among those of the pool, with this descriptor; the buffer goes with the set.
+        let set = unsafe {
+            DescriptorSet::of_buffers(&sets.pool, &sets.vertices, "subdiv vertices", &[buffer.descriptor()])?
+        };
         Ok(Self { buffer, set })
     }
 }

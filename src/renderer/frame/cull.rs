@@ -134,8 +134,7 @@ impl Renderer {
             return Err(Error::ListsTooLarge { bytes, max });
         }
         let capacity = bytes.max(2 * lists.capacity).next_power_of_two().min(max + 1);
-        let layout = self.pipelines.draws.view_layout.raw();
-        let larger = FrameLists::new(&self.context, layout, &self.views, capacity)?;
+        let larger = FrameLists::new(&self.context, &self.pipelines.sets, &self.views, capacity)?;
         let before = std::mem::replace(&mut self.lists[frame as usize], larger);
         // What was found in this frame so far is in there.
         self.retire(Some(frame), RetiredObject::Lists(Box::new(before)));

@@ -85,9 +85,10 @@ impl Renderer {
         // Of patches that are not looked at, all are drawn.
         let cuts = if lists { [Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { [cut; 2] };
         for each in cuts {
-            if model.made & each.bit() == 0 || path(model.evaluation).depends_on_factor() {
+            let is_made = model.made.contains(&each);
+            if !is_made || path(model.evaluation).depends_on_factor() {
                 self.pipelines.make(&model.stages, each, factor)?;
-                model.made |= each.bit();
+                model.made.extend((!is_made).then_some(each));
             }
         }
         if lists {

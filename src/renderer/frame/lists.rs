@@ -4,7 +4,7 @@ use crate::constants::{ID_COPIES, REGION};
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, Specialization};
 use crate::renderer::evaluate::path;
 use crate::renderer::pipelines::ComputePipelines;
-use crate::renderer::shader::{Cut, PatchStages, ShaderCode, ViewData};
+use crate::renderer::shader::{Cut, PatchStages, SetLayouts, ShaderCode, ViewData};
 use crate::table::TEXEL_BYTES;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -98,7 +98,7 @@ impl FrameLists {
     /// With room for lists of so many bytes.
     pub(crate) fn new(
         context: &Arc<DeviceContext>,
-        layout: vk::DescriptorSetLayout,
+        layouts: &SetLayouts,
         views: &Buffer,
         bytes: u64,
     ) -> Result<Self, GpuError> {
@@ -111,12 +111,9 @@ impl FrameLists {
         // Every descriptor has to be written; without lists no draw reads any.
         let (lists, range) = buffer.as_ref().map_or((views, 4), |lists| (lists, range));
         let part = |buffer: &Buffer, range| vk::DescriptorBufferInfo { buffer: buffer.raw(), offset: 0, range };
-        let parts = [
-            (vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, part(views, size_of::<ViewData>() as u64)),
-            (vk::DescriptorType::STORAGE_BUFFER_DYNAMIC, part(lists, range)),
-        ];
-        // SAFETY: the layout is of this device, with these; the lists go with the set, and the views with the renderer.
-        let set = unsafe { DescriptorSet::of_buffers(context, layout, "subdiv view", &parts)? };
+        let parts = [part(views, size_of::<ViewData>() as u64), part(lists, range)];
+        // SAFETY: the layout is among those of the pool, with these; the lists go with the set, and the views with the renderer.
+        let set = unsafe { DescriptorSet::of_buffers(&layouts.pool, &layouts.view, "subdiv view", &parts)? };
         Ok(Self { set, buffer, capacity: bytes, used: 0 })
     }
 

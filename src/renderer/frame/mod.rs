@@ -8,6 +8,8 @@ mod lists;
 mod prepare;
 mod resolved;
 pub(crate) mod segments;
+#[cfg(all(test, feature = "headless"))]
+mod tests;
 pub(crate) mod visible;
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, MemoryLocation};
@@ -94,7 +96,7 @@ impl Renderer {
     ) -> Result<Self, Error> {
         check_properties(context.properties(), context.features(), target, options)?;
         let pipelines = ModelPipelines::new(context, target, options, capture)?;
-        let list_pipelines = ListPipelines::new(context, pipelines.draws.set_layouts(), options.pipeline_cache)?;
+        let list_pipelines = ListPipelines::new(context, pipelines.sets.shared(), options.pipeline_cache)?;
         let views = Buffer::new(
             context,
             &BufferDesc {
@@ -104,7 +106,7 @@ impl Renderer {
                 location: MemoryLocation::Upload,
             },
         )?;
-        let lists = |_| FrameLists::new(context, pipelines.draws.view_layout.raw(), &views, 0);
+        let lists = |_| FrameLists::new(context, &pipelines.sets, &views, 0);
         let lists = (0..options.frames_in_flight).map(lists).collect::<Result<_, _>>()?;
         Ok(Self {
             context: context.clone(),

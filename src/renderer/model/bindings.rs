@@ -1,8 +1,9 @@
 //! The descriptors of set 1: what the shaders of a model read.
 
+use super::tables::Tables;
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, Owned};
 use crate::renderer::options::DisplacementMap;
-use crate::renderer::shader::{MODEL_BUFFERS, TEXELS};
+use crate::renderer::shader::{MODEL_BUFFERS, MODEL_TEXELS, SetLayouts, TABLE_TEXELS, VECTOR_TEXEL};
 use ash::vk;
 use std::sync::Arc;
 
@@ -10,74 +11,69 @@ use std::sync::Arc;
 pub(crate) struct ModelSet {
     pub raw: vk::DescriptorSet,
     _set: DescriptorSet,
-    _texels: Vec<Owned<vk::BufferView>>,
+    _texels: [Owned<vk::BufferView>; MODEL_TEXELS],
+}
+
+/// What a set shows. Buffers that a model does not have are as if they were its positions, for every descriptor has to be written.
+pub(crate) struct ModelBuffers<'m> {
+    pub positions: &'m Buffer,
+    pub tables: &'m Tables,
+    pub frames: Option<&'m Buffer>,
+    pub edge_factors: Option<&'m Buffer>,
+    pub control_points: Option<&'m Buffer>,
+    pub map: DisplacementMap,
 }
 
 impl ModelSet {
-    /// Of parts of buffers, from an offset on so many bytes each, by binding.
-    ///
     /// # Safety
-    /// The layout is [`model_layout`]'s; the buffers and the map live as long as the set is used.
+    /// The buffers and the map live as long as the set is used.
     pub(crate) unsafe fn new(
         context: &Arc<DeviceContext>,
-        layout: vk::DescriptorSetLayout,
+        layouts: &SetLayouts,
         name: &str,
-        parts: &[(&Buffer, u64, u64)],
-        map: DisplacementMap,
+        of: &ModelBuffers,
     ) -> Result<Self, GpuError> {
-        let texels = TEXELS.map(|(binding, format, texel)| {
-            let (buffer, offset, bytes) = parts[binding];
-            buffer.texels(format, texel, offset, bytes)
-        });
-        let texels = texels.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let descriptors = [
-            (vk::DescriptorType::STORAGE_BUFFER, MODEL_BUFFERS as u32),
-            (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1),
-            (vk::DescriptorType::UNIFORM_TEXEL_BUFFER, TEXELS.len() as u32),
-        ];
-        // SAFETY: the layout is of this device, and has these.
-        let set = unsafe { DescriptorSet::new(context, layout, name, &descriptors)? };
-        write_set(context, set.raw(), parts, map, &texels);
+        let texels = texel_views(of)?;
+        // SAFETY: the layout is among those of the pool; models are dropped when the device is done with them.
+        let set = unsafe { DescriptorSet::new(&layouts.pool, &layouts.model, name)? };
+        write_set(context, set.raw(), of, &texels);
         Ok(Self { raw: set.raw(), _set: set, _texels: texels })
     }
 }
 
-fn write_set(
-    context: &DeviceContext,
-    set: vk::DescriptorSet,
-    parts: &[(&Buffer, u64, u64)],
-    map: DisplacementMap,
-    texels: &[Owned<vk::BufferView>],
-) {
-    let info =
-        |&(buffer, offset, range): &(&Buffer, _, _)| vk::DescriptorBufferInfo { buffer: buffer.raw(), offset, range };
-    let buffers: Vec<_> = parts.iter().map(info).collect();
+/// In the order of their bindings.
+fn texel_views(of: &ModelBuffers) -> Result<[Owned<vk::BufferView>; MODEL_TEXELS], GpuError> {
+    let whole = |buffer: Option<&Buffer>| {
+        let buffer = buffer.unwrap_or(of.positions);
+        buffer.texels(VECTOR_TEXEL.0, VECTOR_TEXEL.1, 0, buffer.size())
+    };
+    let table = |i: usize| {
+        let ((format, texel), range) = (TABLE_TEXELS[i], &of.tables.texels[i]);
+        of.tables.buffer.texels(format, texel, range.start, range.end - range.start)
+    };
+    Ok([whole(None)?, table(0)?, table(1)?, table(2)?, table(3)?, whole(of.frames)?, whole(of.control_points)?])
+}
+
+fn write_set(context: &DeviceContext, set: vk::DescriptorSet, of: &ModelBuffers, texels: &[Owned<vk::BufferView>]) {
+    use vk::DescriptorType as Type;
+    let write = |binding: usize, ty| {
+        vk::WriteDescriptorSet::default().dst_set(set).dst_binding(binding as u32).descriptor_type(ty)
+    };
+    let whole = |buffer: Option<&Buffer>| [buffer.unwrap_or(of.positions).descriptor()];
+    let part = |offset, range| [vk::DescriptorBufferInfo { buffer: of.tables.buffer.raw(), offset, range }];
+    let starts = &of.tables.starts;
+    let buffers: [_; MODEL_BUFFERS] =
+        [whole(None), part(0, of.tables.storage), whole(of.frames), whole(of.edge_factors), whole(of.control_points)];
+    let starts = part(starts.start, starts.end - starts.start);
+    let map = of.map;
     let image = [vk::DescriptorImageInfo { sampler: map.sampler, image_view: map.view, image_layout: map.layout }];
-    let sampler = vk::WriteDescriptorSet::default()
-        .dst_set(set)
-        .dst_binding(MODEL_BUFFERS as u32)
-        .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
-        .image_info(&image);
-    let views: Vec<_> = texels.iter().map(Owned::raw).collect();
-    let texels = (MODEL_BUFFERS as u32 + 1..).zip(views.chunks(1)).map(|(binding, view)| {
-        vk::WriteDescriptorSet::default()
-            .dst_set(set)
-            .dst_binding(binding)
-            .descriptor_type(vk::DescriptorType::UNIFORM_TEXEL_BUFFER)
-            .texel_buffer_view(view)
-    });
-    let writes: Vec<_> = (0..)
-        .zip(buffers.chunks(1))
-        .map(|(binding, info)| {
-            vk::WriteDescriptorSet::default()
-                .dst_set(set)
-                .dst_binding(binding)
-                .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-                .buffer_info(info)
-        })
-        .chain([sampler])
-        .chain(texels)
-        .collect();
+    let views: Vec<_> = texels.iter().map(|view| [view.raw()]).collect();
+    let mut writes: Vec<_> =
+        (0..).zip(&buffers).map(|(binding, buffer)| write(binding, Type::STORAGE_BUFFER).buffer_info(buffer)).collect();
+    writes.push(write(MODEL_BUFFERS, Type::UNIFORM_BUFFER).buffer_info(&starts));
+    writes.push(write(MODEL_BUFFERS + 1, Type::COMBINED_IMAGE_SAMPLER).image_info(&image));
+    let texels = (MODEL_BUFFERS + 2..).zip(&views);
+    writes.extend(texels.map(|(binding, view)| write(binding, Type::UNIFORM_TEXEL_BUFFER).texel_buffer_view(view)));
     // SAFETY: the set is new, the buffers live as long as it, and the map as long as the renderer.
     unsafe { context.device().update_descriptor_sets(&writes, &[]) };
 }

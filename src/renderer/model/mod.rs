@@ -5,38 +5,38 @@ mod displacements;
 mod drawn;
 mod edge_factors;
 mod pipelines;
+mod positions;
 mod streamed;
+mod tables;
 
 pub(crate) use displacements::Displacements;
 pub(crate) use pipelines::ModelPipelines;
 
-use crate::gpu::{Buffer, DeviceContext, MAX_OFFSET_ALIGNMENT};
+use crate::gpu::{Buffer, DeviceContext};
 use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, path};
 use crate::renderer::options::{
     DisplacementId, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options,
 };
-use crate::renderer::shader::{FRAMES_BINDING, POINTS_BINDING, PatchStages, TEXELS, displacement_flags};
+use crate::renderer::shader::{Cut, PatchStages, VECTOR_TEXEL, displacement_flags};
 use crate::table::PatchGroup;
 use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
 use ash::vk;
-use bindings::ModelSet;
+use bindings::{ModelBuffers, ModelSet};
 use edge_factors::EdgeFactors;
+use positions::Positions;
 use std::sync::Arc;
-use streamed::Streamed;
+use tables::Tables;
 
 pub(crate) struct Model {
     pub id: ModelId,
     pub tables: ModelTables,
     /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
-    /// What there are pipelines for, by [`Cut::bit`](crate::renderer::shader::Cut::bit).
-    pub made: u64,
+    /// What there are pipelines for: a few.
+    pub made: Vec<Cut>,
     pub set: ModelSet,
-    /// All tables of the construction and the texture coordinates, one after the other.
-    table_buffer: Buffer,
-    positions: Streamed,
-    /// To put the vertices in that are then written.
-    stored: Vec<[f32; 4]>,
+    table_buffer: Tables,
+    positions: Positions,
     /// If edges are to have their own.
     edge_factors: Option<EdgeFactors>,
     /// What the cached construction keeps of corners, and of rings.
@@ -84,18 +84,6 @@ impl Model {
     ) -> Result<Self, Error> {
         check_evaluation(id, model_options, &tables, context.features())?;
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
-        let max = context.properties().max_storage_buffer_range;
-        let most_texels = context.properties().max_texel_buffer_elements;
-        // `binding` is that of set 1.
-        let check = |table: &'static str, bytes: u64, binding: usize| {
-            // Fans are read as storage buffers only, positions are not.
-            let fans = model_options.evaluation == Evaluation::Subdivision && binding > 0;
-            let reads_texels = context.properties().reads_texels && !fans;
-            let texels = TEXELS.iter().find(|(of, ..)| *of == binding).filter(|_| reads_texels);
-            let max = texels.map_or(max, |(.., texel)| max.min(most_texels * texel));
-            if bytes > max { Err(Error::TableTooLarge { id, table, bytes, max }) } else { Ok(()) }
-        };
-
         let zeros;
         let needed = options.texcoords || tables.sharing() == Sharing::Displacement;
         let texcoords: &[[f32; 2]] = match (&tables.texcoords, needed) {
@@ -111,41 +99,31 @@ impl Model {
             _ => (name, array),
         });
 
-        let mut offset = 0;
-        let mut ranges = Vec::with_capacity(arrays.len());
-        for (binding, (table, array)) in (1..).zip(&arrays) {
-            check(table, array.len() as u64, binding)?;
-            // An empty table still gets a range, so that every descriptor is written, and has a texel.
-            let size = (array.len() as u64).max(16);
-            ranges.push((offset, size));
-            offset = (offset + size).next_multiple_of(MAX_OFFSET_ALIGNMENT);
-        }
-        let mut staged_tables = Buffer::upload(context, &format!("{name}: tables to copy"), offset)?;
-        for ((_, array), (offset, _)) in arrays.iter().zip(&ranges) {
-            staged_tables.write(*offset, array)?;
-        }
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-        let table_buffer = Buffer::device_local(context, &format!("{name}: tables"), offset, storage)?;
+        let (table_buffer, staged_tables) = Tables::new(context, (id, name), model_options.evaluation, &arrays)?;
 
-        let position_bytes = TEXEL_BYTES * tables.stored_vertices() as u64;
-        check("positions", position_bytes, 0)?;
+        // What shaders see whole, as storage buffers and as texel buffers.
+        let properties = context.properties();
+        let check = |table: &'static str, bytes: u64| {
+            let texels = properties.max_texel_buffer_elements * VECTOR_TEXEL.1;
+            let max = properties.max_storage_buffer_range.min(if properties.reads_texels { texels } else { u64::MAX });
+            if bytes > max { Err(Error::TableTooLarge { id, table, bytes, max }) } else { Ok(()) }
+        };
+        check("positions", TEXEL_BYTES * tables.stored_vertices() as u64)?;
         let in_flight = options.frames_in_flight;
-        let kept = |what: &'static str, bytes: u64, binding: usize| -> Result<_, Error> {
-            check(what, bytes, binding)?;
-            let usage = storage | vk::BufferUsageFlags::VERTEX_BUFFER;
+        let kept = |what: &'static str, bytes: u64| -> Result<_, Error> {
+            check(what, bytes)?;
+            use vk::BufferUsageFlags as Usage;
+            let usage = Usage::STORAGE_BUFFER | Usage::UNIFORM_TEXEL_BUFFER | Usage::VERTEX_BUFFER;
             Ok((bytes > 0)
                 .then(|| Buffer::device_local(context, &format!("{name}: {what}"), bytes, usage))
                 .transpose()?)
         };
         let [point_bytes, frame_bytes] = tables.kept_bytes();
-        let (control_points, frames) =
-            (kept("control points", point_bytes, POINTS_BINDING)?, kept("frames", frame_bytes, FRAMES_BINDING)?);
-        let mut stored = Vec::new();
-        tables.store_positions(control, &mut stored);
-        let positions = Streamed::new(context, &format!("{name}: positions"), &stored, in_flight)?;
+        let (control_points, frames) = (kept("control points", point_bytes)?, kept("frames", frame_bytes)?);
+        let positions = Positions::new(context, name, &tables, control, in_flight)?;
         let edge_factors = tables.edges().map(|edges| EdgeFactors::new(context, name, edges, in_flight)).transpose()?;
 
-        let mut uploads = vec![(staged_tables, table_buffer.raw())];
+        let mut uploads = vec![(staged_tables, table_buffer.buffer.raw())];
         let control = if options.styles.iter().any(|s| s.geometry != Geometry::Surface) {
             let indices = [&tables.control_edges[..], &tables.control_faces[..]].concat();
             let bytes = 4 * indices.len() as u64;
@@ -164,20 +142,16 @@ impl Model {
             None
         };
 
-        // By binding.
-        fn whole(buffer: &Buffer) -> (&Buffer, u64, u64) {
-            (buffer, 0, buffer.size())
-        }
-        let mut parts = vec![whole(positions.buffer())];
-        parts.extend(ranges.iter().map(|&(offset, bytes)| (&table_buffer, offset, bytes)));
-        if let Some(frames) = &frames {
-            parts[FRAMES_BINDING] = whole(frames);
-        }
-        // Every descriptor has to be written; without factors of its own a model's edges never read any.
-        parts.push(whole(edge_factors.as_ref().map_or(positions.buffer(), EdgeFactors::buffer)));
-        parts.push(whole(control_points.as_ref().unwrap_or(positions.buffer())));
+        let buffers = ModelBuffers {
+            positions: positions.buffer(),
+            tables: &table_buffer,
+            frames: frames.as_ref(),
+            edge_factors: edge_factors.as_ref().map(EdgeFactors::buffer),
+            control_points: control_points.as_ref(),
+            map,
+        };
         // SAFETY: the buffers live as long as the model, and the map longer.
-        let set = unsafe { ModelSet::new(context, pipelines.draws.model_layout.raw(), name, &parts, map)? };
+        let set = unsafe { ModelSet::new(context, &pipelines.sets, name, &buffers)? };
         let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
         let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_texels(), tables.has_speakers());
         // The control shader knows by its flags.
@@ -202,12 +176,11 @@ impl Model {
         Ok(Self {
             id,
             stages: tables.plan.groups().iter().map(stages).collect(),
-            made: 0,
+            made: Vec::new(),
             tables,
             set,
             table_buffer,
             positions,
-            stored,
             edge_factors,
             control_points,
             frames,
@@ -228,8 +201,7 @@ impl Model {
         if control.len() != needed {
             return Err(Error::PositionCount { id: self.id, given: control.len(), needed });
         }
-        self.tables.store_positions(control, &mut self.stored);
-        Ok(self.positions.write(frame, &self.stored)?)
+        Ok(self.positions.write(frame, &self.tables, control)?)
     }
 
     pub(crate) fn set_edge_factors(&mut self, frame: u32, factors: &[f32]) -> Result<(), Error> {
@@ -356,7 +328,7 @@ impl Model {
     }
 
     pub(crate) fn add_memory(&self, usage: &mut MemoryUsage) {
-        usage.tables += self.table_buffer.size();
+        usage.tables += self.table_buffer.buffer.size();
         let [positions, staged_positions] = self.positions.bytes();
         let [factors, staged_factors] = self.edge_factors.as_ref().map_or([0; 2], EdgeFactors::bytes);
         usage.positions += positions + factors;

@@ -5,7 +5,7 @@ use crate::renderer::construct::{CachedPipelines, Conversion};
 use crate::renderer::evaluate::{LatticePipelines, path};
 use crate::renderer::options::{Factor, Options, Target};
 use crate::renderer::pipelines::DrawPipelines;
-use crate::renderer::shader::{Capture, Cut, PatchStages};
+use crate::renderer::shader::{Capture, Cut, PatchStages, SetLayouts};
 use crate::table::{Construction, Evaluation};
 use ash::vk;
 use std::sync::Arc;
@@ -14,6 +14,7 @@ use std::sync::Arc;
 pub(crate) struct ModelPipelines {
     context: Arc<DeviceContext>,
     cache: vk::PipelineCache,
+    pub sets: Arc<SetLayouts>,
     pub draws: DrawPipelines,
     /// For what the cached construction computes.
     pub cached: CachedPipelines,
@@ -30,12 +31,12 @@ impl ModelPipelines {
         options: &Options,
         capture: Capture,
     ) -> Result<Self, GpuError> {
-        let draws = DrawPipelines::new(context, target, options, capture)?;
-        let (sets, cache) = (draws.set_layouts(), options.pipeline_cache);
-        let cached = CachedPipelines::new(context, sets, cache)?;
+        let (sets, cache) = (SetLayouts::new(context)?, options.pipeline_cache);
+        let draws = DrawPipelines::new(context, target, options, capture, &sets)?;
+        let cached = CachedPipelines::new(context, sets.shared(), cache)?;
         let wireframe = options.styles.iter().any(|style| style.wireframe);
-        let lattice = LatticePipelines::new(context, sets, cache, options.texcoords, wireframe)?;
-        Ok(Self { context: context.clone(), cache, draws, cached, conversion: None, lattice })
+        let lattice = LatticePipelines::new(context, &sets, cache, options.texcoords, wireframe)?;
+        Ok(Self { context: context.clone(), cache, sets, draws, cached, conversion: None, lattice })
     }
 
     /// Makes what draws of these patches need in every style, and what comes before.
@@ -63,7 +64,7 @@ impl ModelPipelines {
     fn convert(&mut self, stages: PatchStages) -> Result<(), GpuError> {
         let made = match self.conversion.take() {
             Some(made) => made,
-            None => Conversion::new(&self.context, self.draws.set_layouts(), self.cache)?,
+            None => Conversion::new(&self.context, self.sets.shared(), self.cache)?,
         };
         self.conversion.insert(made).make(stages, &self.draws.shaders)
     }

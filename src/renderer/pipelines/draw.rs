@@ -5,7 +5,7 @@ use crate::constants::ID_ENCODE_SRGB;
 use crate::gpu::{DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Specialization, pipeline_layout};
 use crate::renderer::options::{ColorEncoding, Fragment, Geometry, Options, Style, Target};
 use crate::renderer::shader::{
-    Capture, GeometryKey, PipelineKey, STAGES, ShaderCode, ShaderId, model_layout, view_layout,
+    Capture, GeometryKey, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId,
 };
 use ash::vk;
 use rustc_hash::FxHashMap;
@@ -20,8 +20,6 @@ pub(crate) struct DrawPipelines {
     pub shaders: ShaderCode,
     capture: Capture,
     cache: vk::PipelineCache,
-    pub view_layout: Owned<vk::DescriptorSetLayout>,
-    pub model_layout: Owned<vk::DescriptorSetLayout>,
     pub layout: Owned<vk::PipelineLayout>,
     made: FxHashMap<PipelineKey, Owned<vk::Pipeline>>,
 }
@@ -32,11 +30,9 @@ impl DrawPipelines {
         target: &Target,
         options: &Options,
         capture: Capture,
+        layouts: &SetLayouts,
     ) -> Result<Self, GpuError> {
-        let view_layout = view_layout(context)?;
-        let model_layout = model_layout(context)?;
-        let mut sets = vec![view_layout.raw(), model_layout.raw()];
-        sets.extend(&options.set_layouts);
+        let sets = [&layouts.shared()[..], &options.set_layouts].concat();
         let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];
         // SAFETY: the layouts are of this device; for the caller's own that is part of the contract of `Renderer::new`.
         let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
@@ -48,8 +44,6 @@ impl DrawPipelines {
             shaders: ShaderCode::new(options),
             capture,
             cache: options.pipeline_cache,
-            view_layout,
-            model_layout,
             layout,
             made: FxHashMap::default(),
         })
@@ -99,11 +93,6 @@ impl DrawPipelines {
             }
         }
         Ok(())
-    }
-
-    /// The set layouts of views and of models.
-    pub(crate) fn set_layouts(&self) -> [vk::DescriptorSetLayout; 2] {
-        [self.view_layout.raw(), self.model_layout.raw()]
     }
 
     fn make_one(&mut self, key: PipelineKey, recipe: &Recipe) -> Result<(), GpuError> {

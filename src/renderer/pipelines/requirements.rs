@@ -2,7 +2,7 @@
 
 use crate::gpu::{ContextOptions, DeviceProperties, Features};
 use crate::renderer::options::{Error, Fragment, Options, Pass, Target};
-use crate::renderer::shader::{MODEL_BUFFERS, ViewData, is_spirv};
+use crate::renderer::shader::{ViewData, is_spirv, stage_storage_buffers};
 use ash::vk;
 
 /// What draws of lists need, in [`Features`].
@@ -134,8 +134,7 @@ pub(crate) fn check_properties(
         let has: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
         missing.push(format!("{count} samples a pixel (it has {})", has.join(", ")));
     }
-    // A list of patches besides; evaluation by compute has its vertices, too.
-    let (least, has) = (MODEL_BUFFERS as u32 + 2, properties.max_stage_storage_buffers);
+    let (least, has) = (stage_storage_buffers(), properties.max_stage_storage_buffers);
     if has < least {
         missing.push(format!("{least} storage buffers a shader stage (it has {has})"));
     }
@@ -160,6 +159,6 @@ mod tests {
         let target = Target::dynamic(vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT, vk::SampleCountFlags::TYPE_1);
         let error = check_properties(&properties, properties.features, &target, &Options::default()).unwrap_err();
         let told = error.to_string();
-        assert!(told.contains("15 storage buffers a shader stage (it has 4)"), "{told}");
+        assert!(told.contains("7 storage buffers a shader stage (it has 4)"), "{told}");
     }
 }

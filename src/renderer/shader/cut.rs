@@ -36,7 +36,6 @@ impl Cut {
     pub(crate) fn flags(self) -> u32 {
         let Cull { frustum, back, small } = self.cull;
         let flag = |set, flag| if set { flag } else { 0 };
-        // Five bits: see `Cut::bit`.
         self.metric | flag(frustum, CULL_FRUSTUM_FLAG) | flag(back, CULL_BACK_FLAG) | flag(small, CULL_SMALL_FLAG)
     }
 
@@ -57,10 +56,5 @@ impl Cut {
             flag(small, "cull small"),
             flag(self.listed, "listed"),
         ]
-    }
-
-    /// A bit of its own among 64.
-    pub(crate) fn bit(self) -> u64 {
-        1 << (self.flags() | u32::from(self.listed) << 5)
     }
 }

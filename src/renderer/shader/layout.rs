@@ -1,6 +1,6 @@
-//! The descriptor sets that shaders read: set 0 of a view, set 1 of a model.
+//! The descriptor sets that shaders read: set 0 of a view, set 1 of a model, set 2 of vertices that compute evaluates.
 
-use crate::gpu::{DeviceContext, GpuError, Owned, descriptor_set_layout};
+use crate::gpu::{DescriptorPool, DeviceContext, GpuError, SetLayout, descriptor_set_layout};
 use ash::vk;
 use std::sync::Arc;
 
@@ -13,41 +13,85 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
-/// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
-pub(crate) fn view_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::DescriptorSetLayout>, GpuError> {
-    let stages = STAGES | vk::ShaderStageFlags::COMPUTE;
-    let bindings =
-        [(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, stages), (vk::DescriptorType::STORAGE_BUFFER_DYNAMIC, stages)];
-    descriptor_set_layout(context, "subdiv view", &bindings)
+/// The layouts of a renderer's descriptor sets, and the pool of all of them.
+pub(crate) struct SetLayouts {
+    pub view: SetLayout,
+    pub model: SetLayout,
+    pub vertices: SetLayout,
+    pub pool: Arc<DescriptorPool>,
 }
 
-/// Storage buffers of a model: positions, [`ModelTables::bindings`](crate::renderer::ModelTables), factors of edges, cached control
-/// points. The displacement map comes after them, and those in [`TEXELS`] once more as texel buffers.
-pub(crate) const MODEL_BUFFERS: usize = 13;
+impl SetLayouts {
+    pub(crate) fn new(context: &Arc<DeviceContext>) -> Result<Arc<Self>, GpuError> {
+        let [view, model, vertices] = [view_layout(context)?, model_layout(context)?, vertices_layout(context)?];
+        let pool = DescriptorPool::new(context, "subdiv sets", &[&view, &model, &vertices]);
+        Ok(Arc::new(Self { view, model, vertices, pool }))
+    }
 
-/// Which storage buffers of set 1 shaders see as texel buffers, too, how, and the bytes of a texel: positions, rings, their
-/// entries, their types, corners of patches, frames, control points. GLSL twins: `glsl/lib/draw/positions.glsl`, `glsl/lib/construct/rings.glsl`,
-/// `glsl/lib/construct/kept_frames.glsl`, `glsl/lib/construct/cached.glsl`.
-pub(crate) const TEXELS: [(usize, vk::Format, u64); 7] = [
-    (0, vk::Format::R32G32B32A32_SFLOAT, 16),
-    (1, vk::Format::R32G32B32A32_UINT, 16),
-    (2, vk::Format::R32_UINT, 4),
-    (3, vk::Format::R32G32B32A32_SFLOAT, 16),
-    (4, vk::Format::R32G32_UINT, 8),
-    (FRAMES_BINDING, vk::Format::R32G32B32A32_SFLOAT, 16),
-    (POINTS_BINDING, vk::Format::R32G32B32A32_SFLOAT, 16),
-];
+    /// Those of views and of models, which all pipelines have.
+    pub(crate) fn shared(&self) -> [vk::DescriptorSetLayout; 2] {
+        [self.view.raw(), self.model.raw()]
+    }
+}
 
-/// Of set 1: frames are in the place of the stencil table, which the cached construction does without.
-pub(crate) const FRAMES_BINDING: usize = 5;
-/// Of set 1: control points that are kept.
-pub(crate) const POINTS_BINDING: usize = 12;
-
-/// The layout of a [`ModelSet`].
-pub(crate) fn model_layout(context: &Arc<DeviceContext>) -> Result<Owned<vk::DescriptorSetLayout>, GpuError> {
+/// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
+fn view_layout(context: &Arc<DeviceContext>) -> Result<SetLayout, GpuError> {
     let stages = STAGES | vk::ShaderStageFlags::COMPUTE;
-    let mut bindings = vec![(vk::DescriptorType::STORAGE_BUFFER, stages); MODEL_BUFFERS];
-    bindings.push((vk::DescriptorType::COMBINED_IMAGE_SAMPLER, stages));
-    bindings.extend([(vk::DescriptorType::UNIFORM_TEXEL_BUFFER, stages); TEXELS.len()]);
+    descriptor_set_layout(context, "subdiv view", &VIEW_BINDINGS.map(|ty| (ty, stages)))
+}
+
+/// The storage buffers of a model: positions, tables, frames, factors of edges, control points. Then come a uniform block that says
+/// where each table starts, the displacement map, and texel buffers: of the positions, of [`TABLE_TEXELS`], of the frames, of the
+/// control points. GLSL twins: `glsl/lib/draw/positions.glsl`, `glsl/lib/draw/tables.glsl`, `glsl/lib/construct/kept_frames.glsl`,
+/// `glsl/lib/edges/factors.glsl`, `glsl/lib/construct/cached.glsl`, `glsl/lib/displace/displacement_map.glsl`.
+pub(crate) const MODEL_BUFFERS: usize = 5;
+
+/// Texels of four numbers, such as positions.
+pub(crate) const VECTOR_TEXEL: (vk::Format, u64) = (vk::Format::R32G32B32A32_SFLOAT, 16);
+
+/// The tables that shaders may see as texel buffers, the first of all: format and bytes of a texel of the headers of rings, their
+/// entries, their types and the corners of patches. GLSL twin: `glsl/lib/construct/rings.glsl`.
+pub(crate) const TABLE_TEXELS: [(vk::Format, u64); 4] =
+    [(vk::Format::R32G32B32A32_UINT, 16), (vk::Format::R32_UINT, 4), VECTOR_TEXEL, (vk::Format::R32G32_UINT, 8)];
+
+/// Texel buffers of a model.
+pub(crate) const MODEL_TEXELS: usize = 3 + TABLE_TEXELS.len();
+
+/// What set 0 has, by binding.
+const VIEW_BINDINGS: [vk::DescriptorType; 2] =
+    [vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, vk::DescriptorType::STORAGE_BUFFER_DYNAMIC];
+
+/// What set 1 has, by binding.
+fn model_bindings() -> Vec<vk::DescriptorType> {
+    use vk::DescriptorType as Type;
+    let mut bindings = vec![Type::STORAGE_BUFFER; MODEL_BUFFERS];
+    bindings.extend([Type::UNIFORM_BUFFER, Type::COMBINED_IMAGE_SAMPLER]);
+    bindings.extend([Type::UNIFORM_TEXEL_BUFFER; MODEL_TEXELS]);
+    bindings
+}
+
+/// What set 2 has where compute evaluates, by binding.
+const VERTICES_BINDINGS: [vk::DescriptorType; 1] = [vk::DescriptorType::STORAGE_BUFFER];
+
+/// Storage buffers that a device must have for a shader stage: of all sets, in evaluation by compute.
+pub(crate) fn stage_storage_buffers() -> u32 {
+    let all = VIEW_BINDINGS.into_iter().chain(model_bindings()).chain(VERTICES_BINDINGS);
+    all.filter(|&ty| is_storage_buffer(ty)).count() as u32
+}
+
+fn is_storage_buffer(ty: vk::DescriptorType) -> bool {
+    matches!(ty, vk::DescriptorType::STORAGE_BUFFER | vk::DescriptorType::STORAGE_BUFFER_DYNAMIC)
+}
+
+/// The layout of set 1.
+fn model_layout(context: &Arc<DeviceContext>) -> Result<SetLayout, GpuError> {
+    let stages = STAGES | vk::ShaderStageFlags::COMPUTE;
+    let bindings: Vec<_> = model_bindings().into_iter().map(|ty| (ty, stages)).collect();
     descriptor_set_layout(context, "subdiv model", &bindings)
+}
+
+/// The layout of set 2 where compute evaluates: the vertices.
+fn vertices_layout(context: &Arc<DeviceContext>) -> Result<SetLayout, GpuError> {
+    let bindings = VERTICES_BINDINGS.map(|ty| (ty, vk::ShaderStageFlags::COMPUTE));
+    descriptor_set_layout(context, "subdiv vertices", &bindings)
 }

@@ -21,5 +21,7 @@ pub(crate) use cut::Cut;
 pub(crate) use gpu_data::{DrawConstants, ViewData, displacement_flags};
 pub use ids::ShaderId;
 pub(crate) use key::{Capture, GeometryKey, PatchStages, PipelineKey, reads_texels};
-pub(crate) use layout::{FRAMES_BINDING, MODEL_BUFFERS, POINTS_BINDING, STAGES, TEXELS, model_layout, view_layout};
+pub(crate) use layout::{
+    MODEL_BUFFERS, MODEL_TEXELS, STAGES, SetLayouts, TABLE_TEXELS, VECTOR_TEXEL, stage_storage_buffers,
+};
 pub(crate) use spirv::{is_spirv, spaced};
