@@ -110,7 +110,7 @@ impl Watcher {
         buffer.write(0, &vec![f32::NAN; size as usize / 4])?;
         buffer.write(0, &[head])?;
         let parts: Vec<_> = idle.iter().chain([&buffer]).map(Buffer::descriptor).collect();
-        // SAFETY: the layout is of this device, and has as many; every submission is waited for.
+        // SAFETY: the layout is that of the pool, and has as many; every submission is waited for.
         let set = unsafe { DescriptorSet::of_buffers(sets, layout, "capture", &parts)? };
         let pipeline_layout = renderer.pipeline_layout();
         // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
