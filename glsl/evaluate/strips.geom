@@ -115,7 +115,7 @@ void sum_points() {
     for (uint k = 0u; k < CORNERS; ++k) {
         stencil_points(draw.first_patch + patch_number, k, CORNERS, owned[k]);
 #ifdef TEXCOORD
-        texcoord[k] = texcoords[draw.first_corner + patch_number * CORNERS + k];
+        texcoord[k] = corner_texcoord(draw.first_corner + patch_number * CORNERS + k);
 #endif
     }
 }

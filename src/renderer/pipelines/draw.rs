@@ -4,9 +4,7 @@ use super::recipe::{MadeFor, Recipe};
 use crate::constants::ID_ENCODE_SRGB;
 use crate::gpu::{DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Specialization, pipeline_layout};
 use crate::renderer::options::{ColorEncoding, Fragment, Geometry, Options, Style, Target};
-use crate::renderer::shader::{
-    Capture, GeometryKey, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId,
-};
+use crate::renderer::shader::{Capture, GeometryKey, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId};
 use ash::vk;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
