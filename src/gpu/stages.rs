@@ -40,7 +40,7 @@ impl Specialization {
 pub struct Shader<'a> {
     /// Just one.
     pub stage: vk::ShaderStageFlags,
-    /// SPIR-V, such as a constant of [`shaders`](super::shaders).
+    /// SPIR-V words.
     pub code: &'a [u32],
     /// Values for constants of the code; those not named keep their default.
     pub specialization: &'a [Specialization],

@@ -123,7 +123,7 @@ impl ModelTables {
         })
     }
 
-    /// Whether any corner has another ring than its own speak for what it shares.
+    /// Whether another ring than its own owns what some corner shares.
     pub(crate) fn has_speakers(&self) -> bool {
         let (Some(shared), Some(rings)) = (&self.shared, &self.rings) else { return false };
         let own = |(shared, &[own, _]): (&SharedCorner, &[u32; 2])| {

@@ -1,4 +1,4 @@
-//! What patches share: which ring speaks for each edge and each vertex.
+//! Ownership of what patches share: the ring that owns each edge and each vertex.
 
 use super::PatchPlan;
 use crate::mesh::NO_TWIN;
@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Bit of [`SharedCorner::plus_edge`]: the faces at the plus edge are lit with normals of their own.
 pub const SHARP_EDGE_BIT: u32 = 1 << 30;
 
-/// Who speaks for what a patch corner shares with other patches. GLSL twin: `glsl/lib/edges/shared.glsl`.
+/// Owners of what a patch corner shares with other patches. GLSL twin: `glsl/lib/edges/shared.glsl`.
 ///
 /// Along a smooth edge and around a smooth vertex there is only one ring to ask. Along a crease the side speaks on whose left
 /// the edge leads from the lower vertex to the higher; for a vertex with several rings the first of them in
@@ -16,13 +16,13 @@ pub const SHARP_EDGE_BIT: u32 = 1 << 30;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct SharedCorner {
-    /// The ring that speaks for the vertex.
+    /// Ring that owns the vertex.
     pub ring: u32,
-    /// The ring at this vertex that speaks for the plus edge.
+    /// Ring at this vertex that owns the plus edge.
     pub plus_ring: u32,
     /// The number of the plus edge in that ring, and a bit.
     pub plus_edge: u32,
-    /// The ring at this vertex that speaks for the minus edge.
+    /// Ring at this vertex that owns the minus edge.
     pub minus_ring: u32,
     /// The number of the minus edge in that ring.
     pub minus_edge: u32,
@@ -33,11 +33,11 @@ pub struct SharedCorner {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct SharedTexcoord {
-    /// At this end of the plus edge, on the side that speaks for the edge.
+    /// At this end of the plus edge, on the side that owns the edge.
     pub plus: [f32; 2],
     /// At this end of the minus edge, likewise.
     pub minus: [f32; 2],
-    /// At the corner, where the ring that speaks for the vertex starts.
+    /// At the corner, where the ring that owns the vertex starts.
     pub corner: [f32; 2],
     /// First the mean length of an edge of that ring in texture space, then zero.
     pub scale: [f32; 2],
@@ -73,7 +73,7 @@ impl SharedTable {
     }
 }
 
-/// Who speaks for edges and vertices.
+/// Owners of edges and vertices.
 pub(crate) struct Speakers<'t> {
     topology: &'t Topology,
     /// The first ring of each vertex of the mesh.
@@ -92,7 +92,7 @@ impl<'t> Speakers<'t> {
         Self { topology, first_rings }
     }
 
-    /// The half-edge that speaks for the edge of half-edge `h`: itself or its twin.
+    /// Half-edge that owns the edge of half-edge `h`: itself or its twin.
     pub(crate) fn edge(&self, h: u32) -> u32 {
         let twin = self.topology.mesh().twins()[h as usize];
         if twin != NO_TWIN && self.is_reversed(h) { twin } else { h }
@@ -103,7 +103,7 @@ impl<'t> Speakers<'t> {
         self.topology.mesh_vertex(h) > self.topology.mesh_vertex(self.topology.next(h))
     }
 
-    /// Ring and number in it of the edge of half-edge `h`, at its start, as the one who speaks for it sees it.
+    /// Ring and number in it of the edge of half-edge `h`, at its start, as its owner sees it.
     fn at_start(&self, h: u32) -> (u32, u32) {
         let speaker = self.edge(h);
         if speaker == h { self.plus(h) } else { self.minus(self.topology.next(speaker)) }

@@ -54,7 +54,7 @@ pub(crate) struct PatchStages {
     pub evaluation: Evaluation,
     pub spacing: Spacing,
     pub sharing: Sharing,
-    /// Whether any corner has another ring than its own speak for what it shares.
+    /// Whether another ring than its own owns what some corner shares.
     pub has_speakers: bool,
     /// Whether edges of a lattice have factors of their own.
     pub edge_factors: bool,
