@@ -43,7 +43,7 @@ pub fn descriptor_set_layout(
     // SAFETY: the description is valid, and the layout is taken over by `Owned`.
     unsafe {
         let raw = context.device().create_descriptor_set_layout(&info, None).of("vkCreateDescriptorSetLayout", name)?;
-        #[cfg(test)]
+        #[cfg(all(test, feature = "headless"))]
         demand::set_made(raw, bindings);
         Ok(SetLayout { raw: Owned::new(context, raw, name), bindings: bindings.to_vec() })
     }
@@ -78,14 +78,14 @@ pub unsafe fn pipeline_layout(
     // SAFETY: as the caller promises; the layout is taken over by `Owned`.
     unsafe {
         let raw = context.device().create_pipeline_layout(&info, None).of("vkCreatePipelineLayout", name)?;
-        #[cfg(test)]
+        #[cfg(all(test, feature = "headless"))]
         demand::layout_made(set_layouts);
         Ok(Owned::new(context, raw, name))
     }
 }
 
 /// Storage buffers that the pipeline layouts made by this thread demand of a shader stage.
-#[cfg(test)]
+#[cfg(all(test, feature = "headless"))]
 pub(crate) mod demand {
     use ash::vk;
     use std::cell::{Cell, RefCell};

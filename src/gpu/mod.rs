@@ -28,7 +28,7 @@ pub use device::{ContextOptions, DeviceContext, DeviceProperties, MAX_OFFSET_ALI
 pub use error::{GpuError, VkResultExt};
 pub use features::Features;
 pub use image::{Image, ImageDesc, aspects};
-#[cfg(test)]
+#[cfg(all(test, feature = "headless"))]
 pub(crate) use layout::demand;
 pub use layout::{SetLayout, descriptor_set_layout, pipeline_layout};
 pub use owned::{DeviceHandle, Owned};
