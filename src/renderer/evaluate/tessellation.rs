@@ -25,6 +25,9 @@ impl Path for Tessellation {
 
     fn recipe(&self, stages: PatchStages, cut: Cut, _key: GeometryKey, made_for: &MadeFor) -> Recipe {
         let &MadeFor { properties, capture, texcoords } = made_for;
+        // Control points are the same whatever patches share.
+        let sharing = if capture == Capture::Points { Sharing::Positions } else { stages.sharing };
+        let stages = PatchStages { sharing, ..stages };
         let constants = stages.specialization(cut, properties);
         let evaluation = stages.shader(Source::TessellationTese, capture.evaluated(texcoords));
         let spacing = if capture == Capture::Grid { Spacing::Equal } else { stages.spacing };
