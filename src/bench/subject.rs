@@ -4,7 +4,7 @@ use super::BenchError;
 use crate::mesh::{ControlMesh, MeshData};
 use crate::named::named;
 use crate::patch::{Fallback, Scheme};
-use crate::table::{PatchPlan, TableError, prepare};
+use crate::table::{TableError, prepare};
 use crate::topology::PatchKind;
 
 named! {
@@ -50,7 +50,7 @@ impl Subject {
     /// [`BenchError::NoPatches`] if the subset has no patches; a refined mesh that cannot be addressed.
     pub fn new(name: &str, mesh: ControlMesh, refine: u32, subset: Subset) -> Result<Self, BenchError> {
         let prepared = prepare(&mesh, refine)?;
-        let plan = PatchPlan::new(prepared.topology(), Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
+        let plan = prepared.plan(Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
         let counts = PatchKind::ALL.map(|kind| if subset.has(kind) { plan.count(kind) } else { 0 });
         if counts == [0; PatchKind::ALL.len()] {
             return Err(BenchError::NoPatches { mesh: name.to_owned(), subset: subset.name() });
@@ -82,7 +82,6 @@ impl Subject {
 mod tests {
     use super::*;
     use crate::shape;
-    use crate::topology::Topology;
 
     #[test]
     fn subsets_are_drawn_alone_and_look_the_same() {
@@ -92,8 +91,7 @@ mod tests {
         assert_eq!(regular.patches(), u64::from(all.patch_count(PatchKind::Regular)));
         assert!(irregular.patch_count(PatchKind::Triangle) > 0 && irregular.patch_count(PatchKind::Regular) == 0);
         for subject in [&regular, &irregular] {
-            let topology = Topology::new(&subject.mesh);
-            let plan = PatchPlan::new(&topology, Scheme::Gregory, Fallback::Refuse).unwrap();
+            let plan = prepare(&subject.mesh, 0).unwrap().plan(Scheme::Gregory, Fallback::Refuse).unwrap();
             assert_eq!(PatchKind::ALL.map(|kind| plan.count(kind)), subject.counts);
         }
     }

@@ -56,7 +56,7 @@ Examples:
 struct PatchOut<'p, T> {
     /// The face of the input.
     face: u32,
-    /// As in [`FaceOrigin`].
+    /// As [`sub`] has it.
     sub: i64,
     kind: &'static str,
     scheme: &'static str,
@@ -75,7 +75,7 @@ impl<T: Serialize> Serialize for Made<'_, T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(by_origin(self.origins).into_iter().map(|i| PatchOut {
             face: self.origins[i].face,
-            sub: self.origins[i].sub,
+            sub: sub(&self.origins[i]),
             kind: self.patches[i].kind.name(),
             scheme: self.patches[i].scheme.name(),
             points: &self.points[i],
@@ -92,7 +92,7 @@ struct PatchesOut<'o, T: Serialize> {
 /// The numbers of patches in the order of the input's faces.
 pub(super) fn by_origin(origins: &[FaceOrigin]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..origins.len()).collect();
-    order.sort_by_key(|&i| (origins[i].face, origins[i].sub));
+    order.sort_by_cached_key(|&i| (origins[i].face, sub(&origins[i])));
     order
 }
 
@@ -132,7 +132,7 @@ fn on_device(
         Ok((captured.tables().clone(), points))
     })?;
     drop(progress);
-    write(args, json, Made { patches: tables.plan().patches(), origins: tables.origins(), points: &points })
+    write(args, json, Made { patches: tables.plan().patches(), origins: &tables.origins(), points: &points })
 }
 
 fn write<T: Serialize + Display>(args: &PatchesArgs, json: bool, made: Made<T>) -> Result<(), CliError> {
@@ -154,9 +154,16 @@ fn write<T: Serialize + Display>(args: &PatchesArgs, json: bool, made: Made<T>) 
     })
 }
 
+/// The number of a patch among those of its face: -1 for the whole face; else the corner of the face around which refinement made
+/// this part of it, or from which the edge of this piece of a pentagon starts. After several steps, four times the number of the
+/// first step's part plus the corner within that, and so on.
+pub(super) fn sub(origin: &FaceOrigin) -> i64 {
+    origin.path().fold(-1, |sub, corner| i64::from(corner) + if sub < 0 { 0 } else { 4 * sub })
+}
+
 /// Text before the kind of a patch.
 pub(super) fn heading(origin: FaceOrigin) -> String {
-    match origin.sub {
+    match sub(&origin) {
         -1 => format!("face {}: ", origin.face),
         sub => format!("face {}, part {sub}: ", origin.face),
     }

@@ -3,12 +3,12 @@
 use super::error::CliError;
 use super::output::{self, Progress};
 use super::parse::{self, Surface};
-use super::patches::{by_origin, heading};
+use super::patches::{by_origin, heading, sub};
 use super::source::{DeviceArgs, SourceArgs, report_notices};
 use ash_subdiv::capture::{Captured, CapturedVertex};
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::patch::Sample;
-use ash_subdiv::table::{FaceOrigin, Patch, grid_parameters};
+use ash_subdiv::table::{FaceOrigin, Patch, PatchId, grid_parameters};
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, Fallback, Scheme};
 use clap::Args;
@@ -132,7 +132,7 @@ struct FaceOut<'o, L: Lattice> {
 fn in_order<L: Lattice, S: Serializer>((origins, parts, samples): &Parts<L>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(by_origin(origins).into_iter().map(|i| FaceOut {
         face: origins[i].face,
-        sub: origins[i].sub,
+        sub: sub(&origins[i]),
         scheme: parts[i].scheme,
         positions: &samples[i],
         normals: &samples[i],
@@ -195,7 +195,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
         Ok((captured.tables().clone(), samples))
     })?;
     drop(progress);
-    write(args, json, (tables.origins(), &parts(tables.plan().patches()), &samples))
+    write(args, json, (&tables.origins(), &parts(tables.plan().patches()), &samples))
 }
 
 /// Parts of a surface, and the samples of each.
@@ -211,7 +211,10 @@ fn sample_limit(mesh: &ControlMesh, n: u32) -> Result<Sampled, CliError> {
             let sample = limit.evaluate(face, sub, u, v);
             Sample { position: sample.position, normal: sample.normal }
         };
-        (FaceOrigin { face, sub: sub.into() }, parameters.iter().map(sample).collect())
+        (
+            FaceOrigin { face, corner: u32::try_from(sub).ok(), id: PatchId::default() },
+            parameters.iter().map(sample).collect(),
+        )
     };
     Ok(faces.flat_map_iter(|face| limit.subs(face).map(move |sub| (face, sub))).map(of_part).unzip())
 }

@@ -121,7 +121,7 @@ pub fn surface_errors(
     let diagonal = low.distance(high);
     let prepared = prepare(mesh, options.refine)?;
     let topology = prepared.topology();
-    let plan = |scheme: &Scheme| (*scheme, PatchPlan::new(topology, *scheme, options.fallback));
+    let plan = |scheme: &Scheme| (*scheme, prepared.plan(*scheme, options.fallback));
     let plans: Vec<_> = schemes.iter().map(plan).collect();
     let defined = plans.iter().filter_map(|(_, plan)| plan.as_ref().ok());
     let surfaces =

@@ -107,7 +107,7 @@ impl Parameters {
             PatchKind::Regular | PatchKind::IrregularQuad => return Self { sub: -1, u, v },
             PatchKind::Pentagon => {
                 // A piece is half of the parts at either end of its edge.
-                let (here, next) = (patch.first as i32, (patch.first as i32 + 1) % 5);
+                let (here, next) = (patch.first() as i32, (patch.first() as i32 + 1) % 5);
                 let centre = 1.0 - u - v;
                 return match u >= v {
                     true => Self { sub: here, u: 2.0 * v + centre, v: centre },
@@ -140,12 +140,13 @@ pub(super) fn angle(a: DVec3, b: DVec3) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::Scheme;
+    use crate::table::PatchId;
 
     #[test]
     fn points_of_triangles_are_found_in_their_parts() {
         for (sub, i, j) in (0..3).flat_map(|sub| (0..8).flat_map(move |i| (0..8).map(move |j| (sub, i, j)))) {
             let at = Parameters { sub, u: f64::from(i) / 8.0, v: f64::from(j) / 8.0 };
-            let patch = Patch { face: 0, kind: PatchKind::Triangle, scheme: Scheme::Gregory, first: 0 };
+            let patch = Patch { face: 0, kind: PatchKind::Triangle, scheme: Scheme::Gregory, id: PatchId::whole(0) };
             let back = Parameters::of_point(patch, at.of_patch());
             assert_eq!(back.sub, sub);
             assert!((back.u - at.u).abs().max((back.v - at.v).abs()) < 1e-12, "{at:?} {back:?}");

@@ -5,7 +5,7 @@ use crate::gpu::Blend;
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Texture};
 use crate::mesh::{ControlMesh, FaceVarying, MeshData};
 use crate::renderer::{
-    DrawItem, Edges, Error, Factor, Fragment, ModelOptions, ModelTables, Options, Renderer, Style, Target, View,
+    DrawItem, EdgeTable, Error, Factor, Fragment, ModelOptions, ModelTables, Options, Renderer, Style, Target, View,
 };
 use crate::table::{Patch, prepare};
 use crate::topology::PatchKind;
@@ -63,7 +63,7 @@ pub struct Seams {
     patches: Vec<Patch>,
     /// The number of the first corner of each patch.
     first_corners: Vec<usize>,
-    edges: Edges,
+    edges: EdgeTable,
     /// Whether each edge has two patches, and whether they are to have one normal.
     paired: Vec<bool>,
     smooth: Vec<bool>,
@@ -80,7 +80,7 @@ impl Seams {
         let prepared = prepare(mesh, refine)?;
         let topology = prepared.topology();
         let plan = tables.plan();
-        let edges = Edges::new(topology, plan);
+        let edges = prepared.edges(plan);
         let mut patches = vec![0; edges.vertices.len()];
         edges.of_corners.iter().for_each(|&edge| patches[edge as usize] += 1);
         let mut smooth = vec![true; edges.vertices.len()];

@@ -48,7 +48,7 @@ mod options;
 mod pipelines;
 mod shader;
 
-pub use crate::table::{Construction, Edges, Evaluation, ModelTables, TableBytes, TableOptions};
+pub use crate::table::{Construction, EdgeTable, Evaluation, ModelTables, TableBytes, TableOptions};
 pub use frame::Renderer;
 pub use frame::segments::EvaluatedVertices;
 pub use frame::visible::VisibleItems;

@@ -65,7 +65,7 @@ impl CpuSurface {
 
     /// Where each patch comes from.
     pub fn origins(&self) -> Vec<FaceOrigin> {
-        self.prepared.origins(&self.plan)
+        self.plan.origins()
     }
 
     /// The control points of every patch, combined from `value` of each position.

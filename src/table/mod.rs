@@ -7,11 +7,14 @@
 //! ([`DeviceProperties::reads_texels`](crate::gpu::DeviceProperties::reads_texels)).
 
 mod bytes;
+mod cells;
 mod cpu;
+mod edges;
 mod error;
 mod lattice;
 mod model;
 mod options;
+mod patch_id;
 mod plan;
 mod prepare;
 mod rings;
@@ -21,16 +24,19 @@ mod stencils;
 mod subdivision;
 
 pub(crate) use bytes::bytes;
+pub use cells::{CurvePart, Parts};
 pub use cpu::{CpuSurface, grid_parameters};
+pub use edges::{EdgeRecord, EdgeTable};
 pub use error::TableError;
 pub(crate) use lattice::{LatticeIndices, MAX_SEGMENTS, TILE_VERTICES, lattice_tiles, lattice_vertices};
 pub(crate) use model::TEXEL_BYTES;
-pub use model::{Edges, ModelTables, TableBytes};
+pub use model::{ModelTables, TableBytes};
 pub use options::{Construction, Evaluation, TableOptions};
+pub use patch_id::{FaceOrigin, PatchId};
 pub use plan::{Patch, PatchGroup, PatchPlan};
-pub use prepare::{FaceOrigin, Notice, Prepared, prepare, prepare_patches, prepare_quads};
+pub use prepare::{Notice, Prepared, prepare, prepare_patches, prepare_quads};
 pub use rings::RingTable;
-pub use shared::{SharedCorner, SharedTable, SharedTexcoord};
+pub use shared::{SharedTable, SharedTexcoord};
 pub(crate) use sharing::Sharing;
 pub use stencils::StencilTable;
 pub use subdivision::SubdivisionTable;

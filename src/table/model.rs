@@ -1,12 +1,13 @@
 //! The arrays of a model, before they are on the GPU.
 
+use super::shared::SHARED_WORDS;
 use super::{
-    Construction, Evaluation, FaceOrigin, Notice, PatchPlan, RingTable, SharedCorner, SharedTable, Sharing,
-    StencilTable, SubdivisionTable, TableError, TableOptions, bytes, prepare_patches, prepare_quads,
+    Construction, EdgeTable, Evaluation, FaceOrigin, Notice, PatchPlan, RingTable, SharedTable, Sharing, StencilTable,
+    SubdivisionTable, TableError, TableOptions, bytes, prepare_patches, prepare_quads,
 };
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
-use crate::topology::{PatchKind, Topology};
+use crate::topology::PatchKind;
 use glam::Vec3;
 
 /// Everything that a model's shaders read but its positions. Made without a device, on any thread.
@@ -23,7 +24,7 @@ pub struct ModelTables {
     /// Where normals are shared.
     shared: Option<SharedTable>,
     pub(crate) texcoords: Option<Vec<[f32; 2]>>,
-    edges: Option<Edges>,
+    edges: Option<EdgeTable>,
     /// Pairs of control vertices: the edges of the caller's mesh.
     pub(crate) control_edges: Vec<u32>,
     /// Triples of control vertices: its faces as fans.
@@ -32,37 +33,7 @@ pub struct ModelTables {
     pub(crate) control_vertices: usize,
     patch_vertices: usize,
     steps: Vec<Stencils>,
-    origins: Vec<FaceOrigin>,
     notices: Vec<Notice>,
-}
-
-/// The edges of patches, for factors of their own.
-#[derive(Debug, Clone)]
-pub struct Edges {
-    /// The vertices at both ends of each: those of the control mesh, or of the refined one where it had to be refined.
-    pub vertices: Vec<[u32; 2]>,
-    /// For each patch corner, in the order of the plan, the edge to the next.
-    pub of_corners: Vec<u32>,
-}
-
-impl Edges {
-    /// Of the patches in `plan`, whose faces are those of `topology`.
-    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
-        let mesh = topology.mesh();
-        let mut vertices = Vec::new();
-        let mut of_half_edges = vec![0; mesh.corner_count()];
-        for h in 0..mesh.corner_count() as u32 {
-            of_half_edges[h as usize] = match topology.twin(h) {
-                Some(twin) if twin < h => of_half_edges[twin as usize],
-                _ => {
-                    vertices.push([topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h))]);
-                    vertices.len() as u32 - 1
-                }
-            };
-        }
-        let of_corners = plan.corners(topology).into_iter().map(|h| of_half_edges[h as usize]).collect();
-        Self { vertices, of_corners }
-    }
 }
 
 /// Bytes of a stored vertex, and of a texel of what is kept. GLSL twins: `glsl/lib/draw/positions.glsl`, `cached.glsl`.
@@ -95,10 +66,13 @@ impl ModelTables {
             .then(|| StencilTable::new(topology, &mut plan))
             .transpose()?;
         let sharing = options.sharing();
-        let shared = match sharing {
-            Sharing::Displacement => Some(SharedTable::with_texcoords(topology, &plan).ok_or(TableError::NoTexcoords)?),
-            Sharing::Normals => Some(SharedTable::new(topology, &plan)),
-            Sharing::Positions => None,
+        let edges = (options.edge_factors || sharing != Sharing::Positions).then(|| prepared.edges(&plan));
+        let shared = match (sharing, &edges) {
+            (Sharing::Displacement, Some(edges)) => {
+                Some(SharedTable::with_texcoords(topology, edges, &plan).ok_or(TableError::NoTexcoords)?)
+            }
+            (Sharing::Normals, Some(edges)) => Some(SharedTable::new(topology, edges, &plan)),
+            _ => None,
         };
         if shared.is_some() && !scheme.is_watertight() {
             return Err(TableError::NothingShared { scheme });
@@ -106,8 +80,7 @@ impl ModelTables {
         let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(topology, &plan));
         Ok(Self {
             texcoords: plan.texcoords(topology),
-            edges: options.edge_factors.then(|| Edges::new(topology, &plan)),
-            origins: prepared.origins(&plan),
+            edges: edges.filter(|_| options.edge_factors),
             notices: prepared.notices(&plan),
             plan,
             options,
@@ -126,8 +99,8 @@ impl ModelTables {
     /// Whether another ring than its own owns what some corner shares.
     pub(crate) fn has_speakers(&self) -> bool {
         let (Some(shared), Some(rings)) = (&self.shared, &self.rings) else { return false };
-        let own = |(shared, &[own, _]): (&SharedCorner, &[u32; 2])| {
-            [shared.ring, shared.plus_ring, shared.minus_ring] == [own; 3]
+        let own = |(&[ring, plus, _, minus, _], &[own, _]): (&[u32; SHARED_WORDS], &[u32; 2])| {
+            [ring, plus, minus] == [own; 3]
         };
         !shared.corners.iter().zip(&rings.corners).all(own)
     }
@@ -138,23 +111,18 @@ impl ModelTables {
     }
 
     /// The edges of the patches, with [`TableOptions::edge_factors`].
-    pub fn edges(&self) -> Option<&Edges> {
+    pub fn edges(&self) -> Option<&EdgeTable> {
         self.edges.as_ref()
     }
 
     /// Where each patch comes from, in the order of [`ModelTables::plan`].
-    pub fn origins(&self) -> &[FaceOrigin] {
-        &self.origins
+    pub fn origins(&self) -> Vec<FaceOrigin> {
+        self.plan.origins()
     }
 
-    /// Vertices that the shaders read: those of the refined mesh, followed by the control vertices if it was refined.
+    /// Vertices that the shaders read: the control vertices, followed by those of the refined mesh if it was refined.
     pub(crate) fn stored_vertices(&self) -> usize {
         self.patch_vertices + if self.steps.is_empty() { 0 } else { self.control_vertices }
-    }
-
-    /// Where the control vertices start among the stored ones.
-    pub(crate) fn first_control_vertex(&self) -> usize {
-        self.stored_vertices() - self.control_vertices
     }
 
     /// Puts the stored vertices for these positions of the control vertices in the place of what is in `stored`: with a fourth
@@ -162,12 +130,12 @@ impl ModelTables {
     pub(crate) fn store_positions(&self, control: &[[f32; 3]], stored: &mut Vec<[f32; 4]>) {
         let wide = |&[x, y, z]: &[f32; 3]| [x, y, z, 0.0];
         stored.clear();
+        stored.extend(control.iter().map(wide));
         if let Some((first, rest)) = self.steps.split_first() {
             let positions: Vec<Vec3> = control.iter().map(|&p| p.into()).collect();
             let refined = rest.iter().fold(first.apply(&positions), |refined, step| step.apply(&refined));
             stored.extend(refined.into_iter().map(|p| wide(&p.into())));
         }
-        stored.extend(control.iter().map(wide));
     }
 
     /// The patches, in the order of the tables.
@@ -261,7 +229,7 @@ impl ModelTables {
             ("stencil_vertices", array(stencils, |t| &t.vertices)),
             ("stencil_types", array(stencils, |t| &t.types)),
             ("texcoords", array(&self.texcoords, |t| t.as_slice())),
-            ("shared_corners", array(&self.shared, |t| &t.corners)),
+            ("shared_corners", array(&self.shared, |t| t.corners.as_flattened())),
             ("shared_texcoords", array(&self.shared, |t| &t.texcoords)),
         ]
     }

@@ -1,5 +1,7 @@
 //! Which faces become which patches, in the order in which they are stored and drawn.
 
+use super::cells::{Cells, Parts};
+use super::patch_id::{FaceOrigin, PatchId};
 use crate::blend::Blend;
 use crate::patch::{Fallback, FallbackRings, Scheme, Undefined};
 use crate::topology::{PatchKind, Topology, draws_face};
@@ -15,9 +17,8 @@ pub struct Patch {
     pub kind: PatchKind,
     /// The scheme that draws it: the one asked for, or the one fallen back to.
     pub scheme: Scheme,
-    /// The corner of the face that is the patch's first: 0 but for the pieces of a pentagon, of which piece k lies between
-    /// the edge from corner k and the centre of the face.
-    pub first: u32,
+    /// What it covers of the caller's mesh.
+    pub id: PatchId,
 }
 
 impl Patch {
@@ -35,7 +36,20 @@ impl Patch {
     pub(crate) fn corners(self, topology: &Topology) -> impl Iterator<Item = u32> + Clone {
         let face = topology.mesh().face_corners(self.face);
         let (start, end) = (face.start as u32, face.end as u32);
-        (start + self.first..end).chain(start..start + self.first)
+        (start + self.first()..end).chain(start..start + self.first())
+    }
+
+    /// The corner of the face that is the patch's first: 0 but for the pieces of a pentagon, of which piece k lies between
+    /// the edge from corner k and the centre of the face.
+    pub fn first(self) -> u32 {
+        if self.kind == PatchKind::Pentagon { self.id.first() } else { 0 }
+    }
+
+    /// The edges along which the surface ends or is drawn sharp: see [`PatchId::boundary`].
+    fn boundary(self, topology: &Topology) -> u32 {
+        let edges = if self.kind == PatchKind::Pentagon { 1 } else { self.kind.corners() };
+        let ends = |h: u32| topology.twin(h).is_none() || topology.is_sharp(h);
+        self.corners(topology).take(edges).zip(0..).map(|(h, k)| u32::from(ends(h)) << k).sum()
     }
 
     /// What patches are sorted by.
@@ -65,6 +79,10 @@ pub struct PatchPlan {
     groups: Vec<PatchGroup>,
     scheme: Scheme,
     fallback_rings: FallbackRings,
+    /// The parts of the caller's faces.
+    parts: Parts,
+    /// Where the vertices of the prepared mesh start among those that shaders read.
+    first_vertex: u32,
 }
 
 impl PatchPlan {
@@ -73,19 +91,29 @@ impl PatchPlan {
     /// # Errors
     /// [`Undefined`] names the first face that the scheme has no patch for, unless such faces fall back; then the first that
     /// there is no patch for at all, which has five or more corners: see [`prepare`](super::prepare()).
-    pub fn new(topology: &Topology, scheme: Scheme, fallback: Fallback) -> Result<Self, Undefined> {
+    pub(super) fn new(
+        topology: &Topology,
+        cells: &Cells,
+        scheme: Scheme,
+        fallback: Fallback,
+    ) -> Result<Self, Undefined> {
         let of_face = |face: u32| {
             let (kind, scheme) = match (scheme.check(topology, face), fallback.scheme()) {
                 (Err(_), Some(fallback)) => (fallback.check(topology, face)?, fallback),
                 (kind, _) => (kind?, scheme),
             };
-            Ok(Patch { face, kind, scheme, first: 0 })
+            Ok(Patch { face, kind, scheme, id: cells.of_face(face) })
         };
         let faces = draws_face(topology).into_par_iter().enumerate();
         let faces = faces.map(|(face, draws)| draws.then(|| of_face(face as u32)));
         // The first error is that of the first face: collected before it is looked for.
         let faces: Vec<Option<Result<Patch, Undefined>>> = faces.collect();
-        let pieces = |patch: Patch| (0..patch.kind.pieces()).map(move |first| Patch { first, ..patch });
+        let pieces = |patch: Patch| {
+            let piece =
+                move |first| if patch.kind == PatchKind::Pentagon { patch.id.with_first(first) } else { patch.id };
+            let patches = (0..patch.kind.pieces()).map(move |first| Patch { id: piece(first), ..patch });
+            patches.map(|patch| Patch { id: patch.id.with_boundary(patch.boundary(topology)), ..patch })
+        };
         let faces: Vec<Patch> = faces.into_iter().flatten().collect::<Result<_, _>>()?;
         let mut patches: Vec<Patch> = faces.into_iter().flat_map(pieces).collect();
         // Around regular patches, too, ACC patches take the frame's points along the edges. They are the same, but so to the last
@@ -102,7 +130,14 @@ impl PatchPlan {
             first += same.len();
             first_corner += same.len() * kind.corners();
         }
-        Ok(Self { patches, groups, scheme, fallback_rings })
+        Ok(Self {
+            patches,
+            groups,
+            scheme,
+            fallback_rings,
+            parts: cells.parts().clone(),
+            first_vertex: cells.first_vertex(),
+        })
     }
 
     /// All patches, in order.
@@ -113,6 +148,22 @@ impl PatchPlan {
     /// The patches of each kind and scheme that there are, in order.
     pub fn groups(&self) -> &[PatchGroup] {
         &self.groups
+    }
+
+    /// The number, among the vertices that shaders read, of a vertex of the prepared mesh: control vertices come first, refined
+    /// ones after them.
+    pub(super) fn vertex(&self, mesh_vertex: u32) -> u32 {
+        self.first_vertex + mesh_vertex
+    }
+
+    /// Where a patch comes from in the caller's mesh.
+    pub fn origin(&self, patch: &Patch) -> FaceOrigin {
+        self.parts.origin(patch.id, patch.kind == PatchKind::Pentagon)
+    }
+
+    /// Where each patch comes from, in order.
+    pub fn origins(&self) -> Vec<FaceOrigin> {
+        self.patches.iter().map(|patch| self.origin(patch)).collect()
     }
 
     /// How many corners all patches have together.

@@ -1,23 +1,17 @@
 //! From any control mesh to one whose faces are patches: refinement where faces have more corners than the scheme has patches
 //! for, or where the caller asks for it.
 
+use super::cells::Cells;
+use super::edges::EdgeTable;
+use super::error::TableError;
+use super::patch_id::MAX_LEVEL;
+use super::plan::PatchPlan;
 use crate::limit::{Stencils, refine};
 use crate::mesh::{ControlMesh, MAX_CORNERS, MeshError, SHARPNESS_INFINITE};
-use crate::patch::{Fallback, Scheme};
-use crate::table::{Patch, PatchPlan, TableError};
-use crate::topology::{PatchKind, Ring, RingKind, SHARP_FROM, Topology};
+use crate::patch::{Fallback, Scheme, Undefined};
+use crate::topology::{Ring, RingKind, SHARP_FROM, Topology};
 use std::fmt;
 use std::sync::Arc;
-
-/// Where a face of the prepared mesh comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FaceOrigin {
-    /// The face of the caller's mesh.
-    pub face: u32,
-    /// -1 for the whole face; else the corner of the face around which refinement made this part of it, or from which the
-    /// edge of this piece of a pentagon starts. After several steps, four times the number of the first step's part plus the corner within that, and so on.
-    pub sub: i64,
-}
 
 /// Something that a user will want to know about how a mesh is drawn.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,8 +101,7 @@ pub struct Prepared {
     topology: Arc<Topology>,
     /// The refinement steps, in order. Each step's inputs are the outputs of the one before.
     pub steps: Vec<Stencils>,
-    /// For each face of the prepared mesh; empty where nothing was refined.
-    origins: Vec<FaceOrigin>,
+    cells: Cells,
     refined_faces: Option<Notice>,
     /// Whether sharpness counts as infinite or none: it is not where faces are subdivided.
     rounds_sharpness: bool,
@@ -118,15 +111,15 @@ pub struct Prepared {
 
 impl Prepared {
     /// The mesh as it is.
-    fn of(mesh: &ControlMesh) -> Self {
-        Self {
+    fn of(mesh: &ControlMesh) -> Result<Self, MeshError> {
+        Ok(Self {
             topology: Arc::new(Topology::new(mesh)),
             steps: Vec::new(),
-            origins: Vec::new(),
+            cells: Cells::whole(mesh)?,
             refined_faces: None,
             rounds_sharpness: true,
             split_vertices: 0,
-        }
+        })
     }
 
     /// The prepared mesh: triangles and quads only, or pentagons too where the scheme has patches for them.
@@ -139,18 +132,17 @@ impl Prepared {
         &self.topology
     }
 
-    /// Where a face comes from.
-    pub fn origin(&self, face: u32) -> FaceOrigin {
-        self.origins.get(face as usize).copied().unwrap_or(FaceOrigin { face, sub: -1 })
+    /// Plans the patches of the prepared mesh.
+    ///
+    /// # Errors
+    /// As of [`PatchPlan`]: a face that the scheme has no patch for, unless such faces fall back.
+    pub fn plan(&self, scheme: Scheme, fallback: Fallback) -> Result<PatchPlan, Undefined> {
+        PatchPlan::new(&self.topology, &self.cells, scheme, fallback)
     }
 
-    /// Where each patch comes from.
-    pub fn origins(&self, plan: &PatchPlan) -> Vec<FaceOrigin> {
-        let origin = |patch: &Patch| match patch.kind {
-            PatchKind::Pentagon => FaceOrigin { sub: patch.first.into(), ..self.origin(patch.face) },
-            _ => self.origin(patch.face),
-        };
-        plan.patches().iter().map(origin).collect()
+    /// The edges of the patches in `plan`.
+    pub fn edges(&self, plan: &PatchPlan) -> EdgeTable {
+        EdgeTable::new(&self.topology, &self.cells, plan)
     }
 
     /// What a user will want to know, once the prepared mesh is planned.
@@ -159,7 +151,7 @@ impl Prepared {
         let split = (splits > 0).then_some(Notice::SplitVertices { count: splits });
         let fell_back = plan.fallen_back().min_by_key(|patch| patch.face).map(|patch| Notice::FellBack {
             faces: plan.fallen_back().count(),
-            first: self.origin(patch.face).face,
+            first: plan.origin(patch).face,
             scheme: plan.scheme(),
             fallback: patch.scheme,
         });
@@ -184,15 +176,15 @@ pub fn prepare_patches(
     levels: u32,
 ) -> Result<(Prepared, PatchPlan), TableError> {
     if levels == 0 && scheme.has_pentagons() {
-        let prepared = Prepared::of(mesh);
-        match PatchPlan::new(&prepared.topology, scheme, Fallback::Refuse) {
+        let prepared = Prepared::of(mesh)?;
+        match prepared.plan(scheme, Fallback::Refuse) {
             Ok(plan) => return Ok((prepared, plan)),
             Err(undefined) if fallback == Fallback::Refuse => return Err(undefined.into()),
             Err(_) => {}
         }
     }
     let prepared = prepare(mesh, levels)?;
-    let plan = PatchPlan::new(&prepared.topology, scheme, fallback)?;
+    let plan = prepared.plan(scheme, fallback)?;
     Ok((prepared, plan))
 }
 
@@ -213,7 +205,7 @@ pub fn prepare(mesh: &ControlMesh, levels: u32) -> Result<Prepared, MeshError> {
 pub fn prepare_quads(mesh: &ControlMesh, levels: u32) -> Result<(Prepared, PatchPlan), TableError> {
     let notice = |faces, first| Notice::RefinedToQuads { faces, first };
     let prepared = Prepared { rounds_sharpness: false, ..refine_faces(mesh, levels, |size| size != 4, notice)? };
-    let plan = PatchPlan::new(&prepared.topology, Scheme::Gregory, Fallback::Refuse)?;
+    let plan = prepared.plan(Scheme::Gregory, Fallback::Refuse)?;
     Ok((prepared, plan))
 }
 
@@ -224,7 +216,7 @@ fn refine_faces(
     misfit: impl Fn(u32) -> bool,
     notice: impl Fn(usize, u32) -> Notice,
 ) -> Result<Prepared, MeshError> {
-    let mut prepared = Prepared::of(mesh);
+    let mut prepared = Prepared::of(mesh)?;
     let mut misfits = (0..).zip(&mesh.data().face_sizes).filter(|&(_, &size)| misfit(size));
     let mut needed = levels;
     if let Some((first, _)) = misfits.next() {
@@ -238,19 +230,14 @@ fn refine_faces(
     if corners > MAX_CORNERS {
         return Err(MeshError::TooLarge { what: "face corners when refined", count: corners, max: MAX_CORNERS });
     }
+    if needed > MAX_LEVEL {
+        let (count, max) = (needed as usize, MAX_LEVEL as usize);
+        return Err(MeshError::TooLarge { what: "levels of refinement", count, max });
+    }
     for _ in 0..needed {
         prepared.split_vertices += prepared.topology.split_count();
         let refined = refine(&prepared.topology)?;
-        let offsets = prepared.mesh().face_offsets();
-        let mut origins = Vec::with_capacity(refined.parents.len());
-        for face in 0..prepared.mesh().face_count() as u32 {
-            let parent = prepared.origin(face);
-            for (corner, _) in (offsets[face as usize]..offsets[face as usize + 1]).enumerate() {
-                let sub = if parent.sub < 0 { corner as i64 } else { 4 * parent.sub + corner as i64 };
-                origins.push(FaceOrigin { face: parent.face, sub });
-            }
-        }
-        prepared.origins = origins;
+        prepared.cells = prepared.cells.refined(&prepared.topology);
         prepared.steps.push(refined.stencils);
         prepared.topology = Arc::new(Topology::new(&refined.mesh));
     }

@@ -52,15 +52,15 @@ impl RingTable {
             .zip(0..)
             .map(|(ring, number)| {
                 let (kind, bits) = types.of(topology, ring, plan.fallback_rings().contains(number));
-                let header = [topology.mesh_vertex(ring.start), entries, kind, ring.faces | bits];
+                let header = [plan.vertex(topology.mesh_vertex(ring.start)), entries, kind, ring.faces | bits];
                 entries += 2 * ring.faces + u32::from(ring.open);
                 header
             })
             .collect();
         let corners = plan.corners(topology);
         let corners = corners.into_par_iter().map(|h| topology.place(h)).map(|place| [place.ring, place.index]);
-        let pentagons = Pentagons::new(topology, entries);
-        let mut entries = ring_entries(topology, &pentagons, entries as usize);
+        let pentagons = Pentagons::new(topology, plan, entries);
+        let mut entries = ring_entries(topology, plan, &pentagons, entries as usize);
         entries.extend(&pentagons.vertices);
         Self { entries, headers, types: types.vectors, type_count: types.count, corners: corners.collect() }
     }
@@ -74,12 +74,13 @@ struct Pentagons {
 }
 
 impl Pentagons {
-    fn new(topology: &Topology, first: u32) -> Self {
+    fn new(topology: &Topology, plan: &PatchPlan, first: u32) -> Self {
         let mesh = topology.mesh();
         let mut pentagons = Self { vertices: Vec::new(), places: HashMap::new() };
         for face in (0..).zip(&mesh.data().face_sizes).filter(|(_, size)| **size == 5).map(|(face, _)| face) {
             pentagons.places.insert(face, first + pentagons.vertices.len() as u32);
-            pentagons.vertices.extend(mesh.face(face).iter().chain(&mesh.face(face)[..1]));
+            let vertices = mesh.face(face).iter().chain(&mesh.face(face)[..1]);
+            pentagons.vertices.extend(vertices.map(|&vertex| plan.vertex(vertex)));
         }
         pentagons
     }
@@ -92,7 +93,8 @@ impl Pentagons {
     }
 }
 
-fn ring_entries(topology: &Topology, pentagons: &Pentagons, count: usize) -> Vec<u32> {
+fn ring_entries(topology: &Topology, plan: &PatchPlan, pentagons: &Pentagons, count: usize) -> Vec<u32> {
+    let at = |h: u32| plan.vertex(topology.mesh_vertex(h));
     let mut entries = vec![0; count];
     let mut slices = Vec::with_capacity(topology.rings().len());
     let mut rest = entries.as_mut_slice();
@@ -105,15 +107,15 @@ fn ring_entries(topology: &Topology, pentagons: &Pentagons, count: usize) -> Vec
         let mut last = ring.start;
         for (h, pair) in topology.ring_half_edges(ring).zip(slice.chunks_mut(2)) {
             let head = topology.next(h);
-            let vertex = topology.mesh_vertex(topology.next(head));
+            let vertex = at(topology.next(head));
             // A triangle's would-be diagonal is its minus edge's neighbour.
             let triangle = topology.face_size(h) == 3;
             let vertex = if triangle { vertex | TRIANGLE_BIT } else { vertex };
-            pair.copy_from_slice(&[topology.mesh_vertex(head), pentagons.entry(topology, h).unwrap_or(vertex)]);
+            pair.copy_from_slice(&[at(head), pentagons.entry(topology, h).unwrap_or(vertex)]);
             last = h;
         }
         if let (true, Some(end)) = (ring.open, slice.last_mut()) {
-            *end = topology.mesh_vertex(topology.prev(last));
+            *end = at(topology.prev(last));
         }
     });
     entries

@@ -1,32 +1,15 @@
 //! Ownership of what patches share: the ring that owns each edge and each vertex.
 
-use super::PatchPlan;
-use crate::mesh::NO_TWIN;
+use super::edges::EdgeTable;
+use super::plan::PatchPlan;
 use crate::topology::Topology;
 use rayon::prelude::*;
 
-/// Bit of [`SharedCorner::plus_edge`]: the faces at the plus edge are lit with normals of their own.
+/// Bit of a plus edge in [`SharedTable::corners`]: the faces at it are lit with normals of their own.
 pub const SHARP_EDGE_BIT: u32 = 1 << 30;
 
-/// Owners of what a patch corner shares with other patches. GLSL twin: `glsl/lib/edges/shared.glsl`.
-///
-/// Along a smooth edge and around a smooth vertex there is only one ring to ask. Along a crease the side speaks on whose left
-/// the edge leads from the lower vertex to the higher; for a vertex with several rings the first of them in
-/// [`Topology::rings`].
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct SharedCorner {
-    /// Ring that owns the vertex.
-    pub ring: u32,
-    /// Ring at this vertex that owns the plus edge.
-    pub plus_ring: u32,
-    /// The number of the plus edge in that ring, and a bit.
-    pub plus_edge: u32,
-    /// Ring at this vertex that owns the minus edge.
-    pub minus_ring: u32,
-    /// The number of the minus edge in that ring.
-    pub minus_edge: u32,
-}
+/// Words of [`SharedTable::corners`] a patch corner. GLSL twin: `SHARED_WORDS` in `glsl/lib/edges/shared_bits.glsl`.
+pub const SHARED_WORDS: usize = 5;
 
 /// Texture coordinates of a patch corner on what it shares: where displacement is looked up there, so that both sides of a
 /// seam find the same texel. The patch's own are used inside. GLSL twin: `glsl/lib/edges/shared_texcoords.glsl`.
@@ -43,105 +26,99 @@ pub struct SharedTexcoord {
     pub scale: [f32; 2],
 }
 
-/// A [`SharedCorner`] for each patch corner, in the order of the plan.
+/// Owners of what patch corners share with other patches.
+///
+/// Along a smooth edge and around a smooth vertex there is only one ring to ask. The edges' owners are those of their
+/// [`EdgeRecord`](super::EdgeRecord)s; a vertex with several rings has the first of them in [`Topology::rings`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SharedTable {
-    /// In the order of the patches' corners.
-    pub corners: Vec<SharedCorner>,
+    /// For each patch corner, in the order of the plan: the ring that owns the vertex; the ring at this vertex on the side that
+    /// owns the plus edge, and the number of the edge in it, with [`SHARP_EDGE_BIT`]; the same of the minus edge, without. GLSL
+    /// twin: `glsl/lib/edges/shared.glsl`.
+    pub corners: Vec<[u32; SHARED_WORDS]>,
     /// Likewise, for displacement; else empty.
     pub texcoords: Vec<SharedTexcoord>,
 }
 
 impl SharedTable {
     /// For the corners of the patches in `plan`.
-    pub fn new(topology: &Topology, plan: &PatchPlan) -> Self {
-        let speakers = Speakers::new(topology);
-        let corners = plan.corners(topology).into_par_iter().map(|h| speakers.corner(h));
+    pub fn new(topology: &Topology, edges: &EdgeTable, plan: &PatchPlan) -> Self {
+        let owners = Owners::new(topology, edges);
+        let corners = plan.corners(topology).into_par_iter().map(|h| owners.corner(h));
         Self { corners: corners.collect(), texcoords: Vec::new() }
     }
 
     /// The same, with texture coordinates for displacement. `None` if the mesh has none.
-    pub fn with_texcoords(topology: &Topology, plan: &PatchPlan) -> Option<Self> {
+    pub fn with_texcoords(topology: &Topology, edges: &EdgeTable, plan: &PatchPlan) -> Option<Self> {
         let attribute = topology.mesh().data().texcoords.as_ref()?;
         let at = |h: u32| attribute.values[attribute.indices[h as usize] as usize];
-        let speakers = Speakers::new(topology);
+        let owners = Owners::new(topology, edges);
         let corners = plan.corners(topology);
         Some(Self {
-            corners: corners.par_iter().map(|&h| speakers.corner(h)).collect(),
-            texcoords: corners.par_iter().map(|&h| speakers.texcoord(h, at)).collect(),
+            corners: corners.par_iter().map(|&h| owners.corner(h)).collect(),
+            texcoords: corners.par_iter().map(|&h| owners.texcoord(h, at)).collect(),
         })
     }
 }
 
 /// Owners of edges and vertices.
-pub(crate) struct Speakers<'t> {
+struct Owners<'t> {
     topology: &'t Topology,
+    edges: &'t EdgeTable,
     /// The first ring of each vertex of the mesh.
     first_rings: Vec<u32>,
 }
 
 const NO_RING: u32 = u32::MAX;
 
-impl<'t> Speakers<'t> {
-    pub(crate) fn new(topology: &'t Topology) -> Self {
+impl<'t> Owners<'t> {
+    fn new(topology: &'t Topology, edges: &'t EdgeTable) -> Self {
         let mut first_rings = vec![NO_RING; topology.mesh().vertex_count()];
         for (ring, index) in topology.rings().iter().zip(0..) {
             let first = &mut first_rings[topology.mesh_vertex(ring.start) as usize];
             *first = (*first).min(index);
         }
-        Self { topology, first_rings }
+        Self { topology, edges, first_rings }
     }
 
-    /// Half-edge that owns the edge of half-edge `h`: itself or its twin.
-    pub(crate) fn edge(&self, h: u32) -> u32 {
-        let twin = self.topology.mesh().twins()[h as usize];
-        if twin != NO_TWIN && self.is_reversed(h) { twin } else { h }
-    }
-
-    /// Whether a half-edge leads to a lower vertex.
-    pub(crate) fn is_reversed(&self, h: u32) -> bool {
-        self.topology.mesh_vertex(h) > self.topology.mesh_vertex(self.topology.next(h))
+    /// The half-edge that owns the edge of half-edge `h`: itself or its twin.
+    fn edge(&self, h: u32) -> u32 {
+        self.edges.of_half_edge(h).owner
     }
 
     /// Ring and number in it of the edge of half-edge `h`, at its start, as its owner sees it.
-    fn at_start(&self, h: u32) -> (u32, u32) {
-        let speaker = self.edge(h);
-        if speaker == h { self.plus(h) } else { self.minus(self.topology.next(speaker)) }
+    fn at_start(&self, h: u32) -> [u32; 2] {
+        let owner = self.edge(h);
+        if owner == h { self.plus(h) } else { self.minus(self.topology.next(owner)) }
     }
 
     /// The same at its end.
-    fn at_end(&self, h: u32) -> (u32, u32) {
-        let speaker = self.edge(h);
-        if speaker == h { self.minus(self.topology.next(h)) } else { self.plus(speaker) }
+    fn at_end(&self, h: u32) -> [u32; 2] {
+        let owner = self.edge(h);
+        if owner == h { self.minus(self.topology.next(h)) } else { self.plus(owner) }
     }
 
-    fn plus(&self, h: u32) -> (u32, u32) {
+    fn plus(&self, h: u32) -> [u32; 2] {
         let place = self.topology.place(h);
-        (place.ring, place.index)
+        [place.ring, place.index]
     }
 
-    fn minus(&self, h: u32) -> (u32, u32) {
+    fn minus(&self, h: u32) -> [u32; 2] {
         let place = self.topology.place(h);
-        (place.ring, (place.index + 1) % self.topology.rings()[place.ring as usize].edges())
+        [place.ring, (place.index + 1) % self.topology.rings()[place.ring as usize].edges()]
     }
 
-    fn corner(&self, h: u32) -> SharedCorner {
-        let topology = self.topology;
-        let (plus_ring, plus_edge) = self.at_start(h);
-        let (minus_ring, minus_edge) = self.at_end(topology.prev(h));
-        let sharp = !topology.is_within_rings(h);
-        SharedCorner {
-            ring: self.first_rings[topology.mesh_vertex(h) as usize],
-            plus_ring,
-            plus_edge: plus_edge | if sharp { SHARP_EDGE_BIT } else { 0 },
-            minus_ring,
-            minus_edge,
-        }
+    fn corner(&self, h: u32) -> [u32; SHARED_WORDS] {
+        let ring = self.first_rings[self.topology.mesh_vertex(h) as usize];
+        let [plus_ring, plus_edge] = self.at_start(h);
+        let [minus_ring, minus_edge] = self.at_end(self.topology.prev(h));
+        let sharp = if self.edges.of_half_edge(h).is_sharp { SHARP_EDGE_BIT } else { 0 };
+        [ring, plus_ring, plus_edge | sharp, minus_ring, minus_edge]
     }
 
     fn texcoord(&self, h: u32, at: impl Fn(u32) -> [f32; 2]) -> SharedTexcoord {
         let topology = self.topology;
-        // At the start of half-edge `h` seen from the side that speaks, and at its end.
+        // At the start of half-edge `h` seen from the side that owns the edge, and at its end.
         let start = |h: u32| if self.edge(h) == h { h } else { topology.next(self.edge(h)) };
         let end = |h: u32| if self.edge(h) == h { topology.next(h) } else { self.edge(h) };
         let ring = &topology.rings()[self.first_rings[topology.mesh_vertex(h) as usize] as usize];

@@ -99,7 +99,7 @@ impl StencilTable {
             table.patches.push([table.vertices.len() as u32, *start]);
             let corners = ring.patch.corners(topology);
             table.vertices.extend(corners.map(|h| CornerRing::turn(topology, h)));
-            table.vertices.extend(&ring.vertices);
+            table.vertices.extend(ring.vertices.iter().map(|&vertex| plan.vertex(vertex)));
             table.largest_ring = table.largest_ring.max(ring.vertices.len());
         }
         plan.reorder(rings.into_iter().map(|(_, _, ring)| ring.patch).collect());

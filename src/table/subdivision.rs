@@ -47,6 +47,7 @@ impl SubdivisionTable {
     /// faces.
     pub fn new(topology: &Topology, plan: &PatchPlan) -> Result<Self, MeshError> {
         let all = Fans::new(topology);
+        let at = |h: u32| plan.vertex(topology.mesh_vertex(h));
         let corner_count = topology.mesh().corner_count();
         let mut places = vec![[u32::MAX; 2]; corner_count];
         let mut fans = Vec::new();
@@ -69,7 +70,7 @@ impl SubdivisionTable {
         let mut table = Self::default();
         for fan in &fans {
             let bits = fan.half_edges.len() as u32 | if fan.open { FAN_OPEN_BIT } else { 0 };
-            let vertex = topology.mesh_vertex(fan.half_edges[0]);
+            let vertex = at(fan.half_edges[0]);
             table.headers.push([vertex, table.entries.len() as u32, words.of_fan(&all, fan)?, bits]);
             for (&h, &sharpness) in fan.half_edges.iter().zip(&fan.sharpness) {
                 let end = |h| sharp_ends.get(&h).copied().unwrap_or([0.0; LEVELS]);
@@ -78,10 +79,10 @@ impl SubdivisionTable {
                     None => words.of_boundary(),
                 };
                 let head = topology.next(h);
-                table.entries.push([topology.mesh_vertex(head), topology.mesh_vertex(topology.next(head)), profile]);
+                table.entries.push([at(head), at(topology.next(head)), profile]);
             }
             if let (true, Some(&last)) = (fan.open, fan.half_edges.last()) {
-                let end = topology.mesh_vertex(topology.prev(last));
+                let end = at(topology.prev(last));
                 table.entries.push([end, end, words.of_boundary()]);
             }
         }

@@ -80,7 +80,7 @@ fn patches_meet_the_surface_at_corners() {
         let samples = patches.grid(&patches.control_points(|p| p), 2);
         for (origin, corners) in patches.origins().iter().zip(samples) {
             // A whole face, or the part around a corner.
-            let vertex = mesh.face(origin.face)[origin.sub.max(0) as usize];
+            let vertex = mesh.face(origin.face)[origin.path().next().unwrap_or(0) as usize];
             let first = corners[0];
             let limit = surface.limit_vertex(vertex);
             assert!(first.position.distance(limit.position) < 1e-12, "{name}: {origin:?}");

@@ -263,14 +263,15 @@ fn polygons_are_refined_once_and_know_where_they_come_from() {
     let needed = CpuSurface::new(&mesh, Scheme::Gregory, 0).unwrap();
     assert_eq!(needed.prepared().mesh(), once.prepared().mesh());
     // One part a corner, of a quad too; then four of each.
-    let parts = |factor: i64| -> Vec<FaceOrigin> {
-        let parts = |face: u32| (0..factor * mesh.face(face).len() as i64).map(move |sub| FaceOrigin { face, sub });
+    let parts = |factor: u32| -> Vec<(u32, u32)> {
+        let parts = |face: u32| (0..factor * mesh.face(face).len() as u32).map(move |part| (face, part));
         (0..mesh.face_count() as u32).flat_map(parts).collect()
     };
     for (surface, factor) in [(&needed, 1), (&twice, 4)] {
-        let mut origins = surface.origins();
-        origins.sort_unstable_by_key(|o| (o.face, o.sub));
-        assert_eq!(origins, parts(factor));
+        let part = |origin: FaceOrigin| (origin.face, origin.path().fold(0, |part, corner| 4 * part + corner));
+        let mut found: Vec<_> = surface.origins().into_iter().map(part).collect();
+        found.sort_unstable();
+        assert_eq!(found, parts(factor));
     }
     // A part begins at the corner that its number says, whatever the order of the patches: where the vertex goes under
     // refinement, which keeps the numbers of vertices. Four steps leave 1/256 of the way; corners are 0.3 apart.
@@ -280,7 +281,7 @@ fn polygons_are_refined_once_and_know_where_they_come_from() {
     }
     let points = needed.control_points(|p| p);
     for ((patch, origin), points) in needed.plan().patches().iter().zip(needed.origins()).zip(&points) {
-        let vertex = mesh.face(origin.face)[origin.sub as usize];
+        let vertex = mesh.face(origin.face)[origin.path().next().expect("a part") as usize];
         let start = Scheme::Gregory.evaluate(patch.kind, points, 0.0, 0.0).position;
         assert!((start - fine.position(vertex)).length() < 1e-2, "{origin:?}: {start}");
     }

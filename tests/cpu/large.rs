@@ -1,7 +1,7 @@
 //! A million faces through both tables.
 
 use ash_subdiv::renderer::ModelTables;
-use ash_subdiv::table::{PatchPlan, RingTable, StencilTable};
+use ash_subdiv::table::{RingTable, StencilTable, prepare};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme, grid_torus};
 
@@ -19,7 +19,13 @@ fn a_million_faces() {
         assert_eq!(PatchKind::ALL.map(|kind| tables.patch_count(kind)), [FACES, 0, 0, 0]);
         assert_eq!(tables.type_count(), 1, "{construction:?}");
         assert!(tables.notices().is_empty());
-        assert!(tables.origins().iter().zip(0..).all(|(origin, face)| origin.face == face && origin.sub == -1));
+        assert!(
+            tables
+                .origins()
+                .iter()
+                .zip(0..)
+                .all(|(origin, face)| origin.face == face && origin.path().next().is_none())
+        );
     }
 }
 
@@ -28,7 +34,8 @@ fn a_million_faces() {
 fn the_tables_of_a_million_faces() {
     let mesh = ControlMesh::new(grid_torus(SIDE, SIDE)).expect("a torus");
     let topology = Topology::new(&mesh);
-    let mut plan = PatchPlan::new(&topology, Scheme::Gregory, Fallback::Refuse).expect("defined everywhere");
+    let mut plan =
+        prepare(&mesh, 0).expect("small enough").plan(Scheme::Gregory, Fallback::Refuse).expect("defined everywhere");
 
     let rings = RingTable::new(&topology, &plan);
     assert_eq!((rings.headers.len(), rings.corners.len()), (FACES as usize, 4 * FACES as usize));

@@ -16,6 +16,7 @@ mod pentagons;
 mod properties;
 mod reader_properties;
 mod readers;
+mod records;
 mod schemes;
 mod topology;
 mod vectors;

@@ -3,7 +3,7 @@
 use crate::common::edges::{edge_parameters, shared_edges};
 use crate::common::{pentagon_vector, pentagons};
 use ash_subdiv::patch::Row;
-use ash_subdiv::table::{CpuSurface, FaceOrigin, Notice};
+use ash_subdiv::table::{CpuSurface, Notice};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, Fallback, MeshData, Scheme, shape};
 use glam::DVec3;
@@ -19,7 +19,7 @@ impl Pieces {
     fn new(mesh: &ControlMesh) -> Self {
         let surface = CpuSurface::new(mesh, Scheme::Pm, 0).expect("closed, of faces with up to five corners");
         let patches = surface.plan().patches().iter().zip(surface.control_points(|p| p));
-        let points = patches.map(|(patch, points)| ((patch.face, patch.first), (patch.kind, points))).collect();
+        let points = patches.map(|(patch, points)| ((patch.face, patch.first()), (patch.kind, points))).collect();
         Self { surface, points }
     }
 
@@ -195,8 +195,8 @@ fn pieces_have_the_points_of_the_face() {
         assert!((sum - 1.0).abs() < 1e-13, "{sum}");
     }
     let origins = pieces.surface.origins();
-    let subs: Vec<FaceOrigin> = (0..5).map(|sub| FaceOrigin { face: 0, sub }).collect();
-    assert_eq!(origins[..5], subs);
+    let pieces: Vec<_> = origins[..5].iter().map(|origin| (origin.face, origin.path().collect::<Vec<_>>())).collect();
+    assert_eq!(pieces, [0, 1, 2, 3, 4].map(|first| (0, vec![first])));
 }
 
 /// Whole where Pm is defined; where not, refused, or refined so that Gregory patches can stand in.

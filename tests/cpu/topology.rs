@@ -241,7 +241,7 @@ fn creases_that_end_within_the_surface_are_told() {
 }
 
 fn plan(mesh: &ControlMesh) -> PatchPlan {
-    PatchPlan::new(&Topology::new(mesh), Scheme::Gregory, Fallback::Refuse).unwrap()
+    prepare(mesh, 0).unwrap().plan(Scheme::Gregory, Fallback::Refuse).unwrap()
 }
 
 #[test]
@@ -258,7 +258,7 @@ fn holes_and_faces_at_a_free_boundary_are_not_drawn() {
     let mesh = ControlMesh::new(MeshData { boundary: BoundaryRule::None, ..grid(4, 3) }).unwrap();
     for (refine, children) in [(1, 4), (2, 16)] {
         let prepared = prepare(&mesh, refine).unwrap();
-        let origins = prepared.origins(&plan(prepared.mesh()));
+        let origins = prepared.plan(Scheme::Gregory, Fallback::Refuse).unwrap().origins();
         let of = |face| origins.iter().filter(|origin| origin.face == face).count();
         assert_eq!((origins.len(), of(5), of(6)), (2 * children, children, children), "refined {refine} times");
     }

@@ -3,7 +3,7 @@
 use crate::common;
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
-use ash_subdiv::table::{CpuSurface, Patch};
+use ash_subdiv::table::{CpuSurface, Patch, PatchId};
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Spacing, shape};
 use ash_subdiv::{Fallback, Scheme};
 use glam::{DVec3, Vec3};
@@ -45,12 +45,11 @@ fn cases() -> impl Iterator<Item = (&'static str, ControlMesh, Scheme)> {
 const FALLBACK: Fallback = Fallback::Gregory;
 
 /// The control points of the twin by face and part, since each construction sorts patches in its own way.
-fn reference(mesh: &ControlMesh, scheme: Scheme) -> HashMap<(u32, i64), (Patch, Vec<DVec3>)> {
+fn reference(mesh: &ControlMesh, scheme: Scheme) -> HashMap<PatchId, (Patch, Vec<DVec3>)> {
     let surface = CpuSurface::with_fallback(mesh, scheme, FALLBACK, 0).expect("small");
     // The GPU starts from f32 positions.
     let points = surface.control_points(|position| position.as_vec3().as_dvec3());
-    let patches = surface.plan().patches().iter().zip(surface.origins()).zip(points);
-    patches.map(|((patch, origin), points)| ((origin.face, origin.sub), (*patch, points))).collect()
+    surface.plan().patches().iter().zip(points).map(|(patch, points)| (patch.id, (*patch, points))).collect()
 }
 
 #[test]
@@ -64,9 +63,9 @@ fn control_points() {
             let points = captured.control_points().expect("a capture");
             let tables = captured.tables();
             assert_eq!(points.len(), expected.len(), "{name}");
-            for ((patch, origin), points) in tables.plan().patches().iter().zip(tables.origins()).zip(points) {
-                let (twin, expected) = &expected[&(origin.face, origin.sub)];
-                assert_eq!((patch, points.len()), (twin, expected.len()), "{name} {origin:?}");
+            for (patch, points) in tables.plan().patches().iter().zip(points) {
+                let (twin, expected) = &expected[&patch.id];
+                assert_eq!((patch, points.len()), (twin, expected.len()), "{name} {patch:?}");
                 for (i, (ours, expected)) in points.iter().zip(expected).enumerate() {
                     let error = (Vec3::from(*ours).as_dvec3() - *expected).length();
                     assert!(
@@ -89,8 +88,8 @@ fn grids() {
             let options = ModelOptions { scheme, fallback: FALLBACK, construction, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let tables = captured.tables();
-            for (origin, samples) in tables.origins().iter().zip(captured.grid(6).expect("a capture")) {
-                let (patch, points) = &expected[&(origin.face, origin.sub)];
+            for (patch, samples) in tables.plan().patches().iter().zip(captured.grid(6).expect("a capture")) {
+                let (patch, points) = &expected[&patch.id];
                 let parameters = ash_subdiv::table::grid_parameters(patch.kind, 6);
                 assert_eq!(samples.len(), parameters.len());
                 for (sample, [u, v]) in samples.iter().zip(parameters) {
@@ -130,11 +129,10 @@ fn evaluated_vertices() {
                 let captured = Captured::new(&headless, mesh, &options).expect("a model");
                 let tables = captured.tables();
                 let vertices = captured.vertices(factor).expect("a capture");
-                let mut seen = vec![0; tables.origins().len()];
+                let mut seen = vec![0; tables.plan().patches().len()];
                 for vertex in &vertices {
                     seen[vertex.patch as usize] += 1;
-                    let origin = tables.origins()[vertex.patch as usize];
-                    let (patch, points) = &expected[&(origin.face, origin.sub)];
+                    let (patch, points) = &expected[&tables.plan().patches()[vertex.patch as usize].id];
                     let [u, v, _] = vertex.coordinate.map(f64::from);
                     let twin = patch.scheme.evaluate(patch.kind, points, u, v);
                     check(name, mesh, vertex.position, vertex.normal, twin);

@@ -7,7 +7,7 @@ use crate::bench::shaders;
 use crate::gpu::{Buffer, Domain, Owned, Shader, Spacing, Specialization, tessellated_vertices};
 use crate::patch::{Fallback, Scheme};
 use crate::renderer::{DrawConstants, TableBytes, reads_texels, spaced};
-use crate::table::{PatchPlan, TableError, prepare};
+use crate::table::{TableError, prepare};
 use crate::topology::PatchKind;
 use ash::vk;
 
@@ -33,8 +33,7 @@ impl Bilinear {
         let Lane { headless, subject, spacing, .. } = lane;
         let ((positions, corners, plan), tables) = timed(|| {
             let prepared = prepare(&subject.mesh, subject.refine)?;
-            let plan =
-                PatchPlan::new(prepared.topology(), Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
+            let plan = prepared.plan(Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
             let face_vertices = &prepared.mesh().data().face_vertices;
             let corners = plan.corners(prepared.topology()).into_iter().map(|h| face_vertices[h as usize]);
             let corners: Vec<u32> = corners.collect();

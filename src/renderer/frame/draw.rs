@@ -148,7 +148,7 @@ impl Renderer {
                     _ => (control.edges, control.faces),
                 };
                 device.cmd_bind_index_buffer(cmd, control.buffer.raw(), 0, vk::IndexType::UINT32);
-                device.cmd_draw_indexed(cmd, count, 1, first, control.vertex_offset, 0);
+                device.cmd_draw_indexed(cmd, count, 1, first, 0, 0);
             }
         }
     }

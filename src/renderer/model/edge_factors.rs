@@ -3,7 +3,7 @@
 use super::streamed::Streamed;
 use crate::gpu::{Buffer, DeviceContext, GpuError};
 use crate::renderer::options::{Error, ModelId};
-use crate::table::Edges;
+use crate::table::EdgeTable;
 use ash::vk;
 use std::sync::Arc;
 
@@ -18,7 +18,12 @@ pub(crate) struct EdgeFactors {
 
 impl EdgeFactors {
     /// All 1.
-    pub(crate) fn new(context: &Arc<DeviceContext>, name: &str, edges: &Edges, frames: u32) -> Result<Self, GpuError> {
+    pub(crate) fn new(
+        context: &Arc<DeviceContext>,
+        name: &str,
+        edges: &EdgeTable,
+        frames: u32,
+    ) -> Result<Self, GpuError> {
         let ones = vec![1.0f32; edges.of_corners.len()];
         Ok(Self {
             of_corners: Streamed::new(context, &format!("{name}: factors of edges"), &ones, frames)?,
@@ -28,7 +33,7 @@ impl EdgeFactors {
     }
 
     /// Takes the factors of all edges, for the copy of this frame.
-    pub(crate) fn write(&mut self, id: ModelId, frame: u32, edges: &Edges, factors: &[f32]) -> Result<(), Error> {
+    pub(crate) fn write(&mut self, id: ModelId, frame: u32, edges: &EdgeTable, factors: &[f32]) -> Result<(), Error> {
         let needed = edges.vertices.len();
         if factors.len() != needed {
             return Err(Error::EdgeFactorCount { id, given: factors.len(), needed });

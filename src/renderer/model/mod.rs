@@ -62,7 +62,6 @@ pub(crate) struct ControlIndices {
     pub buffer: Buffer,
     pub edges: u32,
     pub faces: u32,
-    pub vertex_offset: i32,
 }
 
 /// What a model needs of its renderer.
@@ -136,7 +135,6 @@ impl Model {
                 buffer,
                 edges: tables.control_edges.len() as u32,
                 faces: tables.control_faces.len() as u32,
-                vertex_offset: tables.first_control_vertex() as i32,
             })
         } else {
             None

@@ -1,0 +1,182 @@
+//! The cells of the caller's faces that a prepared mesh has as faces, and the curves of its edges.
+
+use super::patch_id::{FaceOrigin, MAX_PARTS, PatchId};
+use crate::mesh::{ControlMesh, MeshError};
+use crate::topology::Topology;
+
+/// Numbers of the parts of a mesh's faces, as Ptex numbers its faces: a quad is one part, any other face has one around each
+/// corner.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Parts {
+    /// The first part of each face, and the number of all; empty where all faces are quads.
+    first: Vec<u32>,
+}
+
+impl Parts {
+    /// Those of all faces.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if a [`PatchId`] has no room for so many.
+    pub fn new(mesh: &ControlMesh) -> Result<Self, MeshError> {
+        let sizes = &mesh.data().face_sizes;
+        let parts = |&size: &u32| if size == 4 { 1 } else { size };
+        let (count, max) = (sizes.iter().map(|size| parts(size) as usize).sum(), MAX_PARTS);
+        if count > max {
+            return Err(MeshError::TooLarge { what: "quads and corners of other faces", count, max });
+        }
+        if sizes.iter().all(|&size| size == 4) {
+            return Ok(Self::default());
+        }
+        let mut first = Vec::with_capacity(sizes.len() + 1);
+        first.push(0);
+        for (face, size) in sizes.iter().enumerate() {
+            first.push(first[face] + parts(size));
+        }
+        Ok(Self { first })
+    }
+
+    /// The first part of a face.
+    pub fn first(&self, face: u32) -> u32 {
+        self.first.get(face as usize).copied().unwrap_or(face)
+    }
+
+    /// The face of a part, and its corner if the face is no quad.
+    pub fn face(&self, part: u32) -> (u32, Option<u32>) {
+        if self.first.is_empty() {
+            return (part, None);
+        }
+        let face = self.first.partition_point(|&first| first <= part) - 1;
+        let parts = self.first[face + 1] - self.first[face];
+        (face as u32, (parts > 1).then(|| part - self.first[face]))
+    }
+
+    /// Where a patch comes from.
+    pub(super) fn origin(&self, id: PatchId, is_piece: bool) -> FaceOrigin {
+        let (face, corner) = self.face(id.face());
+        let corner = if is_piece { Some(id.first()) } else { corner.filter(|_| id.level() > 0) };
+        FaceOrigin { face, corner, id }
+    }
+}
+
+/// A part of a curve: what half-edges lie on. A curve begins as an edge, that of the caller's mesh or one within a face where
+/// refinement made it; each further step halves its parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct CurvePart {
+    /// The number of the curve.
+    pub curve: u32,
+    /// How often the curve was halved: the part is one of `2^level`.
+    pub level: u8,
+    /// Which of them, from the start of the curve: that of the lower half-edge when it began.
+    pub index: u16,
+}
+
+/// A half-edge and the part of a curve that it lies on.
+#[derive(Debug, Clone, Copy)]
+struct OnCurve {
+    part: CurvePart,
+    /// Whether the half-edge runs against the curve.
+    reversed: bool,
+}
+
+impl OnCurve {
+    /// The half of the part from which the half-edge starts, or the other.
+    fn half(self, second: bool) -> Self {
+        let CurvePart { curve, level, index } = self.part;
+        let index = 2 * index + u16::from(second != self.reversed);
+        Self { part: CurvePart { curve, level: level + 1, index }, ..self }
+    }
+}
+
+/// What the faces and half-edges of a prepared mesh are of the caller's.
+#[derive(Debug, Clone)]
+pub struct Cells {
+    parts: Parts,
+    /// By face of the prepared mesh; empty where nothing was refined.
+    of_faces: Vec<PatchId>,
+    /// By half-edge; empty where nothing was refined.
+    of_half_edges: Vec<OnCurve>,
+    /// Curves so far, where something was refined.
+    curves: u32,
+    /// Vertices of the caller's mesh.
+    control_vertices: u32,
+}
+
+impl Cells {
+    /// Of the mesh as it is.
+    pub(super) fn whole(mesh: &ControlMesh) -> Result<Self, MeshError> {
+        let (parts, control_vertices) = (Parts::new(mesh)?, mesh.vertex_count() as u32);
+        Ok(Self { parts, of_faces: Vec::new(), of_half_edges: Vec::new(), curves: 0, control_vertices })
+    }
+
+    /// Of the mesh that one step of refinement makes of that of `topology`, at most [`MAX_LEVEL`](super::patch_id::MAX_LEVEL) in all.
+    pub(super) fn refined(mut self, topology: &Topology) -> Self {
+        let mesh = topology.mesh();
+        let mut of_faces = Vec::with_capacity(mesh.corner_count());
+        for face in 0..mesh.face_count() as u32 {
+            let cell = self.of_face(face);
+            let is_quad = mesh.face(face).len() == 4;
+            let child = |corner| if is_quad { cell.child(corner) } else { PatchId::of_part(cell.face() + corner) };
+            of_faces.extend((0..mesh.face(face).len() as u32).map(child));
+        }
+        let (coarse, curves) = match self.of_half_edges.is_empty() {
+            true => edges_as_curves(topology),
+            false => (std::mem::take(&mut self.of_half_edges), self.curves),
+        };
+        // From the middle of half-edge h's edge to the centre of its face.
+        let spoke = |h: u32, reversed| OnCurve { part: CurvePart { curve: curves + h, level: 0, index: 0 }, reversed };
+        let child = |h: u32| {
+            let prev = topology.prev(h);
+            let [edge, before] = [h, prev].map(|h| coarse[h as usize]);
+            [edge.half(false), spoke(h, false), spoke(prev, true), before.half(true)]
+        };
+        let corners = mesh.corner_count() as u32;
+        let of_half_edges = (0..corners).flat_map(child).collect();
+        Self { of_faces, of_half_edges, curves: curves + corners, ..self }
+    }
+
+    /// Where the vertices of the prepared mesh start among those that shaders read: after the control vertices where it is
+    /// refined, else they are these.
+    pub(super) fn first_vertex(&self) -> u32 {
+        if self.of_faces.is_empty() { 0 } else { self.control_vertices }
+    }
+
+    /// The parts of the caller's faces.
+    pub(super) fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    /// The cell that a face of the prepared mesh is, as a patch of it would have it.
+    pub(super) fn of_face(&self, face: u32) -> PatchId {
+        self.of_faces.get(face as usize).copied().unwrap_or_else(|| PatchId::whole(self.parts.first(face)))
+    }
+
+    /// The part of a curve that a half-edge lies on; `edge` is the number of its edge.
+    pub(super) fn of_half_edge(&self, half_edge: u32, edge: u32) -> CurvePart {
+        let whole = CurvePart { curve: edge, level: 0, index: 0 };
+        self.of_half_edges.get(half_edge as usize).map_or(whole, |on_curve| on_curve.part)
+    }
+}
+
+/// The edge of each half-edge, counted by lower half-edges, and the number of edges.
+pub(super) fn number_edges(topology: &Topology) -> (Vec<u32>, u32) {
+    let (mut edges, mut count) = (vec![0; topology.mesh().corner_count()], 0);
+    for h in 0..edges.len() as u32 {
+        edges[h as usize] = match topology.twin(h) {
+            Some(twin) if twin < h => edges[twin as usize],
+            _ => {
+                count += 1;
+                count - 1
+            }
+        };
+    }
+    (edges, count)
+}
+
+fn edges_as_curves(topology: &Topology) -> (Vec<OnCurve>, u32) {
+    let (edges, count) = number_edges(topology);
+    let of_half_edge = |(&curve, h): (&u32, u32)| OnCurve {
+        part: CurvePart { curve, level: 0, index: 0 },
+        reversed: topology.twin(h).is_some_and(|twin| twin < h),
+    };
+    (edges.iter().zip(0..).map(of_half_edge).collect(), count)
+}
