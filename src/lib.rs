@@ -129,6 +129,7 @@ mod named;
 pub mod patch;
 pub mod renderer;
 pub mod table;
+pub mod tessellate;
 pub mod topology;
 
 pub use glam;

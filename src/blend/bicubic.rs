@@ -19,7 +19,7 @@ pub const CORNER_SLOTS: [[usize; 4]; 4] = [[0, 4, 1, 5], [12, 13, 8, 9], [15, 11
 /// Corner and edge points are those of the rings, as for every other patch; the inner point of a corner is
 /// `(4 v + 2 a + 2 b + d) / 9` with the vertices of the face itself, at a boundary too.
 ///
-/// GLSL twin: `glsl/lib/construct/bicubic_points.glsl`.
+/// GLSL twin: `glsl/schemes/bicubic/scheme_points.glsl`.
 pub fn bicubic_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> [T; 16] {
     let mut points: [T; 16] = std::array::from_fn(|_| T::default());
     for (k, corner) in corners.iter().enumerate() {
@@ -47,7 +47,7 @@ pub(crate) fn regular_points<T: Blend>(topology: &Topology, face: u32, vertex: i
 
 /// A bicubic Bezier patch at (u, v).
 ///
-/// GLSL twin: `glsl/lib/evaluate/evaluate_bicubic.glsl`.
+/// GLSL twin: `glsl/schemes/bicubic/scheme_evaluate.glsl`.
 pub fn evaluate_bicubic<P: Point>(points: &[P; 16], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let corner = |slots: [usize; 4]| {
         let [p, plus, minus, inner] = slots.map(|slot| points[slot]);

@@ -36,7 +36,7 @@ pub fn corner_slots(k: usize) -> [usize; 8] {
 
 /// The control points of the quad with these corners, whose frames are [`acc_frame`]s.
 ///
-/// GLSL twin: `glsl/lib/construct/acc_points.glsl`.
+/// GLSL twin: `glsl/schemes/acc/scheme_points.glsl`.
 pub fn acc_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> Vec<T> {
     let mut points = vec![T::default(); POINTS];
     let cosines = corners.each_ref().map(|c| c.ring.shape.cosine());
@@ -112,7 +112,7 @@ impl<T: Blend> RingValues<T> {
 
 /// A patch at (u, v): the geometry, with the cross product of the tangent patches as its normal.
 ///
-/// GLSL twin: `glsl/lib/evaluate/evaluate_acc.glsl`.
+/// GLSL twin: `glsl/schemes/acc/scheme_evaluate.glsl`.
 pub fn evaluate_acc<P: Point>(points: &[P; POINTS], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let three = scalar::<P>(3.0);
     let b = |i: usize, j: usize| points[4 * i + j];

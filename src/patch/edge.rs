@@ -52,13 +52,17 @@ pub fn edge_position<P: Point>(edge: &Edge<P>, t: P::Scalar) -> P {
 }
 
 /// The unit normal at `t` along an edge, of both its faces. Where curve and transversal are parallel it is along `facing`.
-///
-/// GLSL twins: `curve_slope` in `glsl/lib/evaluate/patch.glsl` and `edge_across` in `glsl/lib/edges/edges.glsl`.
 pub fn edge_normal<P: Point>(edge: &Edge<P>, t: P::Scalar, facing: P) -> P {
     let along = curve_slope(&CurveBasis::new::<P>(t), seen_from_ends(edge.curve));
+    let [[across0, across1], [transversal0, transversal1]] = [edge.across, edge.transversals];
+    unit_normal(along, edge_across(across0, transversal0, transversal1, across1, t), facing)
+}
+
+/// Across an edge at `t` from its start: the same from either end, but for its sign.
+///
+/// GLSL twin: `edge_across` in `glsl/lib/edges/edges.glsl`.
+pub(crate) fn edge_across<P: Point>(across0: P, transversal0: P, transversal1: P, across1: P, t: P::Scalar) -> P {
     let (s, three) = (scalar::<P>(1.0) - t, scalar::<P>(3.0));
     let (ss, tt) = (s * s, t * t);
-    let across = (edge.across[0] * (ss * s) - edge.across[1] * (tt * t))
-        + (edge.transversals[0] * (three * ss * t) - edge.transversals[1] * (three * tt * s));
-    unit_normal(along, across, facing)
+    (across0 * (ss * s) - across1 * (tt * t)) + (transversal0 * (three * ss * t) - transversal1 * (three * tt * s))
 }

@@ -15,7 +15,7 @@ use crate::blend::{
 /// `transversal` gives `r_j` of a corner's ring edge j; that of the paper is [`RingValues::transversal`]. The patches on
 /// both sides of an edge have to be given the same.
 ///
-/// GLSL twin: `glsl/lib/construct/gregory_points.glsl`.
+/// GLSL twin: `glsl/schemes/gregory/scheme_points.glsl`.
 pub fn gregory_points<T: Blend>(
     corners: &[PatchCorner<T>],
     transversal: impl Fn(&PatchCorner<T>, usize) -> T,
@@ -51,7 +51,7 @@ pub fn gregory_points<T: Blend>(
 /// A quad patch at (u, v), with the de Casteljau normal of section 3.5: the derivative that takes the blended face points
 /// as constant. It is exact on the boundary, and inside closer to Catmull-Clark than the true one.
 ///
-/// GLSL twin: `glsl/lib/evaluate/evaluate_gregory_quad.glsl`.
+/// GLSL twin: `glsl/schemes/gregory/evaluate_gregory_quad.glsl`.
 pub fn evaluate_gregory_quad<P: Point>(points: &[P; 20], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let one = scalar::<P>(1.0);
     let [p, e, f] = [&points[0..4], &points[4..12], &points[12..20]];
@@ -73,7 +73,7 @@ fn blend<P: Point>(plus: P, a: P::Scalar, minus: P, b: P::Scalar) -> P {
 
 /// A triangle patch at barycentric (u, v, 1 - u - v), with the derivative as in [`evaluate_gregory_quad`].
 ///
-/// GLSL twin: `glsl/lib/evaluate/evaluate_gregory_triangle.glsl`.
+/// GLSL twin: `glsl/schemes/gregory/evaluate_gregory_triangle.glsl`.
 pub fn evaluate_gregory_triangle<P: Point>(points: &[P; 15], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let [c1, c2, c3, c12, c24] = [1.0, 2.0, 3.0, 12.0, 24.0].map(scalar::<P>);
     let b = [u, v, c1 - u - v];

@@ -18,6 +18,7 @@ pub mod gregory;
 pub mod pm;
 mod scheme;
 
+pub(crate) use crate::blend::unit_normal;
 pub use crate::blend::{Blend, Frame, PatchCorner, Point, RingShape, RingValues, Row, Sample, bicubic};
 pub use fallback::Fallback;
 pub use fallback_rings::FallbackRings;

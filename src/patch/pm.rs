@@ -119,7 +119,7 @@ fn pm_centre_of_pentagon<T: Blend>(centre: &T, b202: &[T], b211: &[T], b121: &[T
 
 /// The control points of the face with these three, four or five corners, whose frames are [`pm_frame`]s.
 ///
-/// GLSL twin: `glsl/lib/construct/pm_points.glsl`.
+/// GLSL twin: `glsl/schemes/pm/scheme_points.glsl`.
 pub fn pm_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
     let m = corners.len();
     let mu = mu(m);
@@ -190,7 +190,7 @@ pub fn pm_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
 
 /// A quad at (u, v).
 ///
-/// GLSL twin: `glsl/lib/evaluate/evaluate_pm_quad.glsl`.
+/// GLSL twin: `glsl/schemes/pm/evaluate_pm_quad.glsl`.
 pub fn evaluate_pm_quad<P: Point>(points: &[P; 24], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let [one, two] = [1.0, 2.0].map(scalar::<P>);
     let (sector, [x, y, z]) = match (v <= u, u + v <= one) {
@@ -204,7 +204,7 @@ pub fn evaluate_pm_quad<P: Point>(points: &[P; 24], u: P::Scalar, v: P::Scalar) 
 
 /// A triangle at barycentric (u, v, 1 - u - v).
 ///
-/// GLSL twin: `glsl/lib/evaluate/evaluate_pm_triangle.glsl`.
+/// GLSL twin: `glsl/schemes/pm/evaluate_pm_triangle.glsl`.
 pub fn evaluate_pm_triangle<P: Point>(points: &[P; 18], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     let [one, three] = [1.0, 3.0].map(scalar::<P>);
     let w = one - u - v;
@@ -221,7 +221,7 @@ pub fn evaluate_pm_triangle<P: Point>(points: &[P; 18], u: P::Scalar, v: P::Scal
 /// The first sector of a pentagon at barycentric (u, v, 1 - u - v): u = 1 at corner 0, v = 1 at corner 1, w = 1 at the
 /// centre.
 ///
-/// GLSL twin: `glsl/lib/evaluate/evaluate_pm_pentagon.glsl`.
+/// GLSL twin: `glsl/schemes/pm/evaluate_pm_pentagon.glsl`.
 pub fn evaluate_pm_pentagon<P: Point>(points: &[P; 30], u: P::Scalar, v: P::Scalar) -> Sample<P> {
     evaluate_sector(points, 0, u, v, scalar::<P>(1.0) - u - v)
 }

@@ -36,6 +36,7 @@ pub use patch_id::{FaceOrigin, PatchId};
 pub use plan::{Patch, PatchGroup, PatchPlan};
 pub use prepare::{Notice, Prepared, prepare, prepare_patches, prepare_quads};
 pub use rings::RingTable;
+pub(crate) use shared::{SHARED_WORDS, SHARP_EDGE_BIT};
 pub use shared::{SharedTable, SharedTexcoord};
 pub(crate) use sharing::Sharing;
 pub use stencils::StencilTable;

@@ -36,7 +36,7 @@ pub struct ModelTables {
     notices: Vec<Notice>,
 }
 
-/// Bytes of a stored vertex, and of a texel of what is kept. GLSL twins: `glsl/lib/draw/positions.glsl`, `cached.glsl`.
+/// Bytes of a stored vertex, and of a texel of what is kept. GLSL twins: `glsl/lib/draw/positions.glsl`, `glsl/lib/construct/cached.glsl`.
 pub(crate) const TEXEL_BYTES: u64 = 16;
 /// Bytes of a frame of a ring. GLSL twin: `glsl/lib/construct/kept_frames.glsl`.
 const FRAME_BYTES: u64 = 4 * 12;

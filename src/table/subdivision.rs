@@ -12,7 +12,7 @@ use std::collections::HashMap;
 
 /// Bit of [`SubdivisionTable::headers`]`[3]`: the first and the last edge differ.
 pub const FAN_OPEN_BIT: u32 = constants::FAN_OPEN_BIT;
-/// Words of a type before its weights. GLSL twin: `TYPE_HEAD` in `glsl/lib/subdivide/subdivision.glsl`.
+/// Words of a type before its weights. GLSL twin: `TYPE_HEAD` in `glsl/lib/constants.glsl`.
 const TYPE_HEAD: usize = constants::TYPE_HEAD as usize;
 
 /// All faces around each vertex of a mesh of quads (a fan), and the weights of what refinement makes of the vertex and its

@@ -19,4 +19,5 @@ mod readers;
 mod records;
 mod schemes;
 mod topology;
+mod twin_comments;
 mod vectors;

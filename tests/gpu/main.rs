@@ -19,6 +19,7 @@ mod passes;
 mod screen;
 mod seams;
 mod subdivision;
+mod tessellate;
 mod twins;
 mod visible;
 mod watertight;

@@ -32,7 +32,7 @@ fn view(mesh: &ControlMesh) -> View {
     View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0).sized(SIDE, SIDE)
 }
 
-fn with_texcoords(mesh: ControlMesh) -> ControlMesh {
+pub fn with_texcoords(mesh: ControlMesh) -> ControlMesh {
     if mesh.data().texcoords.is_some() { mesh } else { with_seams_everywhere(&mesh).expect("the same mesh") }
 }
 
@@ -255,9 +255,10 @@ fn without_invariance(code: &[u32]) -> Vec<u32> {
 }
 
 /// A shader of ours compiled with more macros, and with folders in which includes are looked for first.
-fn compiled(id: ShaderId, defines: &[&str], folders: &[&str]) -> Vec<u32> {
+pub fn compiled(id: ShaderId, defines: &[&str], folders: &[&str]) -> Vec<u32> {
     let compiler = std::env::var("GLSLANG").unwrap_or_else(|_| "glslangValidator".into());
-    let output = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}{}.spv", id.name(), defines.concat()));
+    let name = format!("{}{}{}.spv", id.name(), defines.concat(), folders.concat().replace('/', "_"));
+    let output = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let status = Command::new(compiler)
         .args(["-V", "--target-env", "vulkan1.2", "--quiet", "-o"])
         .arg(&output)
@@ -273,7 +274,7 @@ fn compiled(id: ShaderId, defines: &[&str], folders: &[&str]) -> Vec<u32> {
 
 /// The shaders of a source that evaluate for a capture, of the patches that share their edges; `sharing` is the macro of what else
 /// they share.
-fn evaluations(source: &str, sharing: Option<&str>) -> Vec<ShaderId> {
+pub fn evaluations(source: &str, sharing: Option<&str>) -> Vec<ShaderId> {
     let is_wanted = |id: &&ShaderId| {
         let has = |argument: &str| id.arguments().contains(&argument);
         let shares = ["-DSHARED", "-DDISPLACED"].into_iter().find(|&argument| has(argument));
@@ -284,7 +285,7 @@ fn evaluations(source: &str, sharing: Option<&str>) -> Vec<ShaderId> {
     ids
 }
 
-const TESSELLATION: &str = "glsl/evaluate/tessellation.tese";
+pub const TESSELLATION: &str = "glsl/evaluate/tessellation.tese";
 
 /// What differs when the evaluation shaders are compiled with this macro.
 fn tally_with(headless: &Headless, texture: &Texture, shared_normals: bool, displaced: bool, fault: &str) -> Tally {

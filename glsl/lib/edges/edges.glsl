@@ -1,4 +1,5 @@
-// What both patches at an edge evaluate alike, from data of the edge alone. Rust twins: src/patch/edge.rs.
+// What both patches at an edge evaluate alike, from data of the edge alone. Rust twins: src/patch/edge.rs,
+// src/tessellate/edges.rs.
 #ifndef EDGES_GLSL
 #define EDGES_GLSL
 
@@ -6,7 +7,7 @@
 #include "edges/shared_bits.glsl"
 
 // Across an edge at `t` from its start, by what its ends see across it and their transversals: the same from either end, but for
-// its sign. With the derivative along the edge it makes the normal of both patches. Rust twin: `edge_normal`.
+// its sign. With the derivative along the edge it makes the normal of both patches. Rust twin: `edge_across`.
 vec3 edge_across(vec3 across0, vec3 transversal0, vec3 transversal1, vec3 across1, float t) {
     precise float s = 1.0 - t;
     precise float ss = s * s;
@@ -43,7 +44,7 @@ struct SharedSample {
 };
 
 // The surface with what is shared in the place of what the patch alone makes of it. Positions on edges are the same in any
-// case. Displaced, of the `texcoord` of the patch's corners in whatever stage includes it, too.
+// case. Rust twin: `share`. Displaced, of the `texcoord` of the patch's corners in whatever stage includes it, too.
 SharedSample share(Surface own, vec3 at) {
     // On which edge, and how far from its corner on the way around the patch.
 #ifdef TRIANGLE

@@ -1,7 +1,8 @@
 // Tessellation factors and patches that need not be drawn.
 //
 // The factor of an edge comes from the edge alone (its Bezier points, which both its patches have to the bit), by sums that
-// are the same from either end; so it is the same for both, whether one of them is left out or not.
+// are the same from either end; so it is the same for both, whether one of them is left out or not. Rust twins:
+// src/tessellate/factors.rs, src/tessellate/draw.rs.
 #ifndef FACTORS_GLSL
 #define FACTORS_GLSL
 

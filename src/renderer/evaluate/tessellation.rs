@@ -29,11 +29,14 @@ impl Path for Tessellation {
         let sharing = if capture == Capture::Points { Sharing::Positions } else { stages.sharing };
         let stages = PatchStages { sharing, ..stages };
         let constants = stages.specialization(cut, properties);
-        let evaluation = stages.shader(Source::TessellationTese, capture.evaluated(texcoords));
+        // Control points are captured without what patches share.
+        let sharing = if capture == Capture::Points { Sharing::Positions } else { stages.sharing };
+        let shared = PatchStages { sharing, ..stages };
+        let evaluation = shared.shader(Source::TessellationTese, capture.evaluated(texcoords));
         let spacing = if capture == Capture::Grid { Spacing::Equal } else { stages.spacing };
         let mut shaders = vec![
-            RecipeStage::new(stages.vertex(), &constants),
-            RecipeStage::new(stages.control(capture, texcoords), &constants),
+            RecipeStage::new(shared.vertex(), &constants),
+            RecipeStage::new(shared.control(capture, texcoords), &constants),
             RecipeStage { spacing, ..RecipeStage::new(evaluation, &[]) },
         ];
         if capture == Capture::Triangles {

@@ -1,10 +1,10 @@
 use super::displacement::DisplacementId;
-use super::factor::Factor;
 use super::id::ModelId;
 use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 use crate::table::TableError;
 use crate::table::{Construction, Evaluation};
+use crate::tessellate::Factor;
 use ash::vk;
 
 /// What can go wrong in the renderer.

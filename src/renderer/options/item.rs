@@ -1,9 +1,9 @@
 //! One model drawn once.
 
-use super::factor::{Cull, Factor};
 use super::id::ModelId;
 #[cfg(doc)]
 use crate::renderer::{Evaluation, Renderer};
+use crate::tessellate::{Cull, Factor};
 
 /// One model drawn once.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,6 @@
 
 mod displacement;
 mod error;
-mod factor;
 mod id;
 mod item;
 mod memory;
@@ -15,7 +14,6 @@ mod view;
 
 pub use displacement::{DisplacementId, DisplacementMap};
 pub use error::Error;
-pub use factor::{Cull, Factor};
 pub use id::ModelId;
 pub use item::DrawItem;
 pub use memory::MemoryUsage;
@@ -24,6 +22,8 @@ pub use options::Options;
 pub use style::{Fragment, Geometry, Style};
 pub use target::{ColorEncoding, Pass, Target};
 pub use view::{MeasuredFrom, View};
+
+pub use crate::tessellate::{Cull, Factor};
 
 pub(crate) use error::EVALUATED_VERTICES;
 pub(crate) use view::is_size;

@@ -29,33 +29,16 @@ impl ViewData {
     pub(crate) fn new(view: &View) -> Self {
         let [x, y, z] = view.eye;
         let light = Vec3::from(view.light).normalize_or(Vec3::Y);
-        let MeasuredFrom { view_projection, eye: [eye_x, eye_y, eye_z], viewport: [width, height] } = view.measured();
-        let rows = Mat4::from_cols_array_2d(&view_projection).transpose();
-        let up = rows.y_axis.truncate().length();
+        let MeasuredFrom { view_projection, eye: [eye_x, eye_y, eye_z], viewport } = view.measured();
         Self {
             view_projection: view.view_projection,
             eye: [x, y, z, 1.0],
             light: light.extend(0.0).into(),
             measured_view_projection: view_projection,
             measured_eye: [eye_x, eye_y, eye_z, 1.0],
-            viewport: [width, height, nearest(rows), up],
+            viewport: crate::tessellate::viewport(&view_projection, viewport),
         }
     }
-}
-
-/// The least clip-space w of what is between the planes of depth 0 and 1; `rows` are those of the matrix.
-fn nearest(rows: Mat4) -> f32 {
-    let (depth, w) = (rows.z_axis, rows.w_axis);
-    let squared = w.truncate().length_squared();
-    if squared == 0.0 {
-        // A parallel projection: w is the same everywhere.
-        return w.w.max(f32::MIN_POSITIVE);
-    }
-    // On the way of the view: depth = a w + b.
-    let a = depth.truncate().dot(w.truncate()) / squared;
-    let b = depth.w - a * w.w;
-    let planes = [-b / a, b / (1.0 - a)];
-    planes.into_iter().filter(|w| w.is_finite() && *w > 0.0).fold(f32::INFINITY, f32::min).clamp(1e-20, 1e20)
 }
 
 #[repr(C)]

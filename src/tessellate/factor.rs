@@ -1,4 +1,4 @@
-//! How finely patches are cut, and which are left out.
+//! What tessellation factors come from, and which patches are culled.
 
 use crate::constants::{METRIC_CURVATURE, METRIC_EDGES, METRIC_PIXELS, METRIC_UNIFORM};
 /// Where the tessellation factors of a draw come from.
