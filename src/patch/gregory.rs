@@ -12,7 +12,7 @@ use crate::blend::{
 
 /// The control points of the patch with these corners: 20 for four, 15 for three.
 ///
-/// `transversal` gives `r_j` of a corner's ring edge j; that of the paper is [`RingValues::transversal`]. The patches on
+/// `transversal` gives `r_j` of a corner's ring edge j; that of the paper is [`RingValues::transversal`](super::RingValues::transversal). The patches on
 /// both sides of an edge have to be given the same.
 ///
 /// GLSL twin: `glsl/schemes/gregory/scheme_points.glsl`.

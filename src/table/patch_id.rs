@@ -5,7 +5,7 @@ use std::fmt;
 /// What a patch covers, in 64 bits, the same on the GPU: after OpenSubdiv's `PatchParam`.
 ///
 /// A face that is refined is a quadtree over its (u, v): a *cell* of level `l` has a side of `2^-l`. Faces other than quads have
-/// such a tree for each of their [`Parts`], the root of which is of level 1, as the first step of refinement makes it; at
+/// such a tree for each of their parts, the root of which is of level 1, as the first step of refinement makes it; at
 /// level 0 they are whole.
 ///
 /// | word | bits | |
@@ -71,7 +71,7 @@ impl PatchId {
         self.with(BOUNDARY, edges)
     }
 
-    /// The number of the face's part, among the [`Parts`] of the caller's mesh.
+    /// The number of the face's part, among the parts of the caller's mesh.
     pub fn face(self) -> u32 {
         self.get(FACE)
     }

@@ -33,7 +33,7 @@ pub struct SharedTexcoord {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SharedTable {
     /// For each patch corner, in the order of the plan: the ring that owns the vertex; the ring at this vertex on the side that
-    /// owns the plus edge, and the number of the edge in it, with [`SHARP_EDGE_BIT`]; the same of the minus edge, without. GLSL
+    /// owns the plus edge, and the number of the edge in it, with `SHARP_EDGE_BIT`; the same of the minus edge, without. GLSL
     /// twin: `glsl/lib/edges/shared.glsl`.
     pub corners: Vec<[u32; SHARED_WORDS]>,
     /// Likewise, for displacement; else empty.

@@ -53,7 +53,7 @@ impl Ring {
 /// corner of the face) ring edge `index`, its *minus* edge ring edge `index + 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// Index into [`Topology::rings`].
+    /// Index into [`Topology::rings`](super::Topology::rings).
     pub ring: u32,
     /// Index of the face in the ring.
     pub index: u32,

@@ -49,11 +49,14 @@ impl Tables {
             // An empty table has a texel, for its view to be of something.
             let range = end..end + (array.len() as u64).max(16);
             end = range.end.next_multiple_of(MAX_OFFSET_ALIGNMENT);
-            let (bytes, max) = match TABLE_TEXELS.get(table) {
-                Some((_, texel)) if reads_texels => (array.len() as u64, properties.max_texel_buffer_elements * texel),
+            let (what, bytes, max) = match TABLE_TEXELS.get(table) {
+                Some((_, texel)) if reads_texels => {
+                    (what, array.len() as u64, properties.max_texel_buffer_elements * texel)
+                }
                 _ => {
                     storage = range.end;
-                    (range.end, properties.max_storage_buffer_range)
+                    // One descriptor shows them all.
+                    ("tables read as storage buffers", range.end, properties.max_storage_buffer_range)
                 }
             };
             if bytes > max {
