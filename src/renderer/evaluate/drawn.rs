@@ -25,7 +25,7 @@ pub(crate) enum Drawn<'m> {
     Tiles {
         segments: u32,
     },
-    /// Faces, subdivided so often.
+    /// Faces, subdivided `level` times.
     Subdivided {
         level: u32,
     },

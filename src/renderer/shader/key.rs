@@ -78,7 +78,7 @@ fn patch(scheme: Scheme, kind: PatchKind) -> Patch {
 }
 
 impl Capture {
-    /// What shaders hand on that evaluate.
+    /// Output of the shader that evaluates.
     pub(crate) fn evaluated(self, texcoords: bool) -> Output {
         match self {
             Self::Points => Output::Surface,
@@ -86,7 +86,7 @@ impl Capture {
         }
     }
 
-    /// What shaders hand on then.
+    /// Output of the control shader.
     fn output(self, texcoords: bool) -> Output {
         match self {
             Self::Off if texcoords => Output::Texcoords,
