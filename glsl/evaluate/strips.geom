@@ -121,7 +121,7 @@ void sum_points() {
 }
 
 void main() {
-    segments = uint(draw_factor());
+    segments = item.segments;
     uvec2 size = tile_size(segments);
     uvec2 tiles = (segments + size - 1u) / size;
     patch_number = tile_number[0] / (tiles.x * tiles.y);

@@ -33,11 +33,12 @@
 #define CULL_BACK_FLAG 8u
 #define CULL_SMALL_FLAG 16u
 
-// Bits of a draw's flags: a displacement map has vectors; what is seen counter-clockwise faces away. From REACH_SHIFT on, how far
-// displacement reaches, as a half-precision number.
+// Bits of a draw's flags: the displacement map has vectors; what is seen counter-clockwise faces away. From KIND_SHIFT on, the kind
+// of the patches.
 #define VECTOR_FLAG 1u
 #define COUNTER_CLOCKWISE_FLAG 2u
-#define REACH_SHIFT 16u
+#define KIND_SHIFT 2u
+#define KIND_MASK 3u
 
 // Rings and their entries.
 #define TRIANGLE_BIT 0x80000000u

@@ -17,7 +17,7 @@ use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, pat
 use crate::renderer::options::{
     DisplacementId, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options,
 };
-use crate::renderer::shader::{Cut, PatchStages, VECTOR_TEXEL, displacement_flags};
+use crate::renderer::shader::{Cut, PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
 use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
 use ash::vk;
@@ -53,7 +53,7 @@ pub(crate) struct Model {
     pub control: Option<ControlIndices>,
     /// What was not copied to the device yet.
     uploads: Vec<(Buffer, vk::Buffer)>,
-    map: DisplacementMap,
+    pub(crate) map: DisplacementMap,
     pub displacement: Option<DisplacementId>,
     pub prepared: bool,
 }
@@ -212,11 +212,6 @@ impl Model {
     /// The largest factor of an edge, if they have any: of the frame that was last prepared.
     pub(crate) fn largest_edge_factor(&self) -> Option<f32> {
         self.edge_factors.as_ref().map(EdgeFactors::largest)
-    }
-
-    /// The bits of a draw's flags that displacement by this scale and bias takes.
-    pub(crate) fn displacement_flags(&self, displacement: [f32; 2]) -> u32 {
-        displacement_flags(&self.map, displacement)
     }
 
     pub(crate) fn needs_copies(&self, frame: u32) -> bool {
