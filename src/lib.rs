@@ -112,6 +112,7 @@
 
 #![warn(missing_docs)]
 
+pub mod adaptive;
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub mod bench;
 mod blend;

@@ -107,6 +107,13 @@ impl<P: Point> TensorCorner<P> {
 ///
 /// GLSL twin: `evaluate_tensor` in `glsl/lib/evaluate/patch.glsl`.
 pub(crate) fn evaluate_tensor<P: Point>(corners: &[TensorCorner<P>; 4], u: P::Scalar, v: P::Scalar) -> Sample<P> {
+    let [position, du, dv] = tensor_derivatives(corners, u, v);
+    let [a, b, c, d] = corners;
+    Sample { position, normal: unit_normal(du, dv, (c.p - a.p).cross(d.p - b.p)) }
+}
+
+/// Position and thirds of the derivatives by u and v.
+pub(crate) fn tensor_derivatives<P: Point>(corners: &[TensorCorner<P>; 4], u: P::Scalar, v: P::Scalar) -> [P; 3] {
     let (at_u, at_v) = (CurveBasis::new::<P>(u), CurveBasis::new::<P>(v));
     let [a, b, c, d] = corners;
     // From a to b, inwards from there, inwards from d to c, and there.
@@ -119,5 +126,5 @@ pub(crate) fn evaluate_tensor<P: Point>(corners: &[TensorCorner<P>; 4], u: P::Sc
     let points = curves.map(|curve| curve_point(&at_u, curve));
     let (position, dv) = (curve_point(&at_v, points), curve_slope(&at_v, points));
     let du = curve_point(&at_v, curves.map(|curve| curve_slope(&at_u, curve)));
-    Sample { position, normal: unit_normal(du, dv, (c.p - a.p).cross(d.p - b.p)) }
+    [position, du, dv]
 }

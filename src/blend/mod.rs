@@ -12,6 +12,7 @@ mod values;
 
 pub(crate) use bezier::{
     Basis, CurveBasis, TensorCorner, cubic, curve_point, curve_slope, evaluate_tensor, seen_from_ends,
+    tensor_derivatives,
 };
 pub(crate) use corner::CornerRings;
 pub use corner::PatchCorner;

@@ -15,6 +15,7 @@ mod surface;
 pub(crate) use fan::{Fan, FanRows, Fans};
 pub use refine::{Refined, refine};
 pub use sample::LimitSample;
-pub(crate) use sharpness::{EdgeProfile, LEVELS};
+pub(crate) use sharpness::{EdgeProfile, LEVELS, is_semi_sharp};
 pub use stencils::Stencils;
+pub(crate) use step::refine_part;
 pub use surface::LimitSurface;

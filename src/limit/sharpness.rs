@@ -12,7 +12,7 @@ pub(super) fn decrement(sharpness: f32) -> f32 {
     if sharpness >= SHARPNESS_INFINITE { sharpness } else { (sharpness - 1.0).max(0.0) }
 }
 
-pub(super) fn is_semi_sharp(sharpness: f32) -> bool {
+pub(crate) fn is_semi_sharp(sharpness: f32) -> bool {
     sharpness > 0.0 && sharpness < SHARPNESS_INFINITE
 }
 

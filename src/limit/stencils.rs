@@ -18,7 +18,7 @@ pub struct Stencils {
 }
 
 impl Stencils {
-    pub(super) fn new(rows: Vec<Row>) -> Self {
+    pub(crate) fn new(rows: Vec<Row>) -> Self {
         let mut stencils = Self { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
         for row in rows {
             for &(index, weight) in row.weights() {

@@ -17,21 +17,13 @@ pub(super) fn refine_vertices(topology: &Topology) -> (MeshData, Stencils) {
     let mesh = topology.mesh();
     let coarse: Vec<DVec3> = mesh.data().positions.iter().map(|&p| p.into()).collect();
     let corners = mesh.corner_count();
-    let corner = |h: usize| {
-        let h = h as u32;
-        [topology.vertex(h), step.edge_vertex(h), step.face_vertex(h), step.edge_vertex(topology.prev(h))]
-    };
     let refined = MeshData {
         positions: stencils.apply(&coarse).into_iter().map(Into::into).collect(),
         face_sizes: vec![4; corners],
-        face_vertices: (0..corners).flat_map(corner).collect(),
+        face_vertices: (0..corners as u32).flat_map(|h| step.child(h)).collect(),
         creases: step.child_creases(),
         corners: step.child_corners(),
-        boundary: mesh.data().boundary,
-        crease_method: mesh.data().crease_method,
-        // After one step there are no triangles.
-        triangle_rule: TriangleRule::CatmullClark,
-        ..MeshData::default()
+        ..child_rules(topology)
     };
     (refined, stencils)
 }
@@ -54,6 +46,55 @@ struct SharpEnd {
     sharpness: f32,
     /// What is left of it in the child edge at this vertex.
     child: f32,
+}
+
+/// The children of some face corners as a mesh of their own, whose face i is the child of the i-th, begins there, and has the
+/// parent's order of corners; and its vertices as sums of the coarse mesh's. Positions are left at zero.
+///
+/// At the rim of the part tags may be missing, and rows are right as far as the coarse mesh is.
+pub(crate) fn refine_part(topology: &Topology, half_edges: &[u32]) -> (MeshData, Vec<Row>) {
+    let step = Step::new(topology);
+    let mut numbers = vec![u32::MAX; step.vertex_count()];
+    // Each vertex in the numbering of the whole refined mesh, and a corner that has a child with it.
+    let mut vertices = Vec::new();
+    let mut face_vertices = Vec::with_capacity(4 * half_edges.len());
+    for &h in half_edges {
+        for vertex in step.child(h) {
+            let number = &mut numbers[vertex as usize];
+            if *number == u32::MAX {
+                *number = vertices.len() as u32;
+                vertices.push((vertex, h));
+            }
+            face_vertices.push(*number);
+        }
+    }
+    let rows = vertices.par_iter().with_min_len(MIN_LEN).map(|&(vertex, h)| step.row(vertex, h)).collect();
+    let number = |vertex: u32| numbers[vertex as usize];
+    let creases = half_edges.iter().flat_map(|&h| step.creases_at(h));
+    let creases = creases.map(|crease| Crease { vertices: crease.vertices.map(number), ..crease }).collect();
+    let corners = step.child_corners().into_iter().filter(|corner| number(corner.vertex) != u32::MAX);
+    let corners = corners.map(|corner| Corner { vertex: number(corner.vertex), ..corner }).collect();
+    let data = MeshData {
+        positions: vec![[0.0; 3]; vertices.len()],
+        face_sizes: vec![4; half_edges.len()],
+        face_vertices,
+        creases,
+        corners,
+        ..child_rules(topology)
+    };
+    (data, rows)
+}
+
+/// The rules of a refined mesh.
+fn child_rules(topology: &Topology) -> MeshData {
+    let data = topology.mesh().data();
+    MeshData {
+        boundary: data.boundary,
+        crease_method: data.crease_method,
+        // After one step there are no triangles.
+        triangle_rule: TriangleRule::CatmullClark,
+        ..MeshData::default()
+    }
 }
 
 struct Step<'t> {
@@ -87,6 +128,38 @@ impl<'t> Step<'t> {
         step.find_sharp_ends();
         step.find_sharp_vertices();
         step
+    }
+
+    /// Number of vertices of the refined mesh.
+    fn vertex_count(&self) -> usize {
+        self.topology.vertex_count() + self.edge_half_edges.len() + self.topology.mesh().face_count()
+    }
+
+    /// The child of a face corner.
+    fn child(&self, h: u32) -> [u32; 4] {
+        [self.topology.vertex(h), self.edge_vertex(h), self.face_vertex(h), self.edge_vertex(self.topology.prev(h))]
+    }
+
+    /// The row of a vertex of the child of a face corner.
+    fn row(&self, vertex: u32, h: u32) -> Row {
+        let first_edge = self.topology.vertex_count() as u32;
+        let first_face = first_edge + self.edge_half_edges.len() as u32;
+        match vertex {
+            _ if vertex < first_edge => self.vertex_row(h),
+            _ if vertex < first_face => self.edge_row(vertex - first_edge),
+            _ => self.face_row(vertex - first_face),
+        }
+    }
+
+    /// The creases along the two edges of a face corner's child that start from there.
+    fn creases_at(&self, h: u32) -> impl Iterator<Item = Crease> {
+        let vertex = self.topology.vertex(h);
+        [h, self.topology.prev(h)].into_iter().filter_map(move |edge| {
+            // The map knows what is sharp; a boundary edge is sharp without a tag.
+            let sharpness = self.child_sharpness(self.edges[edge as usize], vertex);
+            let is_tag = sharpness > 0.0 && self.topology.twin(edge).is_some();
+            is_tag.then_some(Crease { vertices: [vertex, self.edge_vertex(edge)], sharpness })
+        })
     }
 
     fn edge_vertex(&self, h: u32) -> u32 {

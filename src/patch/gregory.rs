@@ -7,7 +7,7 @@
 
 use crate::blend::{
     Blend, CurveBasis, PatchCorner, Point, Sample, TensorCorner, curve_point, evaluate_tensor, scalar, seen_from_ends,
-    unit_normal,
+    tensor_derivatives, unit_normal,
 };
 
 /// The control points of the patch with these corners: 20 for four, 15 for three.
@@ -53,6 +53,18 @@ pub fn gregory_points<T: Blend>(
 ///
 /// GLSL twin: `glsl/schemes/gregory/evaluate_gregory_quad.glsl`.
 pub fn evaluate_gregory_quad<P: Point>(points: &[P; 20], u: P::Scalar, v: P::Scalar) -> Sample<P> {
+    evaluate_tensor(&quad_corners(points, u, v), u, v)
+}
+
+/// Position and derivatives by u and v of [`evaluate_gregory_quad`].
+pub(crate) fn gregory_quad_derivatives<P: Point>(points: &[P; 20], u: P::Scalar, v: P::Scalar) -> [P; 3] {
+    let [position, du, dv] = tensor_derivatives(&quad_corners(points, u, v), u, v);
+    let three = scalar::<P>(3.0);
+    [position, du * three, dv * three]
+}
+
+/// The tensor-product patch that a quad patch is at (u, v), with its face points blended.
+fn quad_corners<P: Point>(points: &[P; 20], u: P::Scalar, v: P::Scalar) -> [TensorCorner<P>; 4] {
     let one = scalar::<P>(1.0);
     let [p, e, f] = [&points[0..4], &points[4..12], &points[12..20]];
     let (s, t) = (one - u, one - v);
@@ -62,7 +74,7 @@ pub fn evaluate_gregory_quad<P: Point>(points: &[P; 20], u: P::Scalar, v: P::Sca
         let inner = blend(seen(f[2 * k]), beside[k][0], seen(f[2 * k + 1]), beside[k][1]);
         TensorCorner::new(p[k], seen(e[2 * k]), seen(e[2 * k + 1]), inner)
     };
-    evaluate_tensor(&std::array::from_fn(corner), u, v)
+    std::array::from_fn(corner)
 }
 
 /// The face point `(a f+ + b f-) / (a + b)`; at a corner, where both weights vanish, it does not matter.

@@ -1,0 +1,135 @@
+//! The part of the mesh that is refined, level by level.
+
+use super::feature::{Class, Reason, Shape, classify, is_constant, shape};
+use super::options::AdaptiveOptions;
+use crate::blend::Row;
+use crate::limit::refine_part;
+use crate::mesh::{ControlMesh, CreaseMethod, MeshError};
+use crate::topology::Topology;
+use std::borrow::Cow;
+
+/// Where a face of a level lies.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cell {
+    pub root: u32,
+    /// The node of the cell.
+    pub node: u32,
+    pub u: u32,
+    pub v: u32,
+    /// The corner of the cell, counter-clockwise from its least (u, v), that is corner 0 of the face.
+    pub first: u32,
+    /// Whether the face is one of the plan's, and not only there because its neighbours depend on it.
+    pub own: bool,
+}
+
+/// The faces of one level that the plan has there, with those around them.
+pub(super) struct Level<'t> {
+    pub number: u32,
+    /// All that is needed around the level's own faces is there and right; what lies further out need not be.
+    pub topology: Cow<'t, Topology>,
+    /// The number of its vertex 0.
+    pub first_vertex: u32,
+    /// One a face.
+    pub cells: Vec<Cell>,
+}
+
+/// What becomes of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Fate {
+    /// It is not the plan's.
+    Support,
+    Leaf(Shape),
+    Refined(Reason),
+}
+
+impl Level<'_> {
+    /// What becomes of each face.
+    pub(super) fn fates(&self, options: &AdaptiveOptions) -> Vec<Fate> {
+        let topology = &*self.topology;
+        let mut classes: Vec<Option<Class>> = vec![None; topology.vertex_count()];
+        for (face, _) in self.cells.iter().enumerate().filter(|(_, cell)| cell.own) {
+            for h in topology.mesh().face_corners(face as u32).map(|h| h as u32) {
+                classes[topology.vertex(h) as usize].get_or_insert_with(|| classify(topology, h));
+            }
+        }
+        let class = |h: u32| classes[topology.vertex(h) as usize].unwrap_or(Class::Plain);
+        let fate = |(face, cell): (usize, &Cell)| match cell.own {
+            true => self.fate(face as u32, class, options),
+            false => Fate::Support,
+        };
+        self.cells.iter().enumerate().map(fate).collect()
+    }
+
+    fn fate(&self, face: u32, class: impl Fn(u32) -> Class, options: &AdaptiveOptions) -> Fate {
+        let topology = &*self.topology;
+        let corners = topology.mesh().face_corners(face);
+        if corners.len() != 4 {
+            return Fate::Refined(Reason::NonQuad);
+        }
+        if let Some(reason) = { corners }.filter_map(|h| class(h as u32).reason(self.number, options)).min() {
+            return Fate::Refined(reason);
+        }
+        let shape = shape(topology, face, &class);
+        let may_refine = self.number < options.sharp_depth();
+        match shape {
+            Shape::SingleCrease { half_edge, .. } if may_refine && !is_constant(topology, half_edge) => {
+                Fate::Refined(Reason::VaryingCrease)
+            }
+            // Creases along opposite edges: their corners are no features.
+            Shape::Irregular if may_refine && { self.corners(face) }.all(|h| class(h) == Class::Crease) => {
+                Fate::Refined(Reason::VaryingCrease)
+            }
+            shape => Fate::Leaf(shape),
+        }
+    }
+
+    fn corners(&self, face: u32) -> impl Iterator<Item = u32> + use<> {
+        self.topology.mesh().face_corners(face).map(|h| h as u32)
+    }
+
+    /// The half-edges of a quad, from the corner of its cell with the least (u, v).
+    pub(super) fn oriented(&self, face: u32) -> [u32; 4] {
+        let start = self.topology.mesh().face_corners(face).start as u32;
+        let first = self.cells[face as usize].first;
+        [0, 1, 2, 3].map(|corner| start + (corner + 4 - first) % 4)
+    }
+
+    /// The next level: the children of the refined faces and all faces around them; and its vertices as sums of this level's.
+    /// `child` tells the cell of a face's child around its corner.
+    pub(super) fn refine(
+        &self,
+        fates: &[Fate],
+        first_vertex: u32,
+        child: impl Fn(u32, u32) -> Cell,
+    ) -> Result<(Level<'static>, Vec<Row>), MeshError> {
+        let topology = &*self.topology;
+        let half_edges = self.half_edges_with_children(fates);
+        let (data, mut rows) = refine_part(topology, &half_edges);
+        rows.iter_mut().for_each(|row| row.shift(self.first_vertex));
+        let cell = |&h: &u32| {
+            let face = topology.face(h);
+            let cell = child(face, h - topology.mesh().face_corners(face).start as u32);
+            Cell { own: matches!(fates[face as usize], Fate::Refined(_)), ..cell }
+        };
+        let cells = half_edges.iter().map(cell).collect();
+        let topology = Cow::Owned(Topology::new(&ControlMesh::new(data)?));
+        Ok((Level { number: self.number + 1, topology, first_vertex, cells }, rows))
+    }
+
+    /// The face corners whose children are refined faces' or touch one; by Chaikin's method, which looks further, one ring
+    /// more.
+    fn half_edges_with_children(&self, fates: &[Fate]) -> Vec<u32> {
+        let topology = &*self.topology;
+        let all = 0..topology.mesh().corner_count() as u32;
+        let mut touched = vec![false; topology.vertex_count()];
+        for h in all.clone().filter(|&h| matches!(fates[topology.face(h) as usize], Fate::Refined(_))) {
+            touched[topology.vertex(h) as usize] = true;
+        }
+        let is_touched = |h: u32| touched[topology.vertex(h) as usize];
+        if topology.mesh().data().crease_method == CreaseMethod::Uniform {
+            return all.filter(|&h| is_touched(h)).collect();
+        }
+        let faces = (0..topology.mesh().face_count() as u32).filter(|&face| { self.corners(face) }.any(is_touched));
+        faces.flat_map(|face| self.corners(face)).collect()
+    }
+}

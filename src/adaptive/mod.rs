@@ -1,0 +1,39 @@
+//! Feature-adaptive subdivision: which faces refine where, and the leaves that remain, as plain arrays.
+//!
+//! After Niessner, Loop, Meyer and DeRose 2012, with the creases of Niessner, Loop and Greiner 2012 (patch_maths F and G):
+//! faces around *features* (extraordinary vertices, faces that are no quads, darts, corners, creases whose sharpness varies) are
+//! refined, level by level. What is left are *leaves*, cells of a quadtree over each face's (u, v): bicubic B-spline patches,
+//! with a crease along one edge or without, which are the limit surface itself; and around features at the last level end caps,
+//! Gregory patches.
+//!
+//! **Parameters.** As [`LimitSurface`](crate::limit::LimitSurface) has them: a quad is one *root*, a face of another size has a
+//! root of level 1 for each corner.
+//!
+//! **Exactness.** [`LeafKind::Regular`] and [`LeafKind::SingleCrease`] are the limit surface but for rounding, whatever the
+//! depth. A [`LeafKind::Cap`] is the chosen scheme's patch of a face that is refined as often as its level says; it draws
+//! sharpness as that scheme does ([`SHARP_FROM`](crate::topology::SHARP_FROM)).
+//!
+//! **Neighbours.** Across an edge two leaves differ by at most one level while both depths of [`AdaptiveOptions`] are the same.
+//! Two rules see to that, which refine more than the surface needs: all faces around a feature are refined, those too which an
+//! infinitely sharp crease parts from it; and by Chaikin's method a single crease has to be constant one edge further.
+//! Exceptions: faces other than quads are refined at depth 0 too, so their leaves of level 1 meet end caps of level 0; with two
+//! depths, caps at the lesser one meet cells up to the greater.
+
+mod build;
+mod caps;
+mod counts;
+mod crease;
+mod error;
+mod evaluate;
+mod feature;
+mod grids;
+mod level;
+mod options;
+mod plan;
+mod rows;
+
+pub use counts::LevelCounts;
+pub use error::AdaptiveError;
+pub use feature::Reason;
+pub use options::{AdaptiveOptions, MAX_DEPTH};
+pub use plan::{LEAF, Leaf, LeafKind, Plan, RefinedCell, Root};

@@ -1,0 +1,39 @@
+//! What a caller chooses.
+
+use super::error::AdaptiveError;
+use crate::patch::Scheme;
+
+/// The greatest depth.
+pub const MAX_DEPTH: u32 = 10;
+
+/// How deep faces are refined, and what covers the rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct AdaptiveOptions {
+    /// The level of the end caps around extraordinary vertices, 0 to [`MAX_DEPTH`]. At 0 an irregular quad is one end cap.
+    /// Faces other than quads are refined once in any case.
+    pub depth: u32,
+    /// The level of the end caps around sharp features: darts, corners, creases whose sharpness varies. `None` is
+    /// [`AdaptiveOptions::depth`].
+    pub sharp_depth: Option<u32>,
+    /// The scheme of the end caps: [`Scheme::Gregory`] or [`Scheme::GregoryFitted`].
+    pub scheme: Scheme,
+}
+
+impl AdaptiveOptions {
+    /// The depth around sharp features.
+    pub fn sharp_depth(&self) -> u32 {
+        self.sharp_depth.unwrap_or(self.depth)
+    }
+
+    pub(super) fn check(&self) -> Result<(), AdaptiveError> {
+        for (what, depth) in [("depth", self.depth), ("depth of sharp features", self.sharp_depth())] {
+            if depth > MAX_DEPTH {
+                return Err(AdaptiveError::TooDeep { what, depth });
+            }
+        }
+        match self.scheme {
+            Scheme::Gregory | Scheme::GregoryFitted => Ok(()),
+            scheme => Err(AdaptiveError::NoCaps { scheme }),
+        }
+    }
+}
