@@ -5,7 +5,7 @@ use super::resolved::ResolvedItem;
 use super::visible::ItemLists;
 use crate::renderer::evaluate::{Bound, BoundLattice, Drawn, DrawnGroup, Place, Recorder, path};
 use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View};
-use crate::renderer::shader::{Cut, GeometryKey, PatchStages, PipelineKey, ViewData};
+use crate::renderer::shader::{Cut, GeometryKey, PipelineKey, ViewData};
 #[cfg(doc)]
 use crate::table::Evaluation;
 use ash::vk;
@@ -80,10 +80,10 @@ impl Renderer {
         // Of patches that are not looked at, all are drawn.
         let cuts = if lists { [Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { [cut; 2] };
         for each in cuts {
-            let is_made = model.made.contains(&each);
-            if !is_made || path(model.evaluation).depends_on_factor() {
-                self.pipelines.make(&model.stages, each, factor)?;
-                model.made.extend((!is_made).then_some(each));
+            let level = path(model.evaluation).level(factor);
+            if !model.made.iter().any(|made| made.is_of(each, level)) {
+                let made = self.pipelines.make(&model.stages, each, factor)?;
+                model.made.push(made);
             }
         }
         if lists {
@@ -159,13 +159,14 @@ impl Renderer {
             None => recorder.bound.lattice = BoundLattice::default(),
         }
         let path = path(model.evaluation);
-        let cut = Cut::new(item.factor, if lists.is_some() { Cull::NONE } else { item.cull });
+        let level = path.level(item.factor);
+        let made = |cut| model.made.iter().find(|made| made.is_of(cut, level));
+        let of_all = made(Cut::new(item.factor, if lists.is_some() { Cull::NONE } else { item.cull }));
+        let of_lists = lists.and_then(|_| made(Cut::listed(item.factor)));
         let groups = model.tables.plan().groups();
         let pipeline = |number: usize| {
-            let stages: PatchStages = model.stages[number];
-            let listed = lists.is_some() && stages.has_hull();
-            let geometry = path.key(stages, if listed { Cut::listed(item.factor) } else { cut }, item.factor)?;
-            self.pipelines.draws.get(PipelineKey { style: item.style, geometry })
+            let made = of_lists.filter(|_| model.stages[number].has_hull()).or(of_all)?;
+            Some(made.of(number, item.style))
         };
         // Of many models, every other one is drawn from the last kind of patch to the first: its pipeline is bound already.
         let backwards = groups.len() > 1 && pipeline(groups.len() - 1) == Some(recorder.bound.pipeline);

@@ -10,6 +10,7 @@ mod streamed;
 mod tables;
 
 pub(crate) use displacements::Displacements;
+use pipelines::MadeCut;
 pub(crate) use pipelines::ModelPipelines;
 
 use crate::gpu::{Buffer, DeviceContext};
@@ -17,7 +18,7 @@ use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, pat
 use crate::renderer::options::{
     DisplacementId, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options,
 };
-use crate::renderer::shader::{Cut, PatchStages, VECTOR_TEXEL};
+use crate::renderer::shader::{PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
 use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
 use ash::vk;
@@ -32,8 +33,8 @@ pub(crate) struct Model {
     pub tables: ModelTables,
     /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
-    /// What there are pipelines for: a few.
-    pub made: Vec<Cut>,
+    /// Pipelines of the draws that there were: a few.
+    pub made: Vec<MadeCut>,
     pub set: ModelSet,
     table_buffer: Tables,
     positions: Positions,
