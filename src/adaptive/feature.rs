@@ -144,6 +144,11 @@ pub(super) fn classify(topology: &Topology, half_edge: u32) -> Class {
     Class::Feature(Feature { lasting, sharp, settled })
 }
 
+/// Whether nothing at the vertex from which a half-edge starts is of finite sharpness, and it is no dart.
+pub(super) fn is_settled(topology: &Topology, half_edge: u32) -> bool {
+    Fan::new(topology, half_edge).is_settled()
+}
+
 /// How a quad can be drawn as it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {

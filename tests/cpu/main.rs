@@ -1,5 +1,7 @@
 //! Tests that need no Vulkan device, but for one of `edge_normals`.
 
+mod adaptive;
+mod adaptive_limit;
 #[path = "../common/mod.rs"]
 mod common;
 mod edge_normals;
