@@ -1,6 +1,6 @@
 //! The control points of end caps.
 
-use super::feature::is_settled;
+use super::feature::{has_finite_sharpness, is_settled};
 use crate::blend::{Blend, Frame, PatchCorner, RingValues, Row};
 use crate::limit::{dart_edge, dart_frame, refine_part};
 use crate::mesh::{ControlMesh, CreaseMethod, MeshError};
@@ -76,9 +76,9 @@ fn limit_of_fan(topology: &Topology, h: u32) -> Result<Option<Row>, MeshError> {
     loop {
         let topology = refined.as_ref().unwrap_or(topology);
         let ring = &topology.rings()[topology.place(half_edges[0]).ring as usize];
-        let dart = dart_edge(topology, ring);
-        if refined.is_some() && (dart.is_some() || is_settled(topology, half_edges[0])) {
+        if refined.is_some() && !has_finite_sharpness(topology, half_edges[0]) {
             let values = RingValues::new(topology, ring, |v| rows[v as usize].clone());
+            let dart = dart_edge(topology, ring);
             return Ok(Some(dart.map_or_else(|| values.frame(), |sharp| dart_frame(&values, sharp)).p));
         }
         if topology.mesh().data().crease_method == CreaseMethod::Chaikin {
