@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod adaptive_limit;
+mod adaptive_neighbours;
 #[path = "../common/mod.rs"]
 mod common;
 mod edge_normals;
