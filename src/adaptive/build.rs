@@ -1,6 +1,6 @@
 //! How a plan is made: level by level, then without what nothing reads.
 
-use super::caps::{self, cap_rows};
+use super::caps::{self, Caps};
 use super::error::AdaptiveError;
 use super::feature::Shape;
 use super::grids::{fill, grid, is_boundary};
@@ -29,7 +29,7 @@ impl Plan {
         let mut level = builder.control_level(topology);
         loop {
             let fates = level.fates(options);
-            builder.add_leaves(&level, &fates);
+            builder.add_leaves(&level, &fates)?;
             let children = builder.add_refined(&level, &fates);
             if children.is_empty() {
                 return builder.finish();
@@ -96,7 +96,8 @@ impl Builder {
         Level { number: 0, topology: Cow::Borrowed(topology), first_vertex: 0, cells }
     }
 
-    fn add_leaves(&mut self, level: &Level, fates: &[Fate]) {
+    fn add_leaves(&mut self, level: &Level, fates: &[Fate]) -> Result<(), AdaptiveError> {
+        let mut caps = Caps::new(&level.topology, self.options.scheme);
         for (face, fate) in (0..).zip(fates) {
             let Fate::Leaf(shape) = *fate else { continue };
             let cell = level.cells[face as usize];
@@ -114,7 +115,7 @@ impl Builder {
                 Shape::Irregular => LeafKind::Cap,
             };
             let points = match kind {
-                LeafKind::Cap => self.add_cap(level, half_edges),
+                LeafKind::Cap => self.add_cap(level, half_edges, &mut caps)?,
                 _ => self.add_grid(level, half_edges, boundary),
             };
             let Root { face, part, .. } = self.roots[cell.root as usize];
@@ -123,14 +124,15 @@ impl Builder {
             self.nodes[cell.node as usize] = self.leaves.len() as u32 | LEAF;
             self.leaves.push(Leaf { root, face, part, level: level.number, u, v, kind, boundary, transition, points });
         }
+        Ok(())
     }
 
-    fn add_cap(&mut self, level: &Level, half_edges: [u32; 4]) -> u32 {
+    fn add_cap(&mut self, level: &Level, half_edges: [u32; 4], caps: &mut Caps) -> Result<u32, AdaptiveError> {
         let first = self.caps.len() as u32;
-        let mut rows = cap_rows(&level.topology, self.options.scheme, half_edges);
+        let mut rows = caps.rows(half_edges).map_err(|error| AdaptiveError::Level { level: level.number, error })?;
         rows.iter_mut().for_each(|row| row.shift(level.first_vertex));
         self.caps.extend(rows);
-        first
+        Ok(first)
     }
 
     fn add_grid(&mut self, level: &Level, half_edges: [u32; 4], boundary: u32) -> u32 {

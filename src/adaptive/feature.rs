@@ -90,8 +90,12 @@ impl Fan {
         !self.open && self.infinite.len() == 1 && !self.pinned
     }
 
+    fn has_finite_sharpness(&self) -> bool {
+        !self.finite.is_empty() || is_semi_sharp(self.tag)
+    }
+
     fn is_settled(&self) -> bool {
-        self.finite.is_empty() && !is_semi_sharp(self.tag) && !self.is_dart()
+        !self.has_finite_sharpness() && !self.is_dart()
     }
 
     /// Whether each sector is regular once what is of finite sharpness is used up.
@@ -142,6 +146,16 @@ pub(super) fn classify(topology: &Topology, half_edge: u32) -> Class {
         _ => Some(Reason::ExtraordinaryVertex),
     };
     Class::Feature(Feature { lasting, sharp, settled })
+}
+
+/// Whether nothing at the vertex from which a half-edge starts is of finite sharpness, and it is no dart.
+pub(super) fn is_settled(topology: &Topology, half_edge: u32) -> bool {
+    Fan::new(topology, half_edge).is_settled()
+}
+
+/// Whether something there is of finite sharpness.
+pub(super) fn has_finite_sharpness(topology: &Topology, half_edge: u32) -> bool {
+    Fan::new(topology, half_edge).has_finite_sharpness()
 }
 
 /// How a quad can be drawn as it is.

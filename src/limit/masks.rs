@@ -1,7 +1,7 @@
 //! The limit at a vertex: the left eigenvectors of the subdivision matrix of its one-ring (patch_maths A).
 
 use super::sample::LimitSample;
-use crate::blend::{Frame, RingValues};
+use crate::blend::{Blend, Frame, RingValues};
 use crate::topology::{Ring, RingKind, Topology};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -33,7 +33,7 @@ pub(super) fn corner_limit(topology: &Topology, half_edge: u32) -> LimitSample {
 }
 
 /// The sharp edge of a dart.
-pub(super) fn dart_edge(topology: &Topology, ring: &Ring) -> Option<usize> {
+pub(crate) fn dart_edge(topology: &Topology, ring: &Ring) -> Option<usize> {
     if ring.kind != RingKind::Smooth {
         return None;
     }
@@ -66,11 +66,11 @@ fn cross_tangent(values: &RingValues<DVec3>) -> DVec3 {
 ///
 /// No closed form is known; the masks are found by iteration. Being symmetric to the sharp edge, the ring has its
 /// tangent across the edge among the masks that change sign under reflection, and the other among those that do not.
-fn dart_frame(values: &RingValues<DVec3>, sharp: usize) -> Frame<DVec3> {
+pub(crate) fn dart_frame<T: Blend>(values: &RingValues<T>, sharp: usize) -> Frame<T> {
     let n = values.edges.len();
-    let points: Vec<DVec3> = std::iter::once(values.centre)
-        .chain((0..n).map(|j| values.edges[(sharp + j) % n]))
-        .chain((0..n).map(|i| values.diagonals[(sharp + i) % n]))
+    let points: Vec<&T> = std::iter::once(&values.centre)
+        .chain((0..n).map(|j| &values.edges[(sharp + j) % n]))
+        .chain((0..n).map(|i| &values.diagonals[(sharp + i) % n]))
         .collect();
     let matrix = dart_matrix(n);
     let directions = |direction: fn(f64) -> f64| -> Vec<f64> {
@@ -78,7 +78,7 @@ fn dart_frame(values: &RingValues<DVec3>, sharp: usize) -> Frame<DVec3> {
         let of_faces = (0..n).map(|i| direction(TAU * (i as f64 + 0.5) / n as f64));
         std::iter::once(0.0).chain(of_edges).chain(of_faces).collect()
     };
-    let combine = |mask: Vec<f64>| mask.iter().zip(&points).map(|(&weight, &p)| weight * p).sum::<DVec3>();
+    let combine = |mask: Vec<f64>| T::sum(mask.into_iter().zip(points.iter().copied()));
     let mut position = vec![0.0; 2 * n + 1];
     position[0] = 1.0;
     let position = combine(dominant(&matrix, position, |_| {}));
@@ -100,7 +100,8 @@ fn dart_frame(values: &RingValues<DVec3>, sharp: usize) -> Frame<DVec3> {
     let across = combine(dominant(&matrix, directions(f64::sin), odd));
     // The edges stand at multiples of a full turn / n from edge 0 of the ring, not from the sharp one.
     let (sin, cos) = (TAU * sharp as f64 / n as f64).sin_cos();
-    Frame { p: position, a: cos * along - sin * across, b: sin * along + cos * across }
+    let turned = |cos: f64, sin: f64| T::sum([(cos, &along), (sin, &across)]);
+    Frame { p: position, a: turned(cos, -sin), b: turned(sin, cos) }
 }
 
 /// One subdivision step of a ring of `n` quads whose edge 0 is infinitely sharp. Rows and columns: the vertex, the

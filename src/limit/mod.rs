@@ -13,6 +13,7 @@ mod step;
 mod surface;
 
 pub(crate) use fan::{Fan, FanRows, Fans};
+pub(crate) use masks::{dart_edge, dart_frame};
 pub use refine::{Refined, refine};
 pub use sample::LimitSample;
 pub(crate) use sharpness::{EdgeProfile, LEVELS, is_semi_sharp};

@@ -1,5 +1,8 @@
 //! Tests that need no Vulkan device, but for one of `edge_normals`.
 
+mod adaptive;
+mod adaptive_limit;
+mod adaptive_neighbours;
 #[path = "../common/mod.rs"]
 mod common;
 mod edge_normals;
