@@ -17,6 +17,7 @@
 #define ID_COPIES 11u
 #define ID_CONSTRUCTION 12u
 #define ID_HAS_TEXCOORDS 13u
+#define ID_ADAPTIVE 14u
 
 // Constructions, by their numbers.
 #define TWO_STAGE 0u
@@ -63,6 +64,21 @@
 #define GROUP_VERTICES 256u
 // Vertices of a tile of a patch in strips.
 #define TILE_VERTICES 64u
+
+// Quadtrees over faces: levels, and the bit of a node that is a leaf.
+#define MAX_DEPTH 10u
+#define LEAF_BIT 0x80000000u
+// Fours of a leaf, and its kinds; with a crease, the first of four.
+#define LEAF_FOURS 5u
+#define LEAF_REGULAR 0u
+#define LEAF_CAP 1u
+#define LEAF_CREASE 2u
+// Words of a face; who owns an edge or a corner: the patch from OWNER_SHIFT on, its edge or corner, and whether normals differ there;
+// or what its patch makes of its corners.
+#define FACE_WORDS 9u
+#define OWNER_SHIFT 3u
+#define OWNER_SHARP_BIT 4u
+#define OWNER_COARSE 0xffffffffu
 
 // What is captured of a patch, and of a vertex.
 #define CONTROL_POINT_WORDS 96u

@@ -20,14 +20,31 @@ pub struct Stencils {
 impl Stencils {
     pub(crate) fn new(rows: Vec<Row>) -> Self {
         let mut stencils = Self { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
-        for row in rows {
-            for &(index, weight) in row.weights() {
-                stencils.indices.push(index);
-                stencils.weights.push(weight);
-            }
-            stencils.offsets.push(stencils.indices.len() as u32);
-        }
+        rows.iter().for_each(|row| stencils.push(row));
         stencils
+    }
+
+    /// The sum of one output.
+    pub(crate) fn row(&self, output: usize) -> Row {
+        let terms = self.offsets[output] as usize..self.offsets[output + 1] as usize;
+        Row::new(self.indices[terms.clone()].iter().copied().zip(self.weights[terms].iter().copied()).collect())
+    }
+
+    /// Adds an output.
+    pub(crate) fn push(&mut self, row: &Row) {
+        for &(index, weight) in row.weights() {
+            self.indices.push(index);
+            self.weights.push(weight);
+        }
+        self.offsets.push(self.indices.len() as u32);
+    }
+
+    /// Leaves the first `outputs`.
+    pub(crate) fn truncate(&mut self, outputs: usize) {
+        let terms = self.offsets[outputs] as usize;
+        self.offsets.truncate(outputs + 1);
+        self.indices.truncate(terms);
+        self.weights.truncate(terms);
     }
 
     /// Number of outputs.

@@ -13,8 +13,37 @@ Surface evaluate_gregory_quad(float u, float v) {
 #undef CORNER
 }
 
+#include "evaluate/leaves.glsl"
+
+// A face that is refined: its leaves inside; on edges and at corners those of the face that owns them, with its normal as `facing`.
+// Where a neighbour is not refined, what both make of their corners.
+Surface evaluate_leaves(vec3 at) {
+    bvec4 on = bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
+    if (!any(on)) {
+        return evaluate_face(evaluated_patch, at.xy);
+    }
+    uint own = edge_or_corner(on), owner = owner_of(own);
+    if (owner == OWNER_COARSE) {
+        return evaluate_gregory_quad(at.x, at.y);
+    }
+    precise float left = 1.0 - at.x, up = 1.0 - at.y;
+    float way = on.x ? at.x : on.y ? at.y : on.z ? left : up;
+    // The other side goes the other way.
+    precise float back = 1.0 - way;
+    uint k = owner & 3u, patch_number = owner >> OWNER_SHIFT;
+    bool is_own = patch_number == evaluated_patch && k == (own & 3u);
+    Surface surface = evaluate_face(patch_number, is_own ? at.xy : place_on_edge(k, own < 4u ? back : 0.0));
+    surface.facing = unit_normal(surface.du, surface.dv, vec3(0.0));
+    if (!is_own && (owner & OWNER_SHARP_BIT) != 0u) {
+        Surface of_own = evaluate_face(evaluated_patch, at.xy);
+        surface.du = of_own.du;
+        surface.dv = of_own.dv;
+    }
+    return surface;
+}
+
 Surface evaluate_surface(vec3 at) {
-    return evaluate_gregory_quad(at.x, at.y);
+    return ADAPTIVE ? evaluate_leaves(at) : evaluate_gregory_quad(at.x, at.y);
 }
 
 #endif

@@ -21,6 +21,7 @@ use crate::renderer::options::{
 use crate::renderer::shader::{PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
 use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
+use crate::topology::PatchKind;
 use ash::vk;
 use bindings::{ModelBuffers, ModelSet};
 use edge_factors::EdgeFactors;
@@ -99,7 +100,9 @@ impl Model {
             _ => (name, array),
         });
 
-        let (table_buffer, staged_tables) = Tables::new(context, (id, name), model_options.evaluation, &arrays)?;
+        let first_refined = tables.leaves().map_or(0, |leaves| leaves.first_patch);
+        let (table_buffer, staged_tables) =
+            Tables::new(context, (id, name), model_options.evaluation, &arrays, first_refined)?;
 
         // What shaders see whole, as storage buffers and as texel buffers.
         let properties = context.properties();
@@ -169,6 +172,7 @@ impl Model {
                 edge_factors: lattice_edges,
                 stride,
                 attributes,
+                adaptive: tables.leaves().is_some() && kind == PatchKind::IrregularQuad,
             };
             PatchStages { attributes: path(evaluation).has_attributes(&pipelines.draws, stages), ..stages }
         };
