@@ -4,6 +4,7 @@
 
 use crate::common;
 use crate::common::random::{random_creased_mesh, random_mesh};
+use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::capture::{CaptureDraw, Captured, Which};
 use ash_subdiv::headless::{Headless, Texels, Texture};
 use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
@@ -103,6 +104,31 @@ fn shapes_are_watertight() {
     let cases = shapes.chain(random).map(|(name, mesh, seed)| (name, with_texcoords(mesh), seed));
     let samples = assert_watertight(&headless, &cases.collect::<Vec<_>>(), &texture);
     assert!(samples > 1_000_000, "{samples} pairs");
+    drop(texture);
+    headless.finish_silent();
+}
+
+/// Faces that are refined have their leaves evaluated: what two of them share by one of them.
+#[test]
+fn adaptive_surfaces_are_watertight() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    let mut samples = 0;
+    let built_in = ["creature-mixed", "machine-part", "valences", "cloth", "cube", "fan"];
+    let built_in = built_in.map(|name| (name.to_owned(), shape(name).expect("built in")));
+    let random = (0..4).map(|seed| ("random".to_owned(), random_creased_mesh(seed)));
+    for ((name, mesh), i) in built_in.into_iter().chain(random).zip(0..) {
+        let mesh = with_texcoords(mesh);
+        let construction = Construction::ALL[i % 3];
+        for (depth, displaced) in [(0, true), (1, false), (3, false), (3, true)] {
+            let adaptive = Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });
+            let options = ModelOptions { construction, spacing: SPACINGS[i / 3 % 3], adaptive, ..ModelOptions::default() };
+            let tally = tally(&headless, &mesh, &options, displaced.then_some(&texture), i as u64);
+            assert!(tally.is_watertight(), "{name} depth {depth} displaced {displaced} {construction:?}: {tally:?}");
+            samples += tally.samples;
+        }
+    }
+    assert!(samples > 500_000, "{samples} pairs");
     drop(texture);
     headless.finish_silent();
 }
