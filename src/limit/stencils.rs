@@ -17,17 +17,49 @@ pub struct Stencils {
     pub weights: Vec<f64>,
 }
 
+impl Default for Stencils {
+    fn default() -> Self {
+        Self::with_capacity(0, 0)
+    }
+}
+
 impl Stencils {
     pub(crate) fn new(rows: Vec<Row>) -> Self {
-        let mut stencils = Self { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
+        let mut stencils = Self::default();
         for row in rows {
-            for &(index, weight) in row.weights() {
-                stencils.indices.push(index);
-                stencils.weights.push(weight);
-            }
-            stencils.offsets.push(stencils.indices.len() as u32);
+            stencils.push(row.weights().iter().copied());
         }
         stencils
+    }
+
+    pub(crate) fn with_capacity(rows: usize, terms: usize) -> Self {
+        let mut offsets = Vec::with_capacity(rows + 1);
+        offsets.push(0);
+        Self { offsets, indices: Vec::with_capacity(terms), weights: Vec::with_capacity(terms) }
+    }
+
+    /// Appends an output.
+    pub(crate) fn push(&mut self, terms: impl IntoIterator<Item = (u32, f64)>) {
+        for (index, weight) in terms {
+            self.indices.push(index);
+            self.weights.push(weight);
+        }
+        self.offsets.push(self.indices.len() as u32);
+    }
+
+    /// The outputs of both.
+    pub(crate) fn chain(mut self, other: Self) -> Self {
+        let terms = self.indices.len() as u32;
+        self.offsets.extend(other.offsets[1..].iter().map(|offset| terms + offset));
+        self.indices.extend(other.indices);
+        self.weights.extend(other.weights);
+        self
+    }
+
+    /// Input and weight of each term of an output.
+    pub(crate) fn row(&self, output: usize) -> impl ExactSizeIterator<Item = (u32, f64)> + Clone + '_ {
+        let terms = self.offsets[output] as usize..self.offsets[output + 1] as usize;
+        self.indices[terms.clone()].iter().copied().zip(self.weights[terms].iter().copied())
     }
 
     /// Number of outputs.
