@@ -7,6 +7,7 @@ use crate::mesh::{ControlMesh, Corner, Crease, CreaseMethod, MeshData, MeshError
 use crate::patch::Scheme;
 use crate::patch::gregory::gregory_points;
 use crate::topology::{Ring, Topology};
+use rustc_hash::FxBuildHasher;
 use std::collections::HashMap;
 
 /// Control points of a cap.
@@ -16,7 +17,7 @@ pub(super) const POINTS: u32 = 20;
 pub(super) struct Caps {
     scheme: Scheme,
     /// The points of caps with rings of the same shapes, as sums of the vertices in them.
-    patterns: HashMap<Pattern, Stencils>,
+    patterns: HashMap<Pattern, Stencils, FxBuildHasher>,
 }
 
 /// What the rows of a cap depend on, but for the vertices' numbers.
@@ -33,7 +34,7 @@ pub(super) type Limits = HashMap<u32, Option<Row>>;
 
 impl Caps {
     pub(super) fn new(scheme: Scheme) -> Self {
-        Self { scheme, patterns: HashMap::new() }
+        Self { scheme, patterns: HashMap::default() }
     }
 
     /// Appends the points of a quad with these half-edges as sums of the mesh's vertices. Other than in

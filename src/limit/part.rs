@@ -5,6 +5,7 @@ use super::step::{Kind, Step, child_rules};
 use crate::mesh::{Corner, Crease, MeshData};
 use crate::topology::Topology;
 use rayon::prelude::*;
+use rustc_hash::FxBuildHasher;
 use std::collections::HashMap;
 
 /// The children of some face corners as a mesh of their own, whose face i is the child of the i-th, begins there, and has the
@@ -48,7 +49,7 @@ pub(crate) fn refine_part(topology: &Topology, half_edges: &[u32]) -> (MeshData,
 struct PartRows<'s> {
     step: &'s Step<'s>,
     /// The weights of the points around, by kind and number of points.
-    masks: HashMap<(u8, usize), Vec<f64>, rustc_hash::FxBuildHasher>,
+    masks: HashMap<(u8, usize), Vec<f64>, FxBuildHasher>,
     around: Vec<u32>,
 }
 
