@@ -1,6 +1,6 @@
 //! How a plan is made: level by level, then without what nothing reads.
 
-use super::caps::{self, Caps};
+use super::caps::{self, Caps, Limits};
 use super::error::AdaptiveError;
 use super::feature::Shape;
 use super::grids::{fill, grid, is_boundary};
@@ -50,13 +50,15 @@ struct Builder {
     grids: Vec<u32>,
     refined: Vec<RefinedCell>,
     /// Refined vertices of all levels.
-    rows: Vec<Row>,
+    rows: Stencils,
     /// Where those of each level start, from level 1.
     level_starts: Vec<u32>,
     ghosts: Vec<Row>,
     /// The ghost beyond each vertex, mirroring another.
     ghost_numbers: HashMap<(u32, u32), u32>,
-    caps: Vec<Row>,
+    /// The control points of end caps.
+    cap_points: Stencils,
+    caps: Caps,
 }
 
 impl Builder {
@@ -80,11 +82,12 @@ impl Builder {
             leaves: Vec::new(),
             grids: Vec::new(),
             refined: Vec::new(),
-            rows: Vec::new(),
+            rows: Stencils::default(),
             level_starts: Vec::new(),
             ghosts: Vec::new(),
             ghost_numbers: HashMap::new(),
-            caps: Vec::new(),
+            cap_points: Stencils::default(),
+            caps: Caps::new(options.scheme),
         }
     }
 
@@ -97,7 +100,7 @@ impl Builder {
     }
 
     fn add_leaves(&mut self, level: &Level, fates: &[Fate]) -> Result<(), AdaptiveError> {
-        let mut caps = Caps::new(&level.topology, self.options.scheme);
+        let mut limits = Limits::new();
         for (face, fate) in (0..).zip(fates) {
             let Fate::Leaf(shape) = *fate else { continue };
             let cell = level.cells[face as usize];
@@ -115,7 +118,7 @@ impl Builder {
                 Shape::Irregular => LeafKind::Cap,
             };
             let points = match kind {
-                LeafKind::Cap => self.add_cap(level, half_edges, &mut caps)?,
+                LeafKind::Cap => self.add_cap(level, half_edges, &mut limits)?,
                 _ => self.add_grid(level, half_edges, boundary),
             };
             let Root { face, part, .. } = self.roots[cell.root as usize];
@@ -127,11 +130,12 @@ impl Builder {
         Ok(())
     }
 
-    fn add_cap(&mut self, level: &Level, half_edges: [u32; 4], caps: &mut Caps) -> Result<u32, AdaptiveError> {
-        let first = self.caps.len() as u32;
-        let mut rows = caps.rows(half_edges).map_err(|error| AdaptiveError::Level { level: level.number, error })?;
-        rows.iter_mut().for_each(|row| row.shift(level.first_vertex));
-        self.caps.extend(rows);
+    fn add_cap(&mut self, level: &Level, half_edges: [u32; 4], limits: &mut Limits) -> Result<u32, AdaptiveError> {
+        let Self { caps, cap_points, .. } = self;
+        let (first, terms) = (cap_points.len() as u32, cap_points.indices.len());
+        let pushed = caps.push(&level.topology, half_edges, limits, cap_points);
+        pushed.map_err(|error| AdaptiveError::Level { level: level.number, error })?;
+        cap_points.indices[terms..].iter_mut().for_each(|vertex| *vertex += level.first_vertex);
         Ok(first)
     }
 
@@ -200,7 +204,7 @@ impl Builder {
         let refined = level.refine(fates, first_vertex, child);
         let (next, rows) = refined.map_err(|error| AdaptiveError::Level { level: number, error })?;
         self.level_starts.push(self.rows.len() as u32);
-        self.rows.extend(rows);
+        self.rows = std::mem::take(&mut self.rows).chain(rows);
         self.check_vertices(self.rows.len())?;
         Ok(next)
     }
@@ -221,12 +225,13 @@ impl Builder {
             }
         };
         self.grids.iter().for_each(|&vertex| mark(&mut used, vertex));
-        for row in self.ghosts.iter().chain(&self.caps) {
+        for row in &self.ghosts {
             row.weights().iter().for_each(|&(vertex, _)| mark(&mut used, vertex));
         }
-        for (i, row) in self.rows.iter().enumerate().rev() {
-            if used[i] {
-                row.weights().iter().for_each(|&(vertex, _)| mark(&mut used, vertex));
+        self.cap_points.indices.iter().for_each(|&vertex| mark(&mut used, vertex));
+        for row in (0..self.rows.len()).rev() {
+            if used[row] {
+                self.rows.row(row).for_each(|(vertex, _)| mark(&mut used, vertex));
             }
         }
         used
@@ -244,15 +249,25 @@ impl Builder {
         let numbers: Vec<u32> = used.iter().map(count).collect();
         let kept = next;
         let number = |vertex: u32| if vertex < control { vertex } else { numbers[(vertex - control) as usize] };
-        let all = kept as usize - control as usize + self.ghosts.len() + self.caps.len();
+        let all = kept as usize - control as usize + self.ghosts.len() + self.cap_points.len();
         self.check_vertices(all)?;
 
-        let kept_rows = self.rows.iter().zip(&used).filter(|(_, used)| **used).map(|(row, _)| row);
-        let rows = collect(kept_rows.chain(&self.ghosts).chain(&self.caps), number);
+        let terms = self.rows.indices.len() + self.cap_points.indices.len();
+        let mut rows = Stencils::with_capacity(all, terms);
+        let renumber = |(vertex, weight)| (number(vertex), weight);
+        for row in (0..self.rows.len()).filter(|&row| used[row]) {
+            rows.push(self.rows.row(row).map(renumber));
+        }
+        for row in &self.ghosts {
+            rows.push(row.weights().iter().copied().map(renumber));
+        }
+        for row in 0..self.cap_points.len() {
+            rows.push(self.cap_points.row(row).map(renumber));
+        }
         let start_of = |start: u32| numbers.get(start as usize).copied().unwrap_or(kept);
         let starts: Vec<u32> = self.level_starts.iter().map(|&s| start_of(s)).chain([kept]).collect();
         let ghosts = kept..kept + self.ghosts.len() as u32;
-        let cap_points: Range<u32> = ghosts.end..ghosts.end + self.caps.len() as u32;
+        let cap_points: Range<u32> = ghosts.end..ghosts.end + self.cap_points.len() as u32;
         let in_grid = |vertex: u32| if vertex & GHOST == 0 { number(vertex) } else { ghosts.start + (vertex & !GHOST) };
         let place = |leaf: Leaf| match leaf.kind {
             LeafKind::Cap => Leaf { points: cap_points.start + leaf.points, ..leaf },
@@ -274,14 +289,4 @@ impl Builder {
             refined: self.refined,
         })
     }
-}
-
-fn collect<'r>(rows: impl Iterator<Item = &'r Row>, number: impl Fn(u32) -> u32) -> Stencils {
-    let mut stencils = Stencils { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
-    for row in rows {
-        stencils.indices.extend(row.weights().iter().map(|&(vertex, _)| number(vertex)));
-        stencils.weights.extend(row.weights().iter().map(|&(_, weight)| weight));
-        stencils.offsets.push(stencils.indices.len() as u32);
-    }
-    stencils
 }

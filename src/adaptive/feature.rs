@@ -123,6 +123,13 @@ impl Fan {
 
 /// The class of the vertex from which a half-edge starts.
 pub(super) fn classify(topology: &Topology, half_edge: u32) -> Class {
+    let data = topology.mesh().data();
+    if data.creases.is_empty() && data.corners.is_empty() && !topology.touches(topology.mesh_vertex(half_edge)) {
+        // There is one ring around the vertex.
+        if topology.rings()[topology.place(half_edge).ring as usize].is_regular() {
+            return Class::Plain;
+        }
+    }
     let fan = Fan::new(topology, half_edge);
     if fan.is_crease(topology) {
         return Class::Crease;

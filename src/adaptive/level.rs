@@ -2,8 +2,7 @@
 
 use super::feature::{Class, Reason, Shape, classify, is_constant, shape};
 use super::options::AdaptiveOptions;
-use crate::blend::Row;
-use crate::limit::refine_part;
+use crate::limit::{Stencils, refine_part};
 use crate::mesh::{ControlMesh, CreaseMethod, MeshError};
 use crate::topology::Topology;
 use std::borrow::Cow;
@@ -101,11 +100,11 @@ impl Level<'_> {
         fates: &[Fate],
         first_vertex: u32,
         child: impl Fn(u32, u32) -> Cell,
-    ) -> Result<(Level<'static>, Vec<Row>), MeshError> {
+    ) -> Result<(Level<'static>, Stencils), MeshError> {
         let topology = &*self.topology;
         let half_edges = self.half_edges_with_children(fates);
         let (data, mut rows) = refine_part(topology, &half_edges);
-        rows.iter_mut().for_each(|row| row.shift(self.first_vertex));
+        rows.indices.iter_mut().for_each(|vertex| *vertex += self.first_vertex);
         let cell = |&h: &u32| {
             let face = topology.face(h);
             let cell = child(face, h - topology.mesh().face_corners(face).start as u32);

@@ -62,16 +62,6 @@ impl Row {
         &self.weights
     }
 
-    /// The sum of what the unknowns are: of `rows` by index.
-    pub(crate) fn compose(&self, rows: &[Row]) -> Self {
-        Self::sum(self.weights.iter().map(|&(index, weight)| (weight, &rows[index as usize])))
-    }
-
-    /// Adds a number to the index of each unknown.
-    pub(crate) fn shift(&mut self, by: u32) {
-        self.weights.iter_mut().for_each(|(index, _)| *index += by);
-    }
-
     /// The weight of one unknown.
     pub fn weight(&self, index: u32) -> f64 {
         self.weights.binary_search_by_key(&index, |w| w.0).map_or(0.0, |at| self.weights[at].1)

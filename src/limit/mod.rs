@@ -5,6 +5,7 @@ mod face_varying;
 mod fan;
 mod local;
 mod masks;
+mod part;
 mod refine;
 mod sample;
 mod sharpness;
@@ -14,9 +15,9 @@ mod surface;
 
 pub(crate) use fan::{Fan, FanRows, Fans};
 pub(crate) use masks::{dart_edge, dart_frame};
+pub(crate) use part::refine_part;
 pub use refine::{Refined, refine};
 pub use sample::LimitSample;
 pub(crate) use sharpness::{EdgeProfile, LEVELS, is_semi_sharp};
 pub use stencils::Stencils;
-pub(crate) use step::refine_part;
 pub use surface::LimitSurface;

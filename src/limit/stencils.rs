@@ -17,22 +17,30 @@ pub struct Stencils {
     pub weights: Vec<f64>,
 }
 
+impl Default for Stencils {
+    fn default() -> Self {
+        Self::with_capacity(0, 0)
+    }
+}
+
 impl Stencils {
     pub(crate) fn new(rows: Vec<Row>) -> Self {
-        let mut stencils = Self { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
-        rows.iter().for_each(|row| stencils.push(row));
+        let mut stencils = Self::default();
+        for row in rows {
+            stencils.push(row.weights().iter().copied());
+        }
         stencils
     }
 
-    /// The sum of one output.
-    pub(crate) fn row(&self, output: usize) -> Row {
-        let terms = self.offsets[output] as usize..self.offsets[output + 1] as usize;
-        Row::new(self.indices[terms.clone()].iter().copied().zip(self.weights[terms].iter().copied()).collect())
+    pub(crate) fn with_capacity(rows: usize, terms: usize) -> Self {
+        let mut offsets = Vec::with_capacity(rows + 1);
+        offsets.push(0);
+        Self { offsets, indices: Vec::with_capacity(terms), weights: Vec::with_capacity(terms) }
     }
 
-    /// Adds an output.
-    pub(crate) fn push(&mut self, row: &Row) {
-        for &(index, weight) in row.weights() {
+    /// Appends an output.
+    pub(crate) fn push(&mut self, terms: impl IntoIterator<Item = (u32, f64)>) {
+        for (index, weight) in terms {
             self.indices.push(index);
             self.weights.push(weight);
         }
@@ -45,6 +53,21 @@ impl Stencils {
         self.offsets.truncate(outputs + 1);
         self.indices.truncate(terms);
         self.weights.truncate(terms);
+    }
+
+    /// The outputs of both.
+    pub(crate) fn chain(mut self, other: Self) -> Self {
+        let terms = self.indices.len() as u32;
+        self.offsets.extend(other.offsets[1..].iter().map(|offset| terms + offset));
+        self.indices.extend(other.indices);
+        self.weights.extend(other.weights);
+        self
+    }
+
+    /// Input and weight of each term of an output.
+    pub(crate) fn row(&self, output: usize) -> impl ExactSizeIterator<Item = (u32, f64)> + Clone + '_ {
+        let terms = self.offsets[output] as usize..self.offsets[output + 1] as usize;
+        self.indices[terms.clone()].iter().copied().zip(self.weights[terms].iter().copied())
     }
 
     /// Number of outputs.

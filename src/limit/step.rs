@@ -28,6 +28,14 @@ pub(super) fn refine_vertices(topology: &Topology) -> (MeshData, Stencils) {
     (refined, stencils)
 }
 
+/// What a vertex of the refined mesh was made of: a vertex, an edge, a face of the coarse one.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Kind {
+    Vertex,
+    Edge(u32),
+    Face(u32),
+}
+
 /// The rule at a vertex, by what is sharp there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Rule {
@@ -48,45 +56,8 @@ struct SharpEnd {
     child: f32,
 }
 
-/// The children of some face corners as a mesh of their own, whose face i is the child of the i-th, begins there, and has the
-/// parent's order of corners; and its vertices as sums of the coarse mesh's. Positions are left at zero.
-///
-/// At the rim of the part tags may be missing, and rows are right as far as the coarse mesh is.
-pub(crate) fn refine_part(topology: &Topology, half_edges: &[u32]) -> (MeshData, Vec<Row>) {
-    let step = Step::new(topology);
-    let mut numbers = vec![u32::MAX; step.vertex_count()];
-    // Each vertex in the numbering of the whole refined mesh, and a corner that has a child with it.
-    let mut vertices = Vec::new();
-    let mut face_vertices = Vec::with_capacity(4 * half_edges.len());
-    for &h in half_edges {
-        for vertex in step.child(h) {
-            let number = &mut numbers[vertex as usize];
-            if *number == u32::MAX {
-                *number = vertices.len() as u32;
-                vertices.push((vertex, h));
-            }
-            face_vertices.push(*number);
-        }
-    }
-    let rows = vertices.par_iter().with_min_len(MIN_LEN).map(|&(vertex, h)| step.row(vertex, h)).collect();
-    let number = |vertex: u32| numbers[vertex as usize];
-    let creases = half_edges.iter().flat_map(|&h| step.creases_at(h));
-    let creases = creases.map(|crease| Crease { vertices: crease.vertices.map(number), ..crease }).collect();
-    let corners = step.child_corners().into_iter().filter(|corner| number(corner.vertex) != u32::MAX);
-    let corners = corners.map(|corner| Corner { vertex: number(corner.vertex), ..corner }).collect();
-    let data = MeshData {
-        positions: vec![[0.0; 3]; vertices.len()],
-        face_sizes: vec![4; half_edges.len()],
-        face_vertices,
-        creases,
-        corners,
-        ..child_rules(topology)
-    };
-    (data, rows)
-}
-
 /// The rules of a refined mesh.
-fn child_rules(topology: &Topology) -> MeshData {
+pub(super) fn child_rules(topology: &Topology) -> MeshData {
     let data = topology.mesh().data();
     MeshData {
         boundary: data.boundary,
@@ -97,8 +68,8 @@ fn child_rules(topology: &Topology) -> MeshData {
     }
 }
 
-struct Step<'t> {
-    topology: &'t Topology,
+pub(super) struct Step<'t> {
+    pub(super) topology: &'t Topology,
     /// The edge of each half-edge.
     edges: Vec<u32>,
     /// A half-edge of each edge.
@@ -110,7 +81,7 @@ struct Step<'t> {
 }
 
 impl<'t> Step<'t> {
-    fn new(topology: &'t Topology) -> Self {
+    pub(super) fn new(topology: &'t Topology) -> Self {
         let corners = topology.mesh().corner_count() as u32;
         let mut edges = vec![0; corners as usize];
         let mut edge_half_edges = Vec::new();
@@ -131,28 +102,47 @@ impl<'t> Step<'t> {
     }
 
     /// Number of vertices of the refined mesh.
-    fn vertex_count(&self) -> usize {
+    pub(super) fn vertex_count(&self) -> usize {
         self.topology.vertex_count() + self.edge_half_edges.len() + self.topology.mesh().face_count()
     }
 
     /// The child of a face corner.
-    fn child(&self, h: u32) -> [u32; 4] {
+    pub(super) fn child(&self, h: u32) -> [u32; 4] {
         [self.topology.vertex(h), self.edge_vertex(h), self.face_vertex(h), self.edge_vertex(self.topology.prev(h))]
     }
 
     /// The row of a vertex of the child of a face corner.
-    fn row(&self, vertex: u32, h: u32) -> Row {
-        let first_edge = self.topology.vertex_count() as u32;
-        let first_face = first_edge + self.edge_half_edges.len() as u32;
-        match vertex {
-            _ if vertex < first_edge => self.vertex_row(h),
-            _ if vertex < first_face => self.edge_row(vertex - first_edge),
-            _ => self.face_row(vertex - first_face),
+    pub(super) fn row(&self, vertex: u32, h: u32) -> Row {
+        match self.kind(vertex) {
+            Kind::Vertex => self.vertex_row(h),
+            Kind::Edge(edge) => self.edge_row(edge),
+            Kind::Face(face) => self.face_row(face),
         }
     }
 
+    /// What a vertex of the refined mesh was made of.
+    pub(super) fn kind(&self, vertex: u32) -> Kind {
+        let first_edge = self.topology.vertex_count() as u32;
+        let first_face = first_edge + self.edge_half_edges.len() as u32;
+        match vertex {
+            _ if vertex < first_edge => Kind::Vertex,
+            _ if vertex < first_face => Kind::Edge(vertex - first_edge),
+            _ => Kind::Face(vertex - first_face),
+        }
+    }
+
+    /// Whether nothing at a manifold vertex is sharp.
+    pub(super) fn is_smooth(&self, vertex: u32) -> bool {
+        !self.sharp_ends.contains_key(&vertex) && !self.vertex_sharpness.contains_key(&vertex)
+    }
+
+    /// A half-edge of an edge.
+    pub(super) fn half_edge(&self, edge: u32) -> u32 {
+        self.edge_half_edges[edge as usize]
+    }
+
     /// The creases along the two edges of a face corner's child that start from there.
-    fn creases_at(&self, h: u32) -> impl Iterator<Item = Crease> {
+    pub(super) fn creases_at(&self, h: u32) -> impl Iterator<Item = Crease> {
         let vertex = self.topology.vertex(h);
         [h, self.topology.prev(h)].into_iter().filter_map(move |edge| {
             // The map knows what is sharp; a boundary edge is sharp without a tag.
@@ -162,7 +152,7 @@ impl<'t> Step<'t> {
         })
     }
 
-    fn edge_vertex(&self, h: u32) -> u32 {
+    pub(super) fn edge_vertex(&self, h: u32) -> u32 {
         self.topology.vertex_count() as u32 + self.edges[h as usize]
     }
 
@@ -343,7 +333,7 @@ impl<'t> Step<'t> {
         creases
     }
 
-    fn child_corners(&self) -> Vec<Corner> {
+    pub(super) fn child_corners(&self) -> Vec<Corner> {
         // In the refined mesh touching fans are apart: from now on a tag keeps them together.
         let sharpness = |vertex| decrement(self.topology.vertex_sharpness(self.topology.source(vertex)));
         let vertices =

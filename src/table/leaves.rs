@@ -107,13 +107,13 @@ fn keep_caps(plan: &mut adaptive::Plan) {
         .into_par_iter()
         .step_by(points)
         .map(|cap| {
-            let rows: Vec<Row> = (cap..cap + points).map(|row| plan.rows.row(row)).collect();
+            let rows: Vec<Row> = (cap..cap + points).map(|row| Row::new(plan.rows.row(row).collect())).collect();
             let owned = |k| Scheme::Gregory.corner_slots(kind, k).into_iter().map(|slot| rows[slot].clone());
             (0..4).flat_map(|k| Scheme::Gregory.kept(kind, &owned(k).collect::<Vec<_>>())).collect()
         })
         .collect();
     plan.rows.truncate(first);
-    rows.into_iter().flatten().for_each(|row| plan.rows.push(&row));
+    rows.into_iter().flatten().for_each(|row| plan.rows.push(row.weights().iter().copied()));
 }
 
 /// Who makes what patches share.

@@ -112,7 +112,11 @@ fn samples_are_those_of_reference_surfaces() {
 }
 
 /// The vertices of irregular faces by face and place.
-fn vertices(headless: &Headless, mesh: &ControlMesh, options: &ModelOptions) -> HashMap<(u32, [u32; 2]), [[f32; 3]; 2]> {
+fn vertices(
+    headless: &Headless,
+    mesh: &ControlMesh,
+    options: &ModelOptions,
+) -> HashMap<(u32, [u32; 2]), [[f32; 3]; 2]> {
     const SEGMENTS: f32 = 8.0;
     let captured = Captured::new(headless, mesh, options).expect("a model");
     let patches = captured.tables().plan().patches();
@@ -140,7 +144,10 @@ fn every_evaluation_draws_the_same_leaves() {
                 let same = |a: [f32; 3], b: [f32; 3]| Vec3::from(a).distance(Vec3::from(b)) < 1e-5;
                 for (place, [position, normal]) in &vertices {
                     let [p, n] = expected[place];
-                    assert!(same(*position, p), "{name} {evaluation:?} {construction:?} {place:?}: {position:?}, not {p:?}");
+                    assert!(
+                        same(*position, p),
+                        "{name} {evaluation:?} {construction:?} {place:?}: {position:?}, not {p:?}"
+                    );
                     let [normal, n] = [*normal, n].map(|n| Vec3::from(n).normalize_or_zero().to_array());
                     assert!(
                         Vec3::from(normal).distance(Vec3::from(n)) < 1e-3,

@@ -122,7 +122,8 @@ fn adaptive_surfaces_are_watertight() {
         let construction = Construction::ALL[i % 3];
         for (depth, displaced) in [(0, true), (1, false), (3, false), (3, true)] {
             let adaptive = Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });
-            let options = ModelOptions { construction, spacing: SPACINGS[i / 3 % 3], adaptive, ..ModelOptions::default() };
+            let options =
+                ModelOptions { construction, spacing: SPACINGS[i / 3 % 3], adaptive, ..ModelOptions::default() };
             let tally = tally(&headless, &mesh, &options, displaced.then_some(&texture), i as u64);
             assert!(tally.is_watertight(), "{name} depth {depth} displaced {displaced} {construction:?}: {tally:?}");
             samples += tally.samples;
