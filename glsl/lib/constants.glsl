@@ -73,12 +73,12 @@
 #define LEAF_REGULAR 0u
 #define LEAF_CAP 1u
 #define LEAF_CREASE 2u
-// Words of a face; who owns an edge or a corner: the patch from OWNER_SHIFT on, its edge or corner, and whether normals differ there;
-// or what its patch makes of its corners.
-#define FACE_WORDS 9u
-#define OWNER_SHIFT 3u
-#define OWNER_SHARP_BIT 4u
-#define OWNER_COARSE 0xffffffffu
+// Words of a face, and the first of those that say who owns the normals. An owner is a patch from OWNER_SHIFT on, and its edge or
+// corner; or none, where a neighbour is not refined.
+#define FACE_WORDS 17u
+#define NORMAL_OWNERS 9u
+#define OWNER_SHIFT 2u
+#define OWNER_NONE 0xffffffffu
 
 // What is captured of a patch, and of a vertex.
 #define CONTROL_POINT_WORDS 96u

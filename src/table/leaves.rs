@@ -4,7 +4,7 @@ use super::plan::PatchPlan;
 use crate::adaptive::{self, LEAF, LeafKind};
 use crate::blend::Row;
 use crate::constants::{
-    FACE_WORDS, LEAF_BIT, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, MAX_DEPTH, OWNER_COARSE, OWNER_SHARP_BIT,
+    FACE_WORDS, LEAF_BIT, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, MAX_DEPTH, NORMAL_OWNERS, OWNER_NONE,
     OWNER_SHIFT,
 };
 use crate::mesh::SHARPNESS_INFINITE;
@@ -18,9 +18,9 @@ const _: () = assert!(MAX_DEPTH == adaptive::MAX_DEPTH && LEAF_BIT == LEAF);
 /// The faces of a plan of adaptive subdivision, as shaders read them. GLSL twin: `glsl/lib/evaluate/leaves.glsl`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeafTable {
-    /// For each irregular quad, in the order of the patches: its root; the owners of its edges, from corner k to the next; the
-    /// owners of its corners. An owner is a patch from bit `OWNER_SHIFT` on, `OWNER_SHARP_BIT` if each face has a normal of its own
-    /// there, and the owner's edge or corner; or `OWNER_COARSE`, where a neighbour is not refined.
+    /// For each irregular quad, in the order of the patches: its root; the owners of the positions on its edges, from corner k to the
+    /// next, and at its corners; likewise the owners of the normals, which differ where infinitely sharp edges part faces. An owner
+    /// is a patch from bit `OWNER_SHIFT` on, and its edge or corner; or `OWNER_NONE`, where a neighbour is not refined.
     pub faces: Vec<[u32; FACE_WORDS as usize]>,
     /// For each leaf, its kind; a crease's sharpness or the first control point of an end cap; then its 16 control points, row by row
     /// along v.
@@ -42,9 +42,9 @@ impl LeafTable {
             let first = topology.mesh().face_corners(patch.face).start as u32;
             let mut words = [0; FACE_WORDS as usize];
             words[0] = plan.face_roots[patch.face as usize];
-            for k in 0..4 {
-                words[1 + k as usize] = owners.edge(first + k);
-                words[5 + k as usize] = owners.corner(first + k);
+            for (k, h) in (first..first + 4).enumerate() {
+                [words[1 + k], words[NORMAL_OWNERS as usize + k]] = owners.edge(h);
+                [words[5 + k], words[NORMAL_OWNERS as usize + 4 + k]] = owners.corner(h);
             }
             words
         });
@@ -140,38 +140,57 @@ impl<'t> Owners<'t> {
         Self { topology, refined, coarse }
     }
 
-    fn word(&self, h: u32, is_sharp: bool) -> u32 {
+    /// The owner that a half-edge, or its start, is of.
+    fn word(&self, h: u32) -> u32 {
         let face = self.topology.face(h);
         let k = h - self.topology.mesh().face_corners(face).start as u32;
-        let sharp = if is_sharp { OWNER_SHARP_BIT } else { 0 };
-        self.refined[face as usize] << OWNER_SHIFT | sharp | k
+        self.refined[face as usize] << OWNER_SHIFT | k
+    }
+
+    /// The first of some half-edges, in the order of their patches.
+    fn first(&self, half_edges: impl IntoIterator<Item = u32>) -> Option<u32> {
+        half_edges.into_iter().min_by_key(|&h| (self.refined[self.topology.face(h) as usize], h))
     }
 
     fn is_sharp(&self, h: u32) -> bool {
         self.topology.sharpness(h) >= SHARPNESS_INFINITE
     }
 
-    fn edge(&self, h: u32) -> u32 {
-        let face = |h: u32| self.topology.face(h) as usize;
-        match self.topology.twin(h) {
-            Some(twin) if self.coarse[face(twin)] => OWNER_COARSE,
-            Some(twin) if (self.refined[face(twin)], twin) < (self.refined[face(h)], h) => {
-                self.word(twin, self.is_sharp(h))
-            }
-            _ => self.word(h, false),
-        }
+    fn is_coarse(&self, h: u32) -> bool {
+        self.coarse[self.topology.face(h) as usize]
     }
 
-    fn corner(&self, h: u32) -> u32 {
-        let (fan, _) = self.topology.fan(h);
-        let face = |h: u32| self.topology.face(h) as usize;
-        if fan.iter().any(|&h| self.coarse[face(h)]) {
-            return OWNER_COARSE;
+    /// The owners of position and normal along the edge of a half-edge.
+    fn edge(&self, h: u32) -> [u32; 2] {
+        let twin = self.topology.twin(h);
+        if twin.is_some_and(|twin| self.is_coarse(twin)) {
+            return [OWNER_NONE; 2];
         }
-        let inside = |&h: &u32| self.topology.twin(h).is_some();
-        let is_sharp = self.topology.vertex_sharpness(self.topology.mesh_vertex(h)) >= SHARPNESS_INFINITE
-            || fan.iter().filter(|h| inside(h)).any(|&h| self.is_sharp(h));
-        let owner = fan.iter().copied().min_by_key(|&h| (self.refined[face(h)], h)).unwrap_or(h);
-        self.word(owner, is_sharp)
+        let drawn = [h].into_iter().chain(twin.filter(|&twin| self.refined[self.topology.face(twin) as usize] != NONE));
+        let owner = self.first(drawn).unwrap_or(h);
+        [owner, if self.is_sharp(h) { h } else { owner }].map(|h| self.word(h))
+    }
+
+    /// The owners of position and normal where a half-edge starts.
+    fn corner(&self, h: u32) -> [u32; 2] {
+        let (fan, _) = self.topology.fan(h);
+        if fan.iter().any(|&h| self.is_coarse(h)) {
+            return [OWNER_NONE; 2];
+        }
+        let drawn = |h: &u32| self.refined[self.topology.face(*h) as usize] != NONE;
+        let owner = self.first(fan.iter().copied().filter(drawn)).unwrap_or(h);
+        // The faces on the same side of all sharp edges. Half-edges of a fan follow each other around the vertex.
+        let start = fan.iter().position(|&h| self.is_sharp(h)).unwrap_or(0);
+        let around = (0..fan.len()).map(|i| fan[(start + i) % fan.len()]);
+        let mut sides: Vec<Vec<u32>> = vec![vec![]];
+        for each in around {
+            if self.is_sharp(each) && !sides[0].is_empty() {
+                sides.push(vec![]);
+            }
+            sides.last_mut().expect("one at least").push(each);
+        }
+        let own = sides.into_iter().find(|side| side.contains(&h)).unwrap_or_default();
+        let of_normal = self.first(own.into_iter().filter(drawn)).unwrap_or(h);
+        [owner, of_normal].map(|h| self.word(h))
     }
 }

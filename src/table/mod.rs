@@ -36,7 +36,7 @@ pub use model::{ModelTables, TableBytes};
 pub use options::{Construction, Evaluation, TableOptions};
 pub use patch_id::{FaceOrigin, PatchId};
 pub use plan::{Patch, PatchGroup, PatchPlan};
-use prepare::prepare_adaptive;
+pub(crate) use prepare::prepare_for;
 pub use prepare::{Notice, Prepared, prepare, prepare_patches, prepare_quads};
 pub use rings::RingTable;
 pub(crate) use shared::{SHARED_WORDS, SHARP_EDGE_BIT};

@@ -3,9 +3,8 @@
 use super::shared::SHARED_WORDS;
 use super::{
     Construction, EdgeTable, Evaluation, FaceOrigin, LeafTable, Notice, PatchPlan, RingTable, SharedTable, Sharing,
-    StencilTable, SubdivisionTable, TableError, TableOptions, bytes, prepare_adaptive, prepare_patches, prepare_quads,
+    StencilTable, SubdivisionTable, TableError, TableOptions, bytes, prepare_for,
 };
-use crate::adaptive::AdaptiveOptions;
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
 use crate::topology::PatchKind;
@@ -55,23 +54,8 @@ impl ModelTables {
     /// scheme whose patches share no edges.
     pub fn new(mesh: &ControlMesh, options: impl Into<TableOptions>) -> Result<Self, TableError> {
         let options = options.into();
-        let TableOptions { scheme, fallback, refine, .. } = options;
         let subdivides = options.evaluation == Evaluation::Subdivision;
-        let adaptive = options.adaptive.map(|adaptive| AdaptiveOptions { scheme, ..adaptive });
-        let (prepared, mut plan, adaptive) = match adaptive {
-            Some(_) if subdivides => return Err(TableError::NotAdaptive { evaluation: options.evaluation }),
-            Some(adaptive) => {
-                let (prepared, plan, adaptive) = prepare_adaptive(mesh, &adaptive, refine)?;
-                (prepared, plan, Some(adaptive))
-            }
-            None => {
-                let (prepared, plan) = match subdivides {
-                    true => prepare_quads(mesh, refine)?,
-                    false => prepare_patches(mesh, scheme, fallback, refine)?,
-                };
-                (prepared, plan, None)
-            }
-        };
+        let (prepared, mut plan, adaptive) = prepare_for(mesh, &options)?;
         let topology = prepared.topology();
         let fans = subdivides.then(|| SubdivisionTable::new(topology, &plan)).transpose()?;
         let converts = options.evaluation == Evaluation::GeometryTwoPass;
@@ -88,8 +72,8 @@ impl ModelTables {
             (Sharing::Normals, Some(edges)) => Some(SharedTable::new(topology, edges, &plan)),
             _ => None,
         };
-        if shared.is_some() && !scheme.is_watertight() {
-            return Err(TableError::NothingShared { scheme });
+        if shared.is_some() && !options.scheme.is_watertight() {
+            return Err(TableError::NothingShared { scheme: options.scheme });
         }
         let leaves = adaptive.map(|adaptive| LeafTable::new(topology, &plan, adaptive));
         let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(topology, &plan));

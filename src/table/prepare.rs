@@ -5,6 +5,7 @@ use super::cells::Cells;
 use super::edges::EdgeTable;
 use super::error::TableError;
 use super::leaves::is_refined;
+use super::options::{Evaluation, TableOptions};
 use super::patch_id::MAX_LEVEL;
 use super::plan::PatchPlan;
 use crate::adaptive::{self, AdaptiveOptions};
@@ -190,11 +191,31 @@ pub fn prepare_patches(
     Ok((prepared, plan))
 }
 
+/// Prepares `mesh` for the tables of some options, and plans its patches and its adaptive subdivision.
+///
+/// # Errors
+/// Those of [`prepare_patches`], [`prepare_quads`] and [`adaptive::Plan::new`].
+pub(crate) fn prepare_for(
+    mesh: &ControlMesh,
+    options: &TableOptions,
+) -> Result<(Prepared, PatchPlan, Option<adaptive::Plan>), TableError> {
+    let &TableOptions { scheme, fallback, evaluation, refine, .. } = options;
+    match (options.adaptive, evaluation) {
+        (Some(_), Evaluation::Subdivision) => Err(TableError::NotAdaptive { evaluation }),
+        (Some(adaptive), _) => {
+            let (prepared, patches, plan) = prepare_adaptive(mesh, &AdaptiveOptions { scheme, ..adaptive }, refine)?;
+            Ok((prepared, patches, Some(plan)))
+        }
+        (None, Evaluation::Subdivision) => prepare_quads(mesh, refine).map(|(prepared, plan)| (prepared, plan, None)),
+        (None, _) => prepare_patches(mesh, scheme, fallback, refine).map(|(prepared, plan)| (prepared, plan, None)),
+    }
+}
+
 /// Prepares `mesh` for adaptive subdivision, and plans it: as [`prepare()`], but every face becomes a quad.
 ///
 /// # Errors
 /// A refined mesh that cannot be addressed; those of [`adaptive::Plan::new`].
-pub(super) fn prepare_adaptive(
+fn prepare_adaptive(
     mesh: &ControlMesh,
     options: &AdaptiveOptions,
     levels: u32,

@@ -52,7 +52,7 @@ fn tally(
         None => Captured::new(headless, mesh, &options),
     };
     let captured = captured.expect("a model");
-    let seams = Seams::new(mesh, options.refine, captured.tables()).expect("small");
+    let seams = Seams::new(mesh, captured.tables()).expect("small");
     let edges = captured.tables().edges().expect("asked for").vertices.len();
     let displacement = if texture.is_some() { [DISPLACEMENT * diagonal(mesh), 0.0] } else { [0.0; 2] };
     let mut sum = Tally::default();
@@ -158,7 +158,7 @@ fn lattices_are_watertight() {
                 false => Captured::new(&headless, &mesh, &options),
             };
             let captured = captured.expect("a model");
-            let seams = Seams::new(&mesh, 0, captured.tables()).expect("small");
+            let seams = Seams::new(&mesh, captured.tables()).expect("small");
             let edges = captured.tables().edges().expect("asked for").vertices.len();
             let displacement = if displaced { [DISPLACEMENT * diagonal(&mesh), 0.0] } else { [0.0; 2] };
             let edge_factors = random_factors(edges, 12.0, 3);
@@ -330,7 +330,7 @@ fn tally_with(headless: &Headless, texture: &Texture, shared_normals: bool, disp
         false => Captured::new(headless, &mesh, &options),
     };
     let captured = captured.expect("a model").with_shaders(shaders.collect());
-    let seams = Seams::new(&mesh, 0, captured.tables()).expect("small");
+    let seams = Seams::new(&mesh, captured.tables()).expect("small");
     let displacement = if displaced { [DISPLACEMENT * diagonal(&mesh), 0.0] } else { [0.0; 2] };
     let draw = CaptureDraw { displacement, ..CaptureDraw::new(7.0) };
     compare(&captured, &seams, &draw, shared_normals).expect("a capture")

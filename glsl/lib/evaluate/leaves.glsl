@@ -130,12 +130,6 @@ Surface evaluate_face(uint patch_number, vec2 at) {
     return evaluate_leaf(node & ~LEAF_BIT, at);
 }
 
-// Where a point of an edge, or a corner, is on the side that owns it: edge or corner k, `way` from its first corner.
-vec2 place_on_edge(uint k, float way) {
-    precise float left = 1.0 - way;
-    return k == 0u ? vec2(way, 0.0) : k == 1u ? vec2(1.0, way) : k == 2u ? vec2(left, 1.0) : vec2(0.0, left);
-}
-
 // Edge 0 to 3, or corner 4 to 7, on which a point lies.
 uint edge_or_corner(bvec4 on) {
     bool corner = (on.x || on.z) && (on.y || on.w);
@@ -143,14 +137,30 @@ uint edge_or_corner(bvec4 on) {
     return corner ? 4u + (on.x ? (on.y ? 1u : 0u) : on.y ? 2u : 3u) : edge;
 }
 
-// The owner of an edge or a corner of the patch. Rust twin: `LeafTable::faces` in src/table/leaves.rs.
+// Who owns the positions on an edge or at a corner of the patch. Rust twin: `LeafTable::faces` in src/table/leaves.rs.
 uint owner_of(uint edge_or_corner) {
     return table_words[tables.faces + FACE_WORDS * evaluated_patch + 1u + edge_or_corner];
 }
 
+// Who owns the normals.
+uint normal_owner_of(uint edge_or_corner) {
+    return table_words[tables.faces + FACE_WORDS * evaluated_patch + NORMAL_OWNERS + edge_or_corner];
+}
+
+// A point of an edge or a corner, by the leaves of the owner: on an edge, `back` from the end of the patch's own.
+Surface evaluate_owned(uint owner, uint edge_or_corner, vec2 at, float back) {
+    uint k = owner & 3u, patch_number = owner >> OWNER_SHIFT;
+    bool is_own = patch_number == evaluated_patch && k == (edge_or_corner & 3u);
+    // The other side goes the other way.
+    float way = edge_or_corner < 4u ? back : 0.0;
+    precise float left = 1.0 - way;
+    vec2 place = k == 0u ? vec2(way, 0.0) : k == 1u ? vec2(1.0, way) : k == 2u ? vec2(left, 1.0) : vec2(0.0, left);
+    return evaluate_face(patch_number, is_own ? at : place);
+}
+
 // Whether leaves make a point of an edge or a corner.
 bool is_of_leaves(bvec4 on) {
-    return ADAPTIVE && owner_of(edge_or_corner(on)) != OWNER_COARSE;
+    return ADAPTIVE && owner_of(edge_or_corner(on)) != OWNER_NONE;
 }
 
 #endif

@@ -15,29 +15,26 @@ Surface evaluate_gregory_quad(float u, float v) {
 
 #include "evaluate/leaves.glsl"
 
-// A face that is refined: its leaves inside; on edges and at corners those of the face that owns them, with its normal as `facing`.
-// Where a neighbour is not refined, what both make of their corners.
+// A face that is refined: its leaves inside; on edges and at corners those of the owner, with its normal as `facing`. Where a
+// neighbour is not refined, what both make of their corners.
 Surface evaluate_leaves(vec3 at) {
     bvec4 on = bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
     if (!any(on)) {
         return evaluate_face(evaluated_patch, at.xy);
     }
-    uint own = edge_or_corner(on), owner = owner_of(own);
-    if (owner == OWNER_COARSE) {
+    uint place = edge_or_corner(on), owner = owner_of(place);
+    if (owner == OWNER_NONE) {
         return evaluate_gregory_quad(at.x, at.y);
     }
     precise float left = 1.0 - at.x, up = 1.0 - at.y;
-    float way = on.x ? at.x : on.y ? at.y : on.z ? left : up;
-    // The other side goes the other way.
-    precise float back = 1.0 - way;
-    uint k = owner & 3u, patch_number = owner >> OWNER_SHIFT;
-    bool is_own = patch_number == evaluated_patch && k == (own & 3u);
-    Surface surface = evaluate_face(patch_number, is_own ? at.xy : place_on_edge(k, own < 4u ? back : 0.0));
+    float back = on.x ? left : on.y ? up : on.z ? at.x : at.y;
+    Surface surface = evaluate_owned(owner, place, at.xy, back);
     surface.facing = unit_normal(surface.du, surface.dv, vec3(0.0));
-    if (!is_own && (owner & OWNER_SHARP_BIT) != 0u) {
-        Surface of_own = evaluate_face(evaluated_patch, at.xy);
-        surface.du = of_own.du;
-        surface.dv = of_own.dv;
+    uint of_normal = normal_owner_of(place);
+    if (of_normal != owner) {
+        Surface side = evaluate_owned(of_normal, place, at.xy, back);
+        surface.du = side.du;
+        surface.dv = side.dv;
     }
     return surface;
 }
