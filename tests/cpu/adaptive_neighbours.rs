@@ -192,7 +192,7 @@ fn check_rows(plan: &Plan, mesh: &ControlMesh) {
     assert!(read[plan.control_vertices as usize..].iter().all(|&read| read), "each vertex is read");
     let mut end = plan.control_vertices;
     let mut below = 0..plan.control_vertices;
-    for range in plan.levels.iter().cloned().chain([plan.ghosts.start..plan.cap_points.end]) {
+    for range in plan.steps() {
         assert_eq!(range.start, end);
         end = range.end;
         let is_level = range.end <= plan.ghosts.start;
@@ -201,10 +201,15 @@ fn check_rows(plan: &Plan, mesh: &ControlMesh) {
             let terms = plan.rows.offsets[row] as usize..plan.rows.offsets[row + 1] as usize;
             let sum: f64 = plan.rows.weights[terms.clone()].iter().sum();
             assert!((sum - 1.0).abs() < 1e-13, "{sum}");
-            let lower = plan.rows.indices[terms].iter();
-            assert!(lower.clone().all(|&v| if is_level { below.contains(&v) } else { v < plan.ghosts.start }));
+            let is_readable = |&v: &u32| match is_level {
+                true => below.contains(&v) || plan.centres.contains(&v),
+                false => v < range.start && !plan.ghosts.contains(&v),
+            };
+            assert!(plan.rows.indices[terms].iter().all(is_readable));
         }
-        below = range;
+        if range != plan.centres {
+            below = range;
+        }
     }
     assert_eq!(end as usize, plan.vertex_count());
     let positions = positions(mesh);
