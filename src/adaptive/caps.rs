@@ -9,6 +9,7 @@ use crate::patch::gregory::gregory_points;
 use crate::topology::{Place, Topology};
 use rustc_hash::FxBuildHasher;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// Control points of a cap.
 pub(super) const POINTS: u32 = 20;
@@ -24,6 +25,7 @@ pub(super) struct Caps {
     scheme: Scheme,
     /// The points of caps with rings of the same shapes, as sums of the vertices in them.
     patterns: HashMap<Pattern, Stencils, FxBuildHasher>,
+    limits: HashMap<Alone, Row, FxBuildHasher>,
 }
 
 /// What the rows of a cap depend on, but for the vertices' numbers.
@@ -44,7 +46,7 @@ pub(super) struct Around<'t> {
     pub centres: &'t HashMap<u32, u32>,
 }
 
-/// What was found around a level's caps.
+/// What was found around the caps of a level.
 #[derive(Default)]
 pub(super) struct Known {
     /// Whether masks tell the limit, by vertex.
@@ -55,7 +57,7 @@ pub(super) struct Known {
 
 impl Caps {
     pub(super) fn new(scheme: Scheme) -> Self {
-        Self { scheme, patterns: HashMap::default() }
+        Self { scheme, patterns: HashMap::default(), limits: HashMap::default() }
     }
 
     /// Appends the points of a quad with these half-edges. Other than in [`Scheme::control_points`], faces around it may have
@@ -100,8 +102,31 @@ impl Caps {
         Ok(())
     }
 
+    /// The limit of the vertex from which a half-edge starts, which masks do not tell.
+    fn limit(&mut self, around: &Around, h: u32) -> Result<Option<Row>, MeshError> {
+        if around.topology.mesh().data().crease_method == CreaseMethod::Chaikin {
+            // What is sharp beyond the faces around the vertex counts, too.
+            return Ok(None);
+        }
+        let (alone, vertices) = Alone::new(around, h);
+        let limit = match self.limits.entry(alone) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(unknown) => {
+                let limit = unknown.key().limit(around.topology)?;
+                unknown.insert(limit)
+            }
+        };
+        Ok(Some(Row::new(limit.weights().iter().map(|&(number, w)| (vertices[number as usize], w)).collect())))
+    }
+
     /// Makes the ring around the vertex from which a half-edge starts.
-    fn find_ring(&self, around: &Around, h: u32, known: &mut Known, frames: &mut Vec<Row>) -> Result<(), MeshError> {
+    fn find_ring(
+        &mut self,
+        around: &Around,
+        h: u32,
+        known: &mut Known,
+        frames: &mut Vec<Row>,
+    ) -> Result<(), MeshError> {
         let topology = around.topology;
         let number = topology.place(h).ring;
         if known.rings.contains_key(&number) {
@@ -111,7 +136,7 @@ impl Caps {
         let values = RingValues::collect(topology, ring, |h| around.unit(h), |h| around.opposite(h));
         let mut frame = self.scheme.frame(&values);
         if !known.is_settled(topology, h)
-            && let Some(limit) = limit_of_fan(around, h)?
+            && let Some(limit) = self.limit(around, h)?
         {
             frame.p = limit;
         }
@@ -218,65 +243,76 @@ impl Pattern {
     }
 }
 
-/// Refines the faces around a vertex until nothing there is of finite sharpness: then masks tell its limit.
-fn limit_of_fan(around: &Around, h: u32) -> Result<Option<Row>, MeshError> {
-    let topology = around.topology;
-    if topology.mesh().data().crease_method == CreaseMethod::Chaikin {
-        // What is sharp beyond the faces around the vertex counts, too.
-        return Ok(None);
-    }
-    let (mut data, mut rows) = fan_alone(around, h);
-    let mut steps = 0;
-    loop {
-        // Each face begins at the vertex.
-        let starts = data.face_sizes.iter().scan(0, |start, size| Some(std::mem::replace(start, *start + size)));
-        let starts: Vec<u32> = starts.collect();
-        let topology = Topology::new(&ControlMesh::new(data)?);
-        if steps > 0 && !has_finite_sharpness(&topology, 0) {
-            let ring = &topology.rings()[topology.place(0).ring as usize];
-            let values = RingValues::new(&topology, ring, |v| rows[v as usize].clone());
-            let dart = dart_edge(&topology, ring);
-            return Ok(Some(dart.map_or_else(|| values.frame(), |sharp| dart_frame(&values, sharp)).p));
-        }
-        let part = refine_part(&topology, &starts);
-        let coarse = std::mem::take(&mut rows);
-        for row in 0..part.rows.len() {
-            // Centres, numbered after the coarse vertices, come first.
-            let value =
-                |vertex: u32| coarse.get(vertex as usize).unwrap_or_else(|| &rows[vertex as usize - coarse.len()]);
-            rows.push(Row::sum(part.rows.row(row).map(|(vertex, weight)| (weight, value(vertex)))));
-        }
-        data = part.data;
-        steps += 1;
-    }
+/// The faces around a vertex as a mesh of their own, in which each begins there: all that the vertex's limit depends on, by
+/// the uniform method.
+#[derive(PartialEq, Eq, Hash)]
+struct Alone {
+    face_sizes: Vec<u32>,
+    face_vertices: Vec<u32>,
+    /// The bits of the sharpness of the vertex, and of each edge from it that has faces on both sides, with its other end.
+    vertex_sharpness: u32,
+    edges: Vec<(u32, u32)>,
 }
 
-/// The faces around the vertex from which a half-edge starts as a mesh of their own, in which each begins there, and its
-/// vertices as those of the mesh.
-fn fan_alone(around: &Around, h: u32) -> (MeshData, Vec<Row>) {
-    let topology = around.topology;
-    let (mesh, fan) = (topology.mesh(), topology.fan(h).0);
-    let mut numbers = HashMap::new();
-    let mut rows = Vec::new();
-    let mut data =
-        MeshData { boundary: mesh.data().boundary, triangle_rule: mesh.data().triangle_rule, ..MeshData::default() };
-    for &spoke in &fan {
-        let size = topology.face_size(spoke);
-        data.face_sizes.push(size);
-        for h in std::iter::successors(Some(spoke), |&h| Some(topology.next(h))).take(size as usize) {
-            let vertex = topology.mesh_vertex(h);
-            data.face_vertices.push(*numbers.entry(vertex).or_insert_with(|| {
-                rows.push(around.unit(h));
-                rows.len() as u32 - 1
-            }));
+impl Alone {
+    /// What is around the vertex from which a half-edge starts, and its vertices' numbers.
+    fn new(around: &Around, h: u32) -> (Self, Vec<u32>) {
+        let topology = around.topology;
+        let fan = topology.fan(h).0;
+        let (mut numbers, mut vertices) = (HashMap::new(), Vec::new());
+        let face_sizes: Vec<u32> = fan.iter().map(|&spoke| topology.face_size(spoke)).collect();
+        let mut face_vertices = Vec::new();
+        for (&spoke, &size) in fan.iter().zip(&face_sizes) {
+            for h in std::iter::successors(Some(spoke), |&h| Some(topology.next(h))).take(size as usize) {
+                let vertex = topology.mesh_vertex(h);
+                face_vertices.push(*numbers.entry(vertex).or_insert_with(|| {
+                    vertices.push(around.first_vertex + vertex);
+                    vertices.len() as u32 - 1
+                }));
+            }
+        }
+        let inner = fan.iter().filter(|&&spoke| topology.twin(spoke).is_some());
+        let edge = |&h: &u32| (numbers[&topology.mesh_vertex(topology.next(h))], topology.sharpness(h).to_bits());
+        let vertex_sharpness = topology.vertex_sharpness(topology.mesh_vertex(h)).to_bits();
+        (Self { face_sizes, face_vertices, vertex_sharpness, edges: inner.map(edge).collect() }, vertices)
+    }
+
+    /// The limit as a sum of the vertices here: refined until nothing at the vertex is of finite sharpness, masks tell it.
+    fn limit(&self, topology: &Topology) -> Result<Row, MeshError> {
+        let crease = |&(end, bits): &(u32, u32)| Crease { vertices: [0, end], sharpness: f32::from_bits(bits) };
+        let count = self.face_vertices.iter().max().map_or(0, |&last| last + 1);
+        let mut data = MeshData {
+            positions: vec![[0.0; 3]; count as usize],
+            face_sizes: self.face_sizes.clone(),
+            face_vertices: self.face_vertices.clone(),
+            creases: self.edges.iter().map(crease).collect(),
+            corners: vec![Corner { vertex: 0, sharpness: f32::from_bits(self.vertex_sharpness) }],
+            boundary: topology.mesh().data().boundary,
+            triangle_rule: topology.mesh().data().triangle_rule,
+            ..MeshData::default()
+        };
+        let mut rows: Vec<Row> = (0..count).map(Row::unit).collect();
+        let mut steps = 0;
+        loop {
+            let starts = data.face_sizes.iter().scan(0, |start, size| Some(std::mem::replace(start, *start + size)));
+            let starts: Vec<u32> = starts.collect();
+            let topology = Topology::new(&ControlMesh::new(data)?);
+            if steps > 0 && !has_finite_sharpness(&topology, 0) {
+                let ring = &topology.rings()[topology.place(0).ring as usize];
+                let values = RingValues::new(&topology, ring, |v| rows[v as usize].clone());
+                let dart = dart_edge(&topology, ring);
+                return Ok(dart.map_or_else(|| values.frame(), |sharp| dart_frame(&values, sharp)).p);
+            }
+            let part = refine_part(&topology, &starts);
+            let coarse = std::mem::take(&mut rows);
+            for row in 0..part.rows.len() {
+                // Centres, numbered after the coarse vertices, come first.
+                let value =
+                    |vertex: u32| coarse.get(vertex as usize).unwrap_or_else(|| &rows[vertex as usize - coarse.len()]);
+                rows.push(Row::sum(part.rows.row(row).map(|(vertex, weight)| (weight, value(vertex)))));
+            }
+            data = part.data;
+            steps += 1;
         }
     }
-    for &spoke in fan.iter().filter(|&&spoke| topology.twin(spoke).is_some()) {
-        let vertices = [0, numbers[&topology.mesh_vertex(topology.next(spoke))]];
-        data.creases.push(Crease { vertices, sharpness: topology.sharpness(spoke) });
-    }
-    let sharpness = topology.vertex_sharpness(topology.mesh_vertex(h));
-    data.corners.push(Corner { vertex: 0, sharpness });
-    data.positions = vec![[0.0; 3]; rows.len()];
-    (data, rows)
 }
