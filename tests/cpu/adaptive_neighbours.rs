@@ -326,6 +326,10 @@ fn bad_options_are_refused() {
 fn the_greatest_depth_is_exact_too() {
     let mesh = shape("machine-part").unwrap();
     let planned = Planned::at_depth(&mesh, 10);
+    let counts = planned.plan.counts();
+    // Each level has as many leaves as the one before.
+    assert_eq!((counts.len(), counts[..10].iter().map(|level| level.caps).sum::<usize>()), (11, 0));
+    assert!(counts[4..10].iter().all(|level| level.regular == counts[4].regular) && counts[10].caps > 0);
     let Distance { exact, slope, lift, .. } = distance(&planned, &LimitSurface::new(&mesh).unwrap());
     println!("{exact:e} {slope:e} {lift:e}");
     assert!(exact < 1e-12 && slope < 1e-8 && lift < 1e-5, "{exact:e} {slope:e} {lift:e}");
