@@ -2,7 +2,7 @@
 
 use super::feature::{Class, Reason, Shape, classify, is_constant, shape};
 use super::options::AdaptiveOptions;
-use crate::limit::{Stencils, refine_part};
+use crate::limit::{Part, Stencils, refine_part};
 use crate::mesh::{ControlMesh, CreaseMethod, MeshError};
 use crate::topology::Topology;
 use std::borrow::Cow;
@@ -93,18 +93,21 @@ impl Level<'_> {
         [0, 1, 2, 3].map(|corner| start + (corner + 4 - first) % 4)
     }
 
-    /// The next level: the children of the refined faces and all faces around them; and its vertices as sums of this level's.
-    /// `child` tells the cell of a face's child around its corner.
+    /// The next level: the children of the refined faces and all faces around them; its vertices as sums; and the faces of five
+    /// and more corners whose points are its first vertices. `child` tells the cell of a face's child around its corner.
     pub(super) fn refine(
         &self,
         fates: &[Fate],
         first_vertex: u32,
         child: impl Fn(u32, u32) -> Cell,
-    ) -> Result<(Level<'static>, Stencils), MeshError> {
+    ) -> Result<(Level<'static>, Stencils, Vec<u32>), MeshError> {
         let topology = &*self.topology;
         let half_edges = self.half_edges_with_children(fates);
-        let (data, mut rows) = refine_part(topology, &half_edges);
-        rows.indices.iter_mut().for_each(|vertex| *vertex += self.first_vertex);
+        let Part { data, mut rows, centres } = refine_part(topology, &half_edges);
+        let own = topology.mesh().vertex_count() as u32;
+        for vertex in &mut rows.indices {
+            *vertex = if *vertex < own { self.first_vertex + *vertex } else { first_vertex + (*vertex - own) };
+        }
         let cell = |&h: &u32| {
             let face = topology.face(h);
             let cell = child(face, h - topology.mesh().face_corners(face).start as u32);
@@ -112,7 +115,7 @@ impl Level<'_> {
         };
         let cells = half_edges.iter().map(cell).collect();
         let topology = Cow::Owned(Topology::new(&ControlMesh::new(data)?));
-        Ok((Level { number: self.number + 1, topology, first_vertex, cells }, rows))
+        Ok((Level { number: self.number + 1, topology, first_vertex, cells }, rows, centres))
     }
 
     /// The face corners whose children are refined faces' or touch one; by Chaikin's method, which looks further, one ring
