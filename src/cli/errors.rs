@@ -168,6 +168,7 @@ pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
     let options = ErrorOptions {
         fallback: args.mesh.fallback(),
         refine: args.mesh.refine,
+        adaptive: None,
         samples: args.samples,
         nearest: args.nearest,
     };
