@@ -166,7 +166,7 @@ impl Figure {
         if error == 0 && cost_name == COSTS[0].0 {
             chart
                 .configure_series_labels()
-                .position(SeriesLabelPosition::LowerLeft)
+                .position(SeriesLabelPosition::UpperRight)
                 .label_font(font(15))
                 .background_style(WHITE.mix(0.9))
                 .border_style(RGBColor(200, 200, 200))
