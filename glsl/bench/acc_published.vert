@@ -35,7 +35,7 @@ void main() {
         }
         cosines[k] = kept_number(texels, 3 * OWNED);
     }
-    vec3 at = lattice_parameter(uint(gl_VertexIndex), uint(draw_factor()), first_corner);
+    vec3 at = lattice_parameter(uint(gl_VertexIndex), item.segments, first_corner);
     Sample surface = lattice_sample(at);
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);

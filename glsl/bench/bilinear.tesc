@@ -16,7 +16,7 @@ layout(location = 0) out vec4 handed_on[][1];
 void main() {
     handed_on[gl_InvocationID][0] = vec4(corner[gl_InvocationID], 0.0);
     if (gl_InvocationID == 0) {
-        float factor = draw_factor();
+        float factor = item.factor;
         gl_TessLevelOuter[0] = factor;
         gl_TessLevelOuter[1] = factor;
         gl_TessLevelOuter[2] = factor;

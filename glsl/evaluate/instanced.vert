@@ -25,7 +25,7 @@ layout(location = 2) out vec2 out_texcoord;
 void main() {
     uint patch_number = patch_drawn(uint(gl_InstanceIndex));
     uint first_corner = draw.first_corner + patch_number * CORNERS;
-    uint segments = uint(draw_factor());
+    uint segments = item.segments;
     read_cached(first_corner, segments);
     vec3 at = lattice_parameter(uint(gl_VertexIndex), segments, first_corner);
     LatticeSample surface = lattice_sample(at);

@@ -112,6 +112,9 @@ void emit_row(uint row, uint first, uint end) {
 
 // The control points of the patch, by stencils; what corners share is kept by the cached construction alone.
 void sum_points() {
+#ifdef MAY_BE_ADAPTIVE
+    evaluated_patch = draw.first_patch + patch_number;
+#endif
     for (uint k = 0u; k < CORNERS; ++k) {
         stencil_points(draw.first_patch + patch_number, k, CORNERS, owned[k]);
 #ifdef TEXCOORD
@@ -121,7 +124,7 @@ void sum_points() {
 }
 
 void main() {
-    segments = uint(draw_factor());
+    segments = item.segments;
     uvec2 size = tile_size(segments);
     uvec2 tiles = (segments + size - 1u) / size;
     patch_number = tile_number[0] / (tiles.x * tiles.y);

@@ -17,6 +17,7 @@
 #define ID_COPIES 11u
 #define ID_CONSTRUCTION 12u
 #define ID_HAS_TEXCOORDS 13u
+#define ID_ADAPTIVE 14u
 
 // Constructions, by their numbers.
 #define TWO_STAGE 0u
@@ -33,11 +34,12 @@
 #define CULL_BACK_FLAG 8u
 #define CULL_SMALL_FLAG 16u
 
-// Bits of a draw's flags: a displacement map has vectors; what is seen counter-clockwise faces away. From REACH_SHIFT on, how far
-// displacement reaches, as a half-precision number.
+// Bits of a draw's flags: the displacement map has vectors; what is seen counter-clockwise faces away. From KIND_SHIFT on, the kind
+// of the patches.
 #define VECTOR_FLAG 1u
 #define COUNTER_CLOCKWISE_FLAG 2u
-#define REACH_SHIFT 16u
+#define KIND_SHIFT 2u
+#define KIND_MASK 3u
 
 // Rings and their entries.
 #define TRIANGLE_BIT 0x80000000u
@@ -62,6 +64,21 @@
 #define GROUP_VERTICES 256u
 // Vertices of a tile of a patch in strips.
 #define TILE_VERTICES 64u
+
+// Quadtrees over faces: levels, and the bit of a node that is a leaf.
+#define MAX_DEPTH 10u
+#define LEAF_BIT 0x80000000u
+// Fours of a leaf, and its kinds; with a crease, the first of four.
+#define LEAF_FOURS 5u
+#define LEAF_REGULAR 0u
+#define LEAF_CAP 1u
+#define LEAF_CREASE 2u
+// Words of a face, and the first of those that say who owns the normals. An owner is a patch from OWNER_SHIFT on, and its edge or
+// corner; or none, where a neighbour is not refined.
+#define FACE_WORDS 17u
+#define NORMAL_OWNERS 9u
+#define OWNER_SHIFT 2u
+#define OWNER_NONE 0xffffffffu
 
 // What is captured of a patch, and of a vertex.
 #define CONTROL_POINT_WORDS 96u

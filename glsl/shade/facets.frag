@@ -9,5 +9,5 @@ layout(location = 0) in vec3 world_position;
 
 void main() {
     vec3 normal = cross(dFdx(world_position), dFdy(world_position));
-    write_colour(lit(draw.colour.rgb, world_position, normal, view.eye.xyz, view.light.xyz), draw.colour.a);
+    write_colour(lit(draw_colour().rgb, world_position, normal, view.eye.xyz, view.light.xyz), draw_colour().a);
 }

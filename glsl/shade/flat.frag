@@ -5,5 +5,5 @@
 #include "draw/output.glsl"
 
 void main() {
-    write_colour(draw.colour.rgb, draw.colour.a);
+    write_colour(draw_colour().rgb, draw_colour().a);
 }

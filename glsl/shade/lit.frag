@@ -9,5 +9,5 @@
 
 void main() {
     vec3 normal = surface_normal();
-    write_colour(lit(draw.colour.rgb, world_position, normal, view.eye.xyz, view.light.xyz), draw.colour.a);
+    write_colour(lit(draw_colour().rgb, world_position, normal, view.eye.xyz, view.light.xyz), draw_colour().a);
 }

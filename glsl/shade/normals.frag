@@ -7,5 +7,5 @@
 #include "evaluate/surface.glsl"
 
 void main() {
-    write_colour(0.5 + 0.5 * normalize(surface_normal()), draw.colour.a);
+    write_colour(0.5 + 0.5 * normalize(surface_normal()), draw_colour().a);
 }

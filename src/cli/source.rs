@@ -3,6 +3,7 @@
 use super::error::CliError;
 use super::output::Progress;
 use super::parse;
+use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, read, shape};
 use ash_subdiv::table::{CpuSurface, Notice};
@@ -41,6 +42,15 @@ pub(super) struct SourceArgs {
     /// Draw faces that the scheme has no patches for with those of this one, instead of refusing the mesh.
     #[arg(long, value_name = "SCHEME", value_parser = parse::fallback())]
     fallback: Option<Fallback>,
+
+    /// Refine irregular faces where they have to be, 0 to 10 levels deep, and draw the limit surface itself but for end caps there:
+    /// patches of gregory or gregory-fitted. At 0 creases of finite sharpness are followed, and no face is refined.
+    #[arg(long, value_name = "DEPTH")]
+    adaptive: Option<u32>,
+
+    /// With --adaptive: another depth around darts, corners and creases whose sharpness varies
+    #[arg(long, value_name = "DEPTH", requires = "adaptive")]
+    sharp_depth: Option<u32>,
 }
 
 impl MeshArgs {
@@ -87,6 +97,7 @@ impl SourceArgs {
             construction,
             fallback: self.fallback(),
             refine: self.refine,
+            adaptive: self.adaptive.map(|depth| AdaptiveOptions { depth, sharp_depth: self.sharp_depth, scheme }),
             ..ModelOptions::default()
         }
     }

@@ -133,7 +133,7 @@ impl WatertightArgs {
             Some(texture) => unsafe { Captured::displaced(headless, mesh, &options, texture.into())? },
             None => Captured::new(headless, mesh, &options)?,
         };
-        let seams = Seams::new(mesh, options.refine, captured.tables())?;
+        let seams = Seams::new(mesh, captured.tables())?;
         let scale = if displaced { self.displacement_scale * diagonal(mesh) } else { 0.0 };
         Ok(Setup { options, texture, captured, seams, scale })
     }

@@ -47,6 +47,14 @@ impl Stencils {
         self.offsets.push(self.indices.len() as u32);
     }
 
+    /// Leaves the first `outputs`.
+    pub(crate) fn truncate(&mut self, outputs: usize) {
+        let terms = self.offsets[outputs] as usize;
+        self.offsets.truncate(outputs + 1);
+        self.indices.truncate(terms);
+        self.weights.truncate(terms);
+    }
+
     /// The outputs of both.
     pub(crate) fn chain(mut self, other: Self) -> Self {
         let terms = self.indices.len() as u32;

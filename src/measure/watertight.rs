@@ -7,7 +7,7 @@ use crate::mesh::{ControlMesh, FaceVarying, MeshData};
 use crate::renderer::{
     DrawItem, EdgeTable, Error, Factor, Fragment, ModelOptions, ModelTables, Options, Renderer, Style, Target, View,
 };
-use crate::table::{Patch, prepare};
+use crate::table::{Patch, prepare_for};
 use crate::topology::PatchKind;
 use ash::vk;
 use rayon::prelude::*;
@@ -72,12 +72,12 @@ pub struct Seams {
 }
 
 impl Seams {
-    /// Seams of a model that is drawn with these tables; `refine` as in [`ModelOptions::refine`].
+    /// Seams of a model of a mesh that is drawn with these tables.
     ///
     /// # Errors
-    /// As [`prepare`].
-    pub fn new(mesh: &ControlMesh, refine: u32, tables: &ModelTables) -> Result<Self, Error> {
-        let prepared = prepare(mesh, refine)?;
+    /// As [`ModelTables::new`].
+    pub fn new(mesh: &ControlMesh, tables: &ModelTables) -> Result<Self, Error> {
+        let (prepared, ..) = prepare_for(mesh, &tables.options())?;
         let topology = prepared.topology();
         let plan = tables.plan();
         let edges = prepared.edges(plan);

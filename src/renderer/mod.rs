@@ -38,7 +38,8 @@
 //! Positions, rings, their weights and what is kept of them are texel buffers where the device has large ones, else storage buffers
 //! ([`DeviceProperties::reads_texels`](crate::gpu::DeviceProperties::reads_texels)).
 //!
-//! The constants of a draw (transform, colour, factors, where its patches start) are pushed, for all stages.
+//! What shaders know of an item (transform, colours, factor, displacement, four words of yours) is a record in a buffer of the frame;
+//! pushed is only what changes from draw to draw of it, such as where its patches start: for all stages.
 
 mod construct;
 mod evaluate;
@@ -67,5 +68,5 @@ pub(crate) use shader::STAGES;
 pub(crate) use {
     evaluate::{subdivision::level as subdivision_level, topology},
     options::is_size,
-    shader::{DrawConstants, ViewData, reads_texels, spaced},
+    shader::{DrawConstants, ItemRecord, ViewData, reads_texels, spaced},
 };

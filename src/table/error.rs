@@ -1,3 +1,5 @@
+use super::Evaluation;
+use crate::adaptive::AdaptiveError;
 use crate::mesh::MeshError;
 use crate::patch::{Scheme, Undefined};
 
@@ -11,6 +13,15 @@ pub enum TableError {
     /// The scheme has no patch for a face.
     #[error(transparent)]
     Undefined(#[from] Undefined),
+    /// There is no plan of adaptive subdivision.
+    #[error(transparent)]
+    Adaptive(#[from] AdaptiveError),
+    /// Adaptive subdivision in an evaluation without patches.
+    #[error("evaluation by {} has no patches: it cannot be adaptive", evaluation.name())]
+    NotAdaptive {
+        /// The evaluation that was asked for.
+        evaluation: Evaluation,
+    },
     /// Shared normals of a scheme that is not watertight.
     #[error("the scheme {} has no edges that both patches evaluate alike: for shared normals and displacement choose gregory", scheme.name())]
     NothingShared {

@@ -2,13 +2,13 @@
 
 use super::shared::SHARED_WORDS;
 use super::{
-    Construction, EdgeTable, Evaluation, FaceOrigin, Notice, PatchPlan, RingTable, SharedTable, Sharing, StencilTable,
-    SubdivisionTable, TableError, TableOptions, bytes, prepare_patches, prepare_quads,
+    Construction, EdgeTable, Evaluation, FaceOrigin, LeafTable, Notice, PatchPlan, RingTable, SharedTable, Sharing,
+    StencilTable, SubdivisionTable, TableError, TableOptions, bytes, prepare_for,
 };
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
 use crate::topology::PatchKind;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Everything that a model's shaders read but its positions. Made without a device, on any thread.
 #[derive(Debug, Clone)]
@@ -23,6 +23,8 @@ pub struct ModelTables {
     fans: Option<SubdivisionTable>,
     /// Where normals are shared.
     shared: Option<SharedTable>,
+    /// Of adaptive subdivision.
+    leaves: Option<LeafTable>,
     pub(crate) texcoords: Option<Vec<[f32; 2]>>,
     edges: Option<EdgeTable>,
     /// Pairs of control vertices: the edges of the caller's mesh.
@@ -52,12 +54,8 @@ impl ModelTables {
     /// scheme whose patches share no edges.
     pub fn new(mesh: &ControlMesh, options: impl Into<TableOptions>) -> Result<Self, TableError> {
         let options = options.into();
-        let TableOptions { scheme, fallback, refine, .. } = options;
         let subdivides = options.evaluation == Evaluation::Subdivision;
-        let (prepared, mut plan) = match subdivides {
-            true => prepare_quads(mesh, refine)?,
-            false => prepare_patches(mesh, scheme, fallback, refine)?,
-        };
+        let (prepared, mut plan, adaptive) = prepare_for(mesh, &options)?;
         let topology = prepared.topology();
         let fans = subdivides.then(|| SubdivisionTable::new(topology, &plan)).transpose()?;
         let converts = options.evaluation == Evaluation::GeometryTwoPass;
@@ -74,9 +72,10 @@ impl ModelTables {
             (Sharing::Normals, Some(edges)) => Some(SharedTable::new(topology, edges, &plan)),
             _ => None,
         };
-        if shared.is_some() && !scheme.is_watertight() {
-            return Err(TableError::NothingShared { scheme });
+        if shared.is_some() && !options.scheme.is_watertight() {
+            return Err(TableError::NothingShared { scheme: options.scheme });
         }
+        let leaves = adaptive.map(|adaptive| LeafTable::new(topology, &plan, adaptive));
         let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(topology, &plan));
         Ok(Self {
             texcoords: plan.texcoords(topology),
@@ -88,6 +87,7 @@ impl ModelTables {
             stencils,
             fans,
             shared,
+            leaves,
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
@@ -122,7 +122,8 @@ impl ModelTables {
 
     /// Vertices that the shaders read: the control vertices, followed by those of the refined mesh if it was refined.
     pub(crate) fn stored_vertices(&self) -> usize {
-        self.patch_vertices + if self.steps.is_empty() { 0 } else { self.control_vertices }
+        let control = if self.steps.is_empty() { 0 } else { self.control_vertices };
+        control + self.patch_vertices + self.leaves.as_ref().map_or(0, LeafTable::added_vertices)
     }
 
     /// Puts the stored vertices for these positions of the control vertices in the place of what is in `stored`: with a fourth
@@ -131,11 +132,23 @@ impl ModelTables {
         let wide = |&[x, y, z]: &[f32; 3]| [x, y, z, 0.0];
         stored.clear();
         stored.extend(control.iter().map(wide));
-        if let Some((first, rest)) = self.steps.split_first() {
-            let positions: Vec<Vec3> = control.iter().map(|&p| p.into()).collect();
-            let refined = rest.iter().fold(first.apply(&positions), |refined, step| step.apply(&refined));
-            stored.extend(refined.into_iter().map(|p| wide(&p.into())));
+        if self.steps.is_empty() && self.leaves.is_none() {
+            return;
         }
+        let wide = |p: DVec3| p.as_vec3().extend(0.0).to_array();
+        let positions: Vec<DVec3> = control.iter().map(|&p| Vec3::from(p).as_dvec3()).collect();
+        let refined = self.steps.iter().fold(positions, |refined, step| step.apply(&refined));
+        if !self.steps.is_empty() {
+            stored.extend(refined.iter().copied().map(wide));
+        }
+        if let Some(leaves) = &self.leaves {
+            stored.extend(leaves.added_points(&refined).into_iter().map(wide));
+        }
+    }
+
+    /// The leaves of faces that are refined, with [`TableOptions::adaptive`].
+    pub fn leaves(&self) -> Option<&LeafTable> {
+        self.leaves.as_ref()
     }
 
     /// The patches, in the order of the tables.
@@ -199,7 +212,7 @@ impl ModelTables {
 
     /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need
     /// are empty.
-    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 10] {
+    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 13] {
         fn array<'t, T, E: bytemuck::NoUninit>(table: &'t Option<T>, array: impl Fn(&'t T) -> &'t [E]) -> &'t [u8] {
             table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
         }
@@ -231,6 +244,9 @@ impl ModelTables {
             ("texcoords", array(&self.texcoords, |t| t.as_slice())),
             ("shared_corners", array(&self.shared, |t| t.corners.as_flattened())),
             ("shared_texcoords", array(&self.shared, |t| &t.texcoords)),
+            ("faces", array(&self.leaves, |t| t.faces.as_flattened())),
+            ("quadtrees", array(&self.leaves, |t| t.quadtrees())),
+            ("leaves", array(&self.leaves, |t| t.leaves.as_flattened())),
         ]
     }
 }

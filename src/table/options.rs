@@ -1,6 +1,7 @@
 //! What tables are built for.
 
 use super::Sharing;
+use crate::adaptive::AdaptiveOptions;
 use crate::named::named;
 use crate::patch::{Fallback, Scheme};
 #[cfg(doc)]
@@ -107,6 +108,8 @@ pub struct TableOptions {
     pub edge_factors: bool,
     /// Steps of Catmull-Clark refinement before patches are made.
     pub refine: u32,
+    /// Depth of adaptive subdivision, if irregular faces are refined where they have to be.
+    pub adaptive: Option<AdaptiveOptions>,
 }
 
 impl TableOptions {

@@ -86,7 +86,7 @@ pub struct PatchPlan {
 }
 
 impl PatchPlan {
-    /// Plans the patches of a mesh. Holes get none.
+    /// Plans the patches of a mesh. Holes get none; regular faces that are refined are as irregular ones.
     ///
     /// # Errors
     /// [`Undefined`] names the first face that the scheme has no patch for, unless such faces fall back; then the first that
@@ -96,12 +96,15 @@ impl PatchPlan {
         cells: &Cells,
         scheme: Scheme,
         fallback: Fallback,
+        is_refined: impl Fn(u32) -> bool + Sync,
     ) -> Result<Self, Undefined> {
         let of_face = |face: u32| {
             let (kind, scheme) = match (scheme.check(topology, face), fallback.scheme()) {
                 (Err(_), Some(fallback)) => (fallback.check(topology, face)?, fallback),
                 (kind, _) => (kind?, scheme),
             };
+            // Of a face that is refined, what the corners of irregular ones have.
+            let kind = if kind == PatchKind::Regular && is_refined(face) { PatchKind::IrregularQuad } else { kind };
             Ok(Patch { face, kind, scheme, id: cells.of_face(face) })
         };
         let faces = draws_face(topology).into_par_iter().enumerate();

@@ -4,8 +4,11 @@
 use super::cells::Cells;
 use super::edges::EdgeTable;
 use super::error::TableError;
+use super::leaves::is_refined;
+use super::options::{Evaluation, TableOptions};
 use super::patch_id::MAX_LEVEL;
 use super::plan::PatchPlan;
+use crate::adaptive::{self, AdaptiveOptions};
 use crate::limit::{Stencils, refine};
 use crate::mesh::{ControlMesh, MAX_CORNERS, MeshError, SHARPNESS_INFINITE};
 use crate::patch::{Fallback, Scheme, Undefined};
@@ -137,7 +140,7 @@ impl Prepared {
     /// # Errors
     /// As of [`PatchPlan`]: a face that the scheme has no patch for, unless such faces fall back.
     pub fn plan(&self, scheme: Scheme, fallback: Fallback) -> Result<PatchPlan, Undefined> {
-        PatchPlan::new(&self.topology, &self.cells, scheme, fallback)
+        PatchPlan::new(&self.topology, &self.cells, scheme, fallback, |_| false)
     }
 
     /// The edges of the patches in `plan`.
@@ -186,6 +189,44 @@ pub fn prepare_patches(
     let prepared = prepare(mesh, levels)?;
     let plan = prepared.plan(scheme, fallback)?;
     Ok((prepared, plan))
+}
+
+/// Prepares `mesh` for the tables of some options, and plans its patches and its adaptive subdivision.
+///
+/// # Errors
+/// Those of [`prepare_patches`], [`prepare_quads`] and [`adaptive::Plan::new`].
+pub(crate) fn prepare_for(
+    mesh: &ControlMesh,
+    options: &TableOptions,
+) -> Result<(Prepared, PatchPlan, Option<adaptive::Plan>), TableError> {
+    let &TableOptions { scheme, fallback, evaluation, refine, .. } = options;
+    match (options.adaptive, evaluation) {
+        (Some(_), Evaluation::Subdivision) => Err(TableError::NotAdaptive { evaluation }),
+        (Some(adaptive), _) => {
+            let (prepared, patches, plan) = prepare_adaptive(mesh, &AdaptiveOptions { scheme, ..adaptive }, refine)?;
+            Ok((prepared, patches, Some(plan)))
+        }
+        (None, Evaluation::Subdivision) => prepare_quads(mesh, refine).map(|(prepared, plan)| (prepared, plan, None)),
+        (None, _) => prepare_patches(mesh, scheme, fallback, refine).map(|(prepared, plan)| (prepared, plan, None)),
+    }
+}
+
+/// Prepares `mesh` for adaptive subdivision, and plans it: as [`prepare()`], but every face becomes a quad.
+///
+/// # Errors
+/// A refined mesh that cannot be addressed; those of [`adaptive::Plan::new`].
+fn prepare_adaptive(
+    mesh: &ControlMesh,
+    options: &AdaptiveOptions,
+    levels: u32,
+) -> Result<(Prepared, PatchPlan, adaptive::Plan), TableError> {
+    let notice = |faces, first| Notice::RefinedToQuads { faces, first };
+    let prepared = Prepared { rounds_sharpness: false, ..refine_faces(mesh, levels, |size| size != 4, notice)? };
+    let (topology, cells) = (&prepared.topology, &prepared.cells);
+    let plan = adaptive::Plan::new(topology, options)?;
+    let is_refined = |face| is_refined(&plan, face);
+    let patches = PatchPlan::new(topology, cells, options.scheme, Fallback::Refuse, is_refined)?;
+    Ok((prepared, patches, plan))
 }
 
 /// Refines `mesh` at least `levels` times, and once if it has faces with five or more corners.

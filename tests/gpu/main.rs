@@ -14,6 +14,7 @@ mod golden_files;
 mod goldens;
 mod headless;
 mod lattices;
+mod leaves;
 mod module;
 mod passes;
 mod screen;

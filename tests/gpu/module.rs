@@ -48,23 +48,27 @@ impl Stage {
     }
 
     fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Picture, Error> {
-        let view = View {
-            view_projection: orthographic(),
-            eye: [0.0, 0.0, 10.0],
-            light: [0.0, 0.0, 1.0],
-            viewport: [0.0; 2],
-            mirrored: false,
-            measured_from: None,
-        };
         // SAFETY: as above, inside rendering.
         let pixels =
-            self.target.draw(&self.headless, BLACK, |cmd| unsafe { renderer.cmd_draw(cmd, frame, &view, items) })?;
+            self.target.draw(&self.headless, BLACK, |cmd| unsafe { renderer.cmd_draw(cmd, frame, &front(), items) })?;
         Ok(Picture(pixels))
     }
 
     fn finish(self) {
         drop(self.target);
         self.headless.finish_silent();
+    }
+}
+
+/// What lies in [`orthographic`], seen from the front.
+fn front() -> View {
+    View {
+        view_projection: orthographic(),
+        eye: [0.0, 0.0, 10.0],
+        light: [0.0, 0.0, 1.0],
+        viewport: [0.0; 2],
+        mirrored: false,
+        measured_from: None,
     }
 }
 
@@ -187,6 +191,45 @@ fn a_callers_shader_gets_texture_coordinates() {
     stage.prepare(&mut renderer, 0);
     let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0)]).unwrap();
     assert_eq!(picture.at(0.5, 0.5), [0, 0, 0, 255]);
+    drop(renderer);
+    stage.finish();
+}
+
+#[test]
+fn items_have_colours_and_words_of_their_own() {
+    let stage = Stage::new();
+    let style = Style { fragment: Fragment::Spirv(shaders::WORDS_FRAG.to_vec()), ..Style::default() };
+    let mut renderer = stage.renderer(&Options { styles: vec![style], views_per_frame: 3, ..Options::default() });
+    let model = renderer.add_model(&square(1.0 / 16.0), &ModelOptions::default()).unwrap();
+    let empty = renderer.memory_usage().views;
+    // More than there is room for at first, in one draw and by the next of the same frame: four pixels each.
+    let centre = |i: u32| [i % 16, i / 16].map(|k| (2 * k + 1) as f32 / 16.0 - 1.0);
+    let item = |i: u32| {
+        let [x, y] = centre(i);
+        let transform = glam::Mat4::from_translation(glam::vec3(x, y, 0.0)).to_cols_array_2d();
+        let mut item = DrawItem { words: [i, 200 - i / 2, 7, 0], transform, ..DrawItem::new(model, 1.0) };
+        // Corners without a tag are sharp: the square is regular.
+        item.colors[0] = [0.0, 0.4, 0.0, 0.0];
+        item
+    };
+    let items: Vec<_> = (0..256).map(item).collect();
+    for frame in [0, 1, 0] {
+        stage.prepare(&mut renderer, frame);
+        let pixels = stage.target.draw(&stage.headless, BLACK, |cmd| {
+            // SAFETY: as in `Stage::draw`.
+            unsafe {
+                renderer.cmd_draw(cmd, frame, &front(), &items[..30])?;
+                renderer.cmd_draw(cmd, frame, &front(), &items[30..100])?;
+                renderer.cmd_draw(cmd, frame, &front(), &items[100..])
+            }
+        });
+        let picture = Picture(pixels.unwrap());
+        for i in 0..256 {
+            let [x, y] = centre(i);
+            assert_eq!(picture.at(x, y)[..3], [i as u8, (251 - i / 2) as u8, 7], "item {i}");
+        }
+    }
+    assert!(renderer.memory_usage().views > empty);
     drop(renderer);
     stage.finish();
 }

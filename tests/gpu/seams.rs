@@ -4,6 +4,7 @@
 
 use crate::common;
 use crate::common::random::{random_creased_mesh, random_mesh};
+use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::capture::{CaptureDraw, Captured, Which};
 use ash_subdiv::headless::{Headless, Texels, Texture};
 use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
@@ -51,7 +52,7 @@ fn tally(
         None => Captured::new(headless, mesh, &options),
     };
     let captured = captured.expect("a model");
-    let seams = Seams::new(mesh, options.refine, captured.tables()).expect("small");
+    let seams = Seams::new(mesh, captured.tables()).expect("small");
     let edges = captured.tables().edges().expect("asked for").vertices.len();
     let displacement = if texture.is_some() { [DISPLACEMENT * diagonal(mesh), 0.0] } else { [0.0; 2] };
     let mut sum = Tally::default();
@@ -107,6 +108,32 @@ fn shapes_are_watertight() {
     headless.finish_silent();
 }
 
+/// Faces that are refined have their leaves evaluated: what two of them share by one of them.
+#[test]
+fn adaptive_surfaces_are_watertight() {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    let mut samples = 0;
+    let built_in = ["creature-mixed", "machine-part", "valences", "cloth", "cube", "fan"];
+    let built_in = built_in.map(|name| (name.to_owned(), shape(name).expect("built in")));
+    let random = (0..4).map(|seed| ("random".to_owned(), random_creased_mesh(seed)));
+    for ((name, mesh), i) in built_in.into_iter().chain(random).zip(0..) {
+        let mesh = with_texcoords(mesh);
+        let construction = Construction::ALL[i % 3];
+        for (depth, displaced) in [(0, true), (1, false), (3, false), (3, true)] {
+            let adaptive = Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });
+            let options =
+                ModelOptions { construction, spacing: SPACINGS[i / 3 % 3], adaptive, ..ModelOptions::default() };
+            let tally = tally(&headless, &mesh, &options, displaced.then_some(&texture), i as u64);
+            assert!(tally.is_watertight(), "{name} depth {depth} displaced {displaced} {construction:?}: {tally:?}");
+            samples += tally.samples;
+        }
+    }
+    assert!(samples > 500_000, "{samples} pairs");
+    drop(texture);
+    headless.finish_silent();
+}
+
 /// Without the tessellation stages, too: with factors of edges and with one for all, displaced or not.
 #[test]
 fn lattices_are_watertight() {
@@ -131,7 +158,7 @@ fn lattices_are_watertight() {
                 false => Captured::new(&headless, &mesh, &options),
             };
             let captured = captured.expect("a model");
-            let seams = Seams::new(&mesh, 0, captured.tables()).expect("small");
+            let seams = Seams::new(&mesh, captured.tables()).expect("small");
             let edges = captured.tables().edges().expect("asked for").vertices.len();
             let displacement = if displaced { [DISPLACEMENT * diagonal(&mesh), 0.0] } else { [0.0; 2] };
             let edge_factors = random_factors(edges, 12.0, 3);
@@ -303,7 +330,7 @@ fn tally_with(headless: &Headless, texture: &Texture, shared_normals: bool, disp
         false => Captured::new(headless, &mesh, &options),
     };
     let captured = captured.expect("a model").with_shaders(shaders.collect());
-    let seams = Seams::new(&mesh, 0, captured.tables()).expect("small");
+    let seams = Seams::new(&mesh, captured.tables()).expect("small");
     let displacement = if displaced { [DISPLACEMENT * diagonal(&mesh), 0.0] } else { [0.0; 2] };
     let draw = CaptureDraw { displacement, ..CaptureDraw::new(7.0) };
     compare(&captured, &seams, &draw, shared_normals).expect("a capture")

@@ -333,7 +333,7 @@ fn lists_grow_with_what_is_drawn() {
     stage.prepare(&mut renderer, 0);
     let many = vec![item(instanced, 1.0, 0.2); 400];
     let error = cull_in(&stage, &mut renderer, 0, &views(&creature)[0], &many).unwrap_err().to_string();
-    let told = error.strip_suffix(" bytes in a frame, 2147483647 at most: draw fewer items").expect(&error);
+    let told = error.strip_suffix(" bytes in a frame, 2147483648 at most: draw fewer items").expect(&error);
     let bytes = told.strip_prefix("lists of patches that can be seen take ").expect(&error);
     assert!(bytes.parse::<u64>().unwrap() > 400 * (4 + 192) * 32_768, "{error}");
     assert_eq!(renderer.memory_usage().lists, before);

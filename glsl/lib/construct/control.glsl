@@ -118,6 +118,10 @@ void finish_corner(uint patch_number) {
     vec2 texcoord = corner_texcoord(draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID));
     PUT_PAIR(numbers, HANDED_TEXCOORD, texcoord);
 #endif
+#ifdef MAY_BE_ADAPTIVE
+    uint of_all = draw.first_patch + patch_number;
+    numbers[HANDED_PATCH] = float(gl_InvocationID == 0 ? of_all & 0xffffffu : of_all >> 24);
+#endif
     for (int i = 0; i < HANDED_ROWS; ++i) {
         handed_on[gl_InvocationID][i] = ROW_OF(numbers, i);
     }

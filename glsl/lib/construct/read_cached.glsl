@@ -11,6 +11,9 @@
 
 // Of a patch whose first corner this is, for a lattice of so many segments.
 void read_cached(uint first_corner, uint segments) {
+#ifdef MAY_BE_ADAPTIVE
+    evaluated_patch = first_corner / CORNERS;
+#endif
     for (int k = 0; k < CORNERS; ++k) {
         vec4 texels[KEPT_TEXELS] = texels_of_patch(first_corner, k);
         for (int i = 0; i < OWNED; ++i) {

@@ -22,8 +22,8 @@
 // corners, `lod` a level of the map at which a segment of the tessellation is about a texel long.
 vec3 displace(vec3 position, vec3 direction, vec2 texcoord, float lod) {
     vec4 texel = textureLod(displacement_map, texcoord, lod);
-    precise vec3 vector = displacement_scale() * texel.xyz + displacement_bias();
-    precise vec3 along = (displacement_scale() * texel.x + displacement_bias()) * direction;
+    precise vec3 vector = item.displacement_scale * texel.xyz + item.displacement_bias;
+    precise vec3 along = (item.displacement_scale * texel.x + item.displacement_bias) * direction;
     precise vec3 displaced = position + ((draw.flags & VECTOR_FLAG) != 0u ? vector : along);
     return displaced;
 }
@@ -38,7 +38,7 @@ vec3 displaced_normal(vec3 position, vec3 normal, vec2 texcoord) {
         vec3 plane = cross(dx, dy);
         return dot(plane, normal) < 0.0 ? -plane : plane;
     }
-    float scale = displacement_scale() * length(draw.transform[0].xyz);
+    float scale = item.displacement_scale * length(item.transform[0].xyz);
     float height = texture(displacement_map, texcoord).x;
     float height_dx = scale * (texture(displacement_map, texcoord + dFdx(texcoord)).x - height);
     float height_dy = scale * (texture(displacement_map, texcoord + dFdy(texcoord)).x - height);

@@ -1,7 +1,10 @@
-// What every shader of a draw knows: the view and the draw's own constants.
-// Rust twins: `ViewData` and `DrawConstants` in src/renderer/shader/gpu_data.rs, `ListConstants` in src/renderer/frame/lists.rs.
+// What every shader of a draw knows: the view, the item, and where its patches are.
+// Rust twins: `ViewData`, `ItemRecord` and `DrawConstants` in src/renderer/shader/gpu_data.rs, `ListConstants` in
+// src/renderer/frame/lists.rs.
 #ifndef DRAW_GLSL
 #define DRAW_GLSL
+
+#include "constants.glsl"
 
 layout(set = 0, binding = 0, std140) uniform View {
     mat4 view_projection;
@@ -20,58 +23,48 @@ float exact_row(vec4 row, vec3 x) {
     return sum;
 }
 
-#ifdef MAKES_LISTS
-// What is looked at, and how it is to be drawn.
-layout(push_constant, std430) uniform Draw {
-    vec4 transform[3];  // rows: object to world
-    float factor;
-    uint flags;
-    uint first_corner;
-    uint first_patch;
-    uint count;                 // of the patches
-    uint vertices;              // of a patch in a draw: the points of its corners, or the indices of a lattice
-    uint first_index;           // of a lattice
-    uint patches_per_instance;  // 0: an indexed draw with an instance for each
-    uint copies;                // the word of the list where they start
-} draw;
-
-float draw_factor() {
-    return draw.factor;
-}
-#else
-layout(push_constant, std430) uniform Draw {
+// The item that is drawn, whatever its patches: its place in a buffer of the in-flight frame is a dynamic offset.
+layout(set = 0, binding = 2, std140) uniform Item {
     vec4 transform[3];         // rows: object to world
-    vec4 normal_transform[3];  // rows; w: see below
-    vec4 colour;
+    vec4 normal_transform[3];  // rows: its cofactors; w is zero
+    vec4 colours[4];           // by kind of patch: regular quads, irregular quads, triangles, pentagons
+    uvec4 words;               // the caller's: `DrawItem::words`
+    float factor;              // tessellation factor, or what its rule multiplies with
+    // A texel of the displacement map is multiplied with the scale, then the bias is added: in object space.
+    float displacement_scale;
+    float displacement_bias;
+    float displacement_reach;  // the longest way that a point is displaced
+    uint segments;             // of the uniform grid, if patches are drawn on one
+} item;
+
+// What changes from draw to draw of an item. There is room for 112 bytes more.
+layout(push_constant, std430) uniform Draw {
     uint first_corner;
     uint first_patch;
-    uint patches_per_instance;
+    uint patches_per_instance;  // of a list 0: an indexed draw with an instance for each
     uint flags;
+#ifdef MAKES_LISTS
+    uint count;        // of the patches
+    uint vertices;     // of a patch in a draw: the points of its corners, or the indices of a lattice
+    uint first_index;  // of a lattice
+    uint copies;       // the word of the list where they start
+#endif
 } draw;
 
-float draw_factor() {
-    return draw.normal_transform[0].w;
-}
-
-// What a texel of the displacement map is multiplied with, and what is added then, in object space.
-float displacement_scale() {
-    return draw.normal_transform[1].w;
-}
-
-float displacement_bias() {
-    return draw.normal_transform[2].w;
+// The colour of the patches that are drawn.
+vec4 draw_colour() {
+    return item.colours[draw.flags >> KIND_SHIFT & KIND_MASK];
 }
 
 vec3 normal_to_world(vec3 normal) {
-    vec4 x = draw.normal_transform[0], y = draw.normal_transform[1], z = draw.normal_transform[2];
-    return vec3(exact_row(vec4(x.xyz, 0.0), normal), exact_row(vec4(y.xyz, 0.0), normal), exact_row(vec4(z.xyz, 0.0), normal));
+    return vec3(exact_row(item.normal_transform[0], normal), exact_row(item.normal_transform[1], normal),
+                exact_row(item.normal_transform[2], normal));
 }
-#endif
 
 vec3 to_world(vec3 position) {
     // The same bits in every pipeline: patches of two kinds meet at their edges on the screen, too.
-    return vec3(exact_row(draw.transform[0], position), exact_row(draw.transform[1], position),
-                exact_row(draw.transform[2], position));
+    return vec3(exact_row(item.transform[0], position), exact_row(item.transform[1], position),
+                exact_row(item.transform[2], position));
 }
 
 vec4 to_clip(vec3 world) {

@@ -23,9 +23,16 @@
 #define HANDED_TEXCOORD HANDED_MAP
 #endif
 #ifdef TEXCOORD
-#define HANDED_ROWS PACKED_ROWS(HANDED_TEXCOORD + 2)
+#define HANDED_END (HANDED_TEXCOORD + 2)
 #else
-#define HANDED_ROWS PACKED_ROWS(HANDED_TEXCOORD)
+#define HANDED_END HANDED_TEXCOORD
+#endif
+// Of patches that may be refined, the number of the patch among all: 24 bits by its first corner, the rest by its second.
+#ifdef MAY_BE_ADAPTIVE
+#define HANDED_PATCH HANDED_END
+#define HANDED_ROWS PACKED_ROWS(HANDED_PATCH + 1)
+#else
+#define HANDED_ROWS PACKED_ROWS(HANDED_END)
 #endif
 
 #endif

@@ -19,6 +19,9 @@ layout(set = 1, binding = 5, std140) uniform Tables {
     uint texcoords;
     uint shared_corners;
     uint shared_texcoords;
+    uint faces;  // where that of patch 0 would be
+    uint quadtrees;
+    uint leaves;
 } tables;
 
 // The texture coordinate of a corner by its number among all.

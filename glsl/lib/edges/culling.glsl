@@ -19,10 +19,10 @@ struct Examined {
 
 // How far displacement moves a point, at most, in world space.
 float reach() {
-    float scale = sqrt(dot(draw.transform[0].xyz, draw.transform[0].xyz)
-                       + dot(draw.transform[1].xyz, draw.transform[1].xyz)
-                       + dot(draw.transform[2].xyz, draw.transform[2].xyz));
-    return scale * unpackHalf2x16(draw.flags).y;
+    float scale = sqrt(dot(item.transform[0].xyz, item.transform[0].xyz)
+                       + dot(item.transform[1].xyz, item.transform[1].xyz)
+                       + dot(item.transform[2].xyz, item.transform[2].xyz));
+    return scale * item.displacement_reach;
 }
 
 vec4 clip_row(int i) {
@@ -155,7 +155,7 @@ bool faces_away(float step) {
     // Where it is the others that are left out, cross products are seen in a mirror.
     vec3 y = (draw.flags & COUNTER_CLOCKWISE_FLAG) != 0u ? cross(x, z) : cross(z, x);
     // Columns are what the axes are in object space; the rows of the transform are its matrix transposed.
-    mat3 axes = mat3(draw.transform[0].xyz, draw.transform[1].xyz, draw.transform[2].xyz) * mat3(x, y, z);
+    mat3 axes = mat3(item.transform[0].xyz, item.transform[1].xyz, item.transform[2].xyz) * mat3(x, y, z);
 
     // Rows of control points, as seen from the centre.
 #define AT(k, i) (CONTROL_POINT(k, i) - centre) * axes

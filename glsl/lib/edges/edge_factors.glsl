@@ -9,9 +9,9 @@ float plus_factor(uint patch_number, uint k) {
     uint next = k + 1u == CORNERS ? 0u : k + 1u;
     switch (metric()) {
     case METRIC_UNIFORM:
-        return draw_factor();
+        return item.factor;
     case METRIC_EDGES:
-        precise float factor = draw_factor() * corner_factors[draw.first_corner + patch_number * CORNERS + k];
+        precise float factor = item.factor * corner_factors[draw.first_corner + patch_number * CORNERS + k];
         return factor;
     default:
         return edge_factor(owned[k][0], CONTROL_POINT(k, 1), CONTROL_POINT(next, 2), owned[next][0]);

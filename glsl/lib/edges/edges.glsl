@@ -5,6 +5,9 @@
 
 #include "evaluate/patch.glsl"
 #include "edges/shared_bits.glsl"
+#ifdef MAY_BE_ADAPTIVE
+#include "evaluate/leaves.glsl"
+#endif
 
 // Across an edge at `t` from its start, by what its ends see across it and their transversals: the same from either end, but for
 // its sign. With the derivative along the edge it makes the normal of both patches. Rust twin: `edge_across`.
@@ -95,17 +98,27 @@ SharedSample share(Surface own, vec3 at) {
 #endif
         // A sum of two is the same both ways.
         precise vec3 facing = PICK(DIRECTION0) + PICK(DIRECTION1);
-#ifndef FAULT_OWN_NORMAL
-#ifdef DISPLACED
-        vec3 of_edge = unit_normal(along, across, facing);
-        surface.direction = way == 0.0 ? PICK(DIRECTION0) : way == 1.0 ? PICK(DIRECTION1) : of_edge;
+#ifdef MAY_BE_ADAPTIVE
+        bool of_leaves = is_of_leaves(on);
+#else
+        const bool of_leaves = false;
 #endif
-        if (way == 0.0) {
-            own = Surface(own.position, vec3(0.0), vec3(0.0), PICK(NORMAL0));
-        } else if (way == 1.0) {
-            own = Surface(own.position, vec3(0.0), vec3(0.0), PICK(NORMAL1));
-        } else if (!(PICK(SHARP))) {
-            own = Surface(own.position, along, across, facing);
+#ifdef DISPLACED
+        surface.direction = own.facing;
+#endif
+#ifndef FAULT_OWN_NORMAL
+        if (!of_leaves) {
+#ifdef DISPLACED
+            vec3 of_edge = unit_normal(along, across, facing);
+            surface.direction = way == 0.0 ? PICK(DIRECTION0) : way == 1.0 ? PICK(DIRECTION1) : of_edge;
+#endif
+            if (way == 0.0) {
+                own = Surface(own.position, vec3(0.0), vec3(0.0), PICK(NORMAL0));
+            } else if (way == 1.0) {
+                own = Surface(own.position, vec3(0.0), vec3(0.0), PICK(NORMAL1));
+            } else if (!(PICK(SHARP))) {
+                own = Surface(own.position, along, across, facing);
+            }
         }
 #endif
 #ifdef DISPLACED

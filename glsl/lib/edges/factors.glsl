@@ -69,21 +69,21 @@ float bend_pixels(vec3 p0, vec3 p1, vec3 bend) {
 // The segments of an edge that its metric asks for, not yet within limits.
 float edge_factor(vec3 p0, vec3 e0, vec3 e1, vec3 p1) {
     if (metric() == METRIC_PIXELS) {
-        precise float segments = edge_pixels(p0, e0, e1, p1) / draw_factor();
+        precise float segments = edge_pixels(p0, e0, e1, p1) / item.factor;
         return segments;
     }
     // A cubic lies within max |P_i - 2 P_i+1 + P_i+2| * 6 / 8 of its chord, and within 1/n^2 of that when cut in n.
     precise vec3 bend0 = 0.75 * ((p0 + e1) - 2.0 * e0);
     precise vec3 bend1 = 0.75 * ((p1 + e0) - 2.0 * e1);
     float bend = max(bend_pixels(p0, p1, bend0), bend_pixels(p1, p0, bend1));
-    precise float strayed = bend / draw_factor();
+    precise float strayed = bend / item.factor;
     // A segment shorter than a pixel shows nothing.
     return min(sqrt(strayed), edge_pixels(p0, e0, e1, p1));
 }
 
 // The factor of edges at a vertex, from what all patches there have: the mean length of its tangents.
 float vertex_factor(vec3 p, vec3 a, vec3 b) {
-    precise float factor = draw_factor();
+    precise float factor = item.factor;
     if (metric() == METRIC_PIXELS || metric() == METRIC_CURVATURE) {
         precise vec3 along_a = p + 3.0 * a;
         precise vec3 along_b = p + 3.0 * b;

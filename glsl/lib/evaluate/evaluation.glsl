@@ -40,6 +40,9 @@ vec2 texcoord[CORNERS];
 layout(location = 2) out vec2 out_texcoord;
 #endif
 
+#ifdef MAY_BE_ADAPTIVE
+#include "evaluate/leaves.glsl"
+#endif
 #ifdef SHARED
 #include "edges/edges.glsl"
 #endif
@@ -59,6 +62,10 @@ uint capture_places;
 
 // Takes what was handed on of the patch.
 void read_patch() {
+#ifdef MAY_BE_ADAPTIVE
+    uint low = uint(PACKED_NUMBER(handed_on[0], HANDED_PATCH)), high = uint(PACKED_NUMBER(handed_on[1], HANDED_PATCH));
+    evaluated_patch = high << 24 | low;
+#endif
     for (int k = 0; k < CORNERS; ++k) {
         for (int i = 0; i < OWNED; ++i) {
             owned[k][i] = PACKED_VECTOR(handed_on[k], 3 * i);

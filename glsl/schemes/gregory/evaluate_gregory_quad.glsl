@@ -13,8 +13,34 @@ Surface evaluate_gregory_quad(float u, float v) {
 #undef CORNER
 }
 
+#include "evaluate/leaves.glsl"
+
+// A face that is refined: its leaves inside; on edges and at corners those of the owner, with its normal as `facing`. Where a
+// neighbour is not refined, what both make of their corners.
+Surface evaluate_leaves(vec3 at) {
+    bvec4 on = bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
+    if (!any(on)) {
+        return evaluate_face(evaluated_patch, at.xy);
+    }
+    uint place = edge_or_corner(on), owner = owner_of(place);
+    if (owner == OWNER_NONE) {
+        return evaluate_gregory_quad(at.x, at.y);
+    }
+    precise float left = 1.0 - at.x, up = 1.0 - at.y;
+    float back = on.x ? left : on.y ? up : on.z ? at.x : at.y;
+    Surface surface = evaluate_owned(owner, place, at.xy, back);
+    surface.facing = unit_normal(surface.du, surface.dv, vec3(0.0));
+    uint of_normal = normal_owner_of(place);
+    if (of_normal != owner) {
+        Surface side = evaluate_owned(of_normal, place, at.xy, back);
+        surface.du = side.du;
+        surface.dv = side.dv;
+    }
+    return surface;
+}
+
 Surface evaluate_surface(vec3 at) {
-    return evaluate_gregory_quad(at.x, at.y);
+    return ADAPTIVE ? evaluate_leaves(at) : evaluate_gregory_quad(at.x, at.y);
 }
 
 #endif

@@ -85,19 +85,20 @@ fn stages(kind: PatchKind) -> [&'static [u32]; 2] {
 
 impl Drawable for Bilinear {
     unsafe fn cmd_draw(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
-        // SAFETY: as the caller promises.
-        unsafe { self.kit.cmd_bind(cmd, frame.view)? };
-        let properties = self.kit.context.properties();
-        let max = properties.max_tessellation_level;
+        let max = self.kit.context.properties().max_tessellation_level;
         let factor = frame.factor.min(max as f32);
+        // SAFETY: as the caller promises.
+        unsafe { self.kit.write_frame(frame, factor)? };
+        let properties = self.kit.context.properties();
         for kind in &self.kinds {
             let domain = if kind.corners == 3 { Domain::Triangles } else { Domain::Quads };
             let vertices = tessellated_vertices(domain, self.spacing, factor, max);
             // SAFETY: as the caller promises.
             unsafe { self.kit.cmd_bind_pipeline(cmd, &kind.pipelines, frame) };
-            for transform in frame.instances {
-                let mut constants = DrawConstants::new(transform, [factor, 0.0, 0.0]);
-                constants.colour = [0.7, 0.7, 0.7, 1.0];
+            for instance in 0..frame.instances.len() {
+                // SAFETY: as the caller promises.
+                unsafe { self.kit.cmd_bind(cmd, instance) };
+                let mut constants = DrawConstants::new(0);
                 constants.first_corner = kind.first_corner;
                 for draw in properties.patch_batch.draws(kind.patches, kind.corners, vertices) {
                     constants.patches_per_instance = draw.patches_per_instance;

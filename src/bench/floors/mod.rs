@@ -14,7 +14,7 @@ use crate::gpu::{
     MemoryLocation, Owned, RenderTarget, SetLayout, Shader, descriptor_set_layout, pipeline_layout,
 };
 use crate::headless::Headless;
-use crate::renderer::{DrawConstants, STAGES, ShaderId, View, ViewData};
+use crate::renderer::{DrawConstants, ItemRecord, STAGES, ShaderId, ViewData};
 use ash::vk;
 use bytemuck::NoUninit;
 use std::sync::Arc;
@@ -39,6 +39,8 @@ struct Kit {
     _set_layouts: [SetLayout; 2],
     sets: [DescriptorSet; 2],
     view: Buffer,
+    /// A record for each instance.
+    items: Buffer,
     _position_texels: Owned<vk::BufferView>,
 }
 
@@ -49,8 +51,9 @@ impl Kit {
         let context = headless.context();
         use vk::DescriptorType as Type;
         let (uniform, buffer, texels) = (Type::UNIFORM_BUFFER, Type::STORAGE_BUFFER, Type::UNIFORM_TEXEL_BUFFER);
+        let of_item = Type::UNIFORM_BUFFER_DYNAMIC;
         let set_layouts = [
-            descriptor_set_layout(context, NAME, &[(uniform, STAGES)])?,
+            descriptor_set_layout(context, NAME, &[(uniform, STAGES), (buffer, STAGES), (of_item, STAGES)])?,
             descriptor_set_layout(context, NAME, &[(buffer, STAGES), (buffer, STAGES), (texels, STAGES)])?,
         ];
         let raw = [set_layouts[0].raw(), set_layouts[1].raw()];
@@ -62,6 +65,7 @@ impl Kit {
         let desc =
             BufferDesc { name: NAME, size: size_of::<ViewData>() as u64, usage, location: MemoryLocation::Upload };
         let view = Buffer::new(context, &desc)?;
+        let items = item_buffer(context, 1)?;
         let pool = DescriptorPool::new(context, NAME, &set_layouts.each_ref());
         // SAFETY: the layouts are those of the pool; every submission is waited for.
         let sets = unsafe {
@@ -75,19 +79,23 @@ impl Kit {
         let texel_views = [position_texels.raw()];
         let writes = [
             write(sets[0].raw(), uniform).buffer_info(&views),
+            write(sets[0].raw(), buffer).dst_binding(1).buffer_info(&buffers[..1]),
             write(sets[1].raw(), buffer).buffer_info(&buffers),
             write(sets[1].raw(), texels).dst_binding(BINDINGS as u32).texel_buffer_view(&texel_views),
         ];
         // SAFETY: the sets are new, and the buffers live as long as they.
         unsafe { device.update_descriptor_sets(&writes, &[]) };
-        Ok(Self {
+        let kit = Self {
             context: context.clone(),
             layout,
             _set_layouts: set_layouts,
             sets,
             view,
+            items,
             _position_texels: position_texels,
-        })
+        };
+        kit.write_items();
+        Ok(kit)
     }
 
     /// Pipelines for [`Pass::ALL`].
@@ -121,17 +129,45 @@ impl Kit {
         Ok([pixels?, geometry?])
     }
 
-    /// Binds the sets and writes the view.
+    /// Has the set of the view show the records.
+    fn write_items(&self) {
+        let items = [vk::DescriptorBufferInfo { range: size_of::<ItemRecord>() as u64, ..self.items.descriptor() }];
+        let write = vk::WriteDescriptorSet::default()
+            .dst_set(self.sets[0].raw())
+            .dst_binding(2)
+            .descriptor_type(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC)
+            .buffer_info(&items);
+        // SAFETY: the device does not use the set, and the buffer lives as long as it.
+        unsafe { self.context.device().update_descriptor_sets(&[write], &[]) };
+    }
+
+    /// Writes the view, and a record for each instance.
     ///
     /// # Safety
-    /// `cmd` is being recorded; the device is done with earlier frames.
-    unsafe fn cmd_bind(&mut self, cmd: vk::CommandBuffer, view: &View) -> Result<(), GpuError> {
-        self.view.write(0, &[ViewData::new(view)])?;
+    /// The device is done with earlier frames.
+    unsafe fn write_frame(&mut self, frame: &Frame, factor: f32) -> Result<(), GpuError> {
+        self.view.write(0, &[ViewData::new(frame.view)])?;
+        if (frame.instances.len() as u64) > self.items.size() / ItemRecord::STRIDE {
+            self.items = item_buffer(&self.context, frame.instances.len())?;
+            self.write_items();
+        }
+        for (i, transform) in (0..).zip(frame.instances) {
+            let record = ItemRecord::new(transform, [[0.7, 0.7, 0.7, 1.0]; 4], factor);
+            self.items.write(ItemRecord::STRIDE * i, &[record])?;
+        }
+        Ok(())
+    }
+
+    /// Binds the sets, with the record of an instance.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded, after [`Kit::write_frame`].
+    unsafe fn cmd_bind(&self, cmd: vk::CommandBuffer, instance: usize) {
         let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, self.layout.raw());
         let sets = self.sets.each_ref().map(DescriptorSet::raw);
+        let offset = instance as u32 * ItemRecord::STRIDE as u32;
         // SAFETY: as the caller promises.
-        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, &[]) };
-        Ok(())
+        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, &[offset]) };
     }
 
     /// # Safety
@@ -155,6 +191,12 @@ impl Kit {
             }
         }
     }
+}
+
+/// A buffer with room for so many records.
+fn item_buffer(context: &Arc<DeviceContext>, items: usize) -> Result<Buffer, GpuError> {
+    let (size, usage) = (ItemRecord::STRIDE * items as u64, vk::BufferUsageFlags::UNIFORM_BUFFER);
+    Buffer::new(context, &BufferDesc { name: "bench floor items", size, usage, location: MemoryLocation::Upload })
 }
 
 /// A buffer on the device with this in it.

@@ -118,16 +118,15 @@ impl Drawable for VertexBuffer<'_> {
         let Some(drawn) = &self.drawn else { return Ok(()) };
         // SAFETY: as the caller promises.
         unsafe {
-            self.kit.cmd_bind(cmd, frame.view)?;
+            self.kit.write_frame(frame, 1.0)?;
             self.kit.cmd_bind_pipeline(cmd, &self.pipelines, frame);
             let device = self.lane.headless.device();
             device.cmd_bind_vertex_buffers(cmd, 0, &[drawn.vertices.raw()], &[0]);
             device.cmd_bind_index_buffer(cmd, drawn.indices.raw(), 0, vk::IndexType::UINT32);
             device.cmd_set_primitive_topology(cmd, drawn.topology);
-            for transform in frame.instances {
-                let constants =
-                    DrawConstants { colour: [0.7, 0.7, 0.7, 1.0], ..DrawConstants::new(transform, [1.0, 0.0, 0.0]) };
-                self.kit.cmd_push(cmd, &constants);
+            self.kit.cmd_push(cmd, &DrawConstants::new(0));
+            for instance in 0..frame.instances.len() {
+                self.kit.cmd_bind(cmd, instance);
                 device.cmd_draw_indexed(cmd, drawn.count, 1, 0, 0, 0);
             }
         }

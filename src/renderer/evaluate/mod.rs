@@ -19,4 +19,4 @@ pub(crate) use drawn::{Asked, Drawn};
 pub(crate) use indices::topology;
 pub(crate) use lattice::{BoundLattice, Lattice, LatticePipelines};
 pub(crate) use path::path;
-pub(crate) use recorder::{Bound, DrawnGroup, Recorder};
+pub(crate) use recorder::{Bound, DrawnGroup, Place, Recorder};

@@ -22,9 +22,9 @@ pub(crate) trait Path: Sync {
         false
     }
 
-    /// Whether pipelines depend on the number in a draw's factor.
-    fn depends_on_factor(&self) -> bool {
-        false
+    /// What pipelines take from the number in a draw's factor: nothing, or the level of subdivision.
+    fn level(&self, _factor: Factor) -> Option<u32> {
+        None
     }
 
     /// What tells the pipelines of its draws apart in one style; none for a factor that it does not have.

@@ -16,12 +16,24 @@ pub(crate) struct Bound {
     pub discards: bool,
 }
 
+/// Where shaders find the view and the item.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    /// Set 0.
+    pub set: vk::DescriptorSet,
+    /// Bytes before the view in its buffer.
+    pub view: u32,
+    /// Bytes before the item's record in its buffer.
+    pub record: u32,
+}
+
 /// The draws of one item.
 pub(crate) struct Recorder<'r> {
     pub device: &'r ash::Device,
     pub properties: &'r DeviceProperties,
     pub layout: vk::PipelineLayout,
     pub cmd: vk::CommandBuffer,
+    pub place: Place,
     pub bound: &'r mut Bound,
     pub constants: DrawConstants,
 }
@@ -38,6 +50,34 @@ pub(crate) struct DrawnGroup<'m> {
 }
 
 impl Recorder<'_> {
+    /// Binds the view, the item and the set of its model.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded.
+    pub(crate) unsafe fn bind_item(&mut self, model: vk::DescriptorSet) {
+        let sets = [self.place.set, model];
+        let changed = if self.bound.set == model { &sets[..1] } else { &sets[..] };
+        self.bound.set = model;
+        // SAFETY: as the caller promises.
+        unsafe { self.bind(changed, 0) };
+    }
+
+    /// Binds a list of patches, which starts at `offset` bytes in the buffer of the lists.
+    ///
+    /// # Safety
+    /// `cmd` is being recorded.
+    pub(crate) unsafe fn bind_list(&self, offset: u32) {
+        // SAFETY: as the caller promises.
+        unsafe { self.bind(&[self.place.set], offset) };
+    }
+
+    /// Binds sets from set 0 on, with the offsets of the view, a list and the item.
+    unsafe fn bind(&self, sets: &[vk::DescriptorSet], list: u32) {
+        let (point, offsets) = (vk::PipelineBindPoint::GRAPHICS, [self.place.view, list, self.place.record]);
+        // SAFETY: as the caller promises.
+        unsafe { self.device.cmd_bind_descriptor_sets(self.cmd, point, self.layout, 0, sets, &offsets) };
+    }
+
     /// Pushes the constants.
     ///
     /// # Safety

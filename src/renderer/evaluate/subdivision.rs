@@ -35,8 +35,8 @@ impl Path for Subdivision {
         Features { geometry: true, ..Features::NONE }
     }
 
-    fn depends_on_factor(&self) -> bool {
-        true
+    fn level(&self, factor: Factor) -> Option<u32> {
+        level_of(factor)
     }
 
     fn key(&self, _stages: PatchStages, _cut: Cut, factor: Factor) -> Option<GeometryKey> {

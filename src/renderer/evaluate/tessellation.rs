@@ -37,7 +37,7 @@ impl Path for Tessellation {
         let mut shaders = vec![
             RecipeStage::new(shared.vertex(), &constants),
             RecipeStage::new(shared.control(capture, texcoords), &constants),
-            RecipeStage { spacing, ..RecipeStage::new(evaluation, &[]) },
+            RecipeStage { spacing, ..RecipeStage::new(evaluation, &constants) },
         ];
         if capture == Capture::Triangles {
             shaders.push(RecipeStage::new(ShaderKey::of(Source::TrianglesGeom), &[]));

@@ -5,13 +5,13 @@
 //! their order, but of every 128 first those within the frustum, then those that cross it. Where control points are not cached it
 //! makes those of all patches, and the draws make those of the patches that are left again.
 
-use super::lists::{FrameLists, ListLayout};
+use super::Renderer;
+use super::lists::ListLayout;
 use super::resolved::ResolvedItem;
 use super::visible::{ItemLists, List, VisibleItem, VisibleItems};
-use super::{Renderer, RetiredObject};
 #[cfg(doc)]
 use crate::renderer::Evaluation;
-use crate::renderer::evaluate::{Bound, path};
+use crate::renderer::evaluate::{Bound, Drawn, Place, path};
 use crate::renderer::options::{Cull, DrawItem, Error, Geometry, View};
 use crate::renderer::shader::{Cut, PatchStages};
 use crate::table::PatchGroup;
@@ -55,15 +55,15 @@ impl Renderer {
                 bytes += pieces(group, layout).map(|(_, count)| layout.bytes(count)).sum::<u64>();
             }
         }
-        self.make_room(frame_index, bytes)?;
+        self.make_room(frame_index, bytes, items.len())?;
         let mut listed = Vec::with_capacity(items.len());
         for item in items {
             let lists = self.take_lists(frame_index, view, item)?;
-            let segments = match lists.is_empty() {
-                true => None,
-                false => self.model(item.model)?.drawn(item.factor)?.lattice().map(|lattice| lattice.segments),
-            };
-            listed.push(VisibleItem { item: *item, lists, segments });
+            let ResolvedItem { record, drawn, .. } = self.resolve(view, item)?;
+            let lattice = drawn.and_then(Drawn::lattice).filter(|_| !lists.is_empty());
+            let segments = lattice.map(|lattice| lattice.segments);
+            let record = self.lists[frame_index as usize].records.push(&record)?;
+            listed.push(VisibleItem { item: *item, record, lists, segments });
         }
         let lists = &self.lists[frame_index as usize];
         let (set, buffer) = (lists.set.raw(), lists.raw());
@@ -102,12 +102,12 @@ impl Renderer {
             return Err(Error::OtherFrame { frame: frame_index });
         }
         let mut bound = Bound::default();
-        // SAFETY: as the caller promises.
-        unsafe { self.cmd_bind_view(cmd, visible.set, [visible.view_offset, 0]) };
         for own in &visible.items {
             let lists = Some(ItemLists { all: visible, own });
+            let place = Place { set: visible.set, view: visible.view_offset, record: own.record };
+            let resolved = self.resolve(&visible.view, &own.item)?;
             // SAFETY: as the caller promises.
-            unsafe { self.cmd_draw_item(cmd, &visible.view, &own.item, lists, &mut bound)? };
+            unsafe { self.cmd_draw_item(cmd, place, &resolved, lists, &mut bound)? };
         }
         Ok(())
     }
@@ -120,25 +120,6 @@ impl Renderer {
         let groups = model.stages.iter().zip(model.tables.plan().groups()).enumerate();
         let groups = groups.map(|(number, (&stages, group))| (number, stages, group));
         Ok(groups.filter(move |(_, stages, _)| any && stages.has_hull()))
-    }
-
-    /// Makes room for lists of so many bytes in a frame.
-    fn make_room(&mut self, frame: u32, bytes: u64) -> Result<(), Error> {
-        let lists = &self.lists[frame as usize];
-        if lists.has_room(bytes) {
-            return Ok(());
-        }
-        // Offsets are of 32 bits.
-        let max = u64::from(u32::MAX >> 1);
-        if bytes > max {
-            return Err(Error::ListsTooLarge { bytes, max });
-        }
-        let capacity = bytes.max(2 * lists.capacity).next_power_of_two().min(max + 1);
-        let larger = FrameLists::new(&self.context, &self.pipelines.sets, &self.views, capacity)?;
-        let before = std::mem::replace(&mut self.lists[frame as usize], larger);
-        // What was found in this frame so far is in there.
-        self.retire(Some(frame), RetiredObject::Lists(Box::new(before)));
-        Ok(())
     }
 
     fn take_lists(&mut self, frame: u32, view: &View, item: &DrawItem) -> Result<Vec<List>, Error> {
@@ -159,13 +140,13 @@ impl Renderer {
 
     unsafe fn cmd_lists(&self, cmd: vk::CommandBuffer, visible: &VisibleItems) -> Result<(), Error> {
         use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
-        for VisibleItem { item, lists, .. } in &visible.items {
+        for VisibleItem { item, record, lists, .. } in &visible.items {
             let ResolvedItem { model, constants: of_draw, .. } = self.resolve(&visible.view, item)?;
             let drawn = model.drawn(item.factor)?;
             for list in lists {
                 let constants = list.constants(model, drawn, &of_draw);
                 let key = (model.stages[list.group], Cut::new(item.factor, item.cull));
-                let (sets, offsets) = ([visible.set, model.set.raw], [visible.view_offset, list.offset]);
+                let (sets, offsets) = ([visible.set, model.set.raw], [visible.view_offset, list.offset, *record]);
                 // SAFETY: as the caller promises.
                 unsafe { self.list_pipelines.cmd_list(cmd, key, sets, offsets, &constants) };
             }

@@ -3,10 +3,9 @@
 use super::Renderer;
 use super::resolved::ResolvedItem;
 use super::visible::ItemLists;
-use crate::renderer::evaluate::{Bound, BoundLattice, DrawnGroup, Recorder, path};
-use crate::renderer::model::Model;
+use crate::renderer::evaluate::{Bound, BoundLattice, Drawn, DrawnGroup, Place, Recorder, path};
 use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View};
-use crate::renderer::shader::{Cut, GeometryKey, PatchStages, PipelineKey, ViewData};
+use crate::renderer::shader::{Cut, GeometryKey, PipelineKey, ViewData};
 #[cfg(doc)]
 use crate::table::Evaluation;
 use ash::vk;
@@ -17,7 +16,7 @@ impl Renderer {
     /// and rasterizer discard where those are dynamic.
     ///
     /// # Errors
-    /// Unknown models, styles and frames, factors below 1 and more views than
+    /// Unknown models, styles and frames, factors below 1, more items than 2^23 and more views than
     /// [`Options::views_per_frame`](crate::renderer::Options::views_per_frame). Items before the wrong one are recorded.
     ///
     /// # Safety
@@ -32,17 +31,20 @@ impl Renderer {
         items: &[DrawItem],
     ) -> Result<(), Error> {
         self.check_frame(frame_index)?;
-        let offset = self.take_view(frame_index, view)?;
-        let set = self.lists[frame_index as usize].set.raw();
-        // SAFETY: as the caller promises.
-        unsafe { self.cmd_bind_view(cmd, set, [offset, 0]) };
+        let view_offset = self.take_view(frame_index, view)?;
+        self.make_room(frame_index, 0, items.len())?;
+        let lists = &mut self.lists[frame_index as usize];
+        let (set, mut records) = (lists.set.raw(), std::mem::take(&mut lists.records));
         let mut bound = Bound::default();
-        for item in items {
+        let drawn = items.iter().try_for_each(|item| {
             self.make_cuts(item.model, item.factor, item.cull, false)?;
+            let resolved = self.resolve(view, item)?;
+            let place = Place { set, view: view_offset, record: records.push(&resolved.record)? };
             // SAFETY: as the caller promises.
-            unsafe { self.cmd_draw_item(cmd, view, item, None, &mut bound)? };
-        }
-        Ok(())
+            unsafe { self.cmd_draw_item(cmd, place, &resolved, None, &mut bound) }
+        });
+        self.lists[frame_index as usize].records = records;
+        drawn
     }
 
     /// Writes what the shaders know of a view, and tells where that is.
@@ -56,13 +58,6 @@ impl Renderer {
         *drawn += 1;
         self.views.write(offset, &[ViewData::new(view)])?;
         Ok(offset as u32)
-    }
-
-    /// Binds set 0, with the offsets of the view and of a list of patches.
-    pub(crate) unsafe fn cmd_bind_view(&self, cmd: vk::CommandBuffer, set: vk::DescriptorSet, offsets: [u32; 2]) {
-        let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, self.pipelines.draws.layout.raw());
-        // SAFETY: as the caller of `cmd_draw` promises.
-        unsafe { self.context.device().cmd_bind_descriptor_sets(cmd, point, layout, 0, &[set], &offsets) };
     }
 
     /// Makes the pipelines for draws of a model with such factors and culling, whatever the number in the factor (but each
@@ -85,10 +80,10 @@ impl Renderer {
         // Of patches that are not looked at, all are drawn.
         let cuts = if lists { [Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { [cut; 2] };
         for each in cuts {
-            let is_made = model.made.contains(&each);
-            if !is_made || path(model.evaluation).depends_on_factor() {
-                self.pipelines.make(&model.stages, each, factor)?;
-                model.made.extend((!is_made).then_some(each));
+            let level = path(model.evaluation).level(factor);
+            if !model.made.iter().any(|made| made.is_of(each, level)) {
+                let made = self.pipelines.make(&model.stages, each, factor)?;
+                model.made.push(made);
             }
         }
         if lists {
@@ -101,42 +96,37 @@ impl Renderer {
     /// Records the draws of an item, of the patches on lists where there are lists.
     ///
     /// # Safety
-    /// As [`Renderer::cmd_draw`], with set 0 bound.
+    /// As [`Renderer::cmd_draw`].
     pub(crate) unsafe fn cmd_draw_item(
         &self,
         cmd: vk::CommandBuffer,
-        view: &View,
-        item: &DrawItem,
+        place: Place,
+        resolved: &ResolvedItem,
         lists: Option<ItemLists>,
         bound: &mut Bound,
     ) -> Result<(), Error> {
-        let ResolvedItem { model, style, most, constants } = self.resolve(view, item)?;
+        let &ResolvedItem { model, drawn, constants, .. } = resolved;
         let (device, layout) = (self.context.device(), self.pipelines.draws.layout.raw());
-        if bound.set != model.set.raw {
-            bound.set = model.set.raw;
-            let point = vk::PipelineBindPoint::GRAPHICS;
-            // SAFETY: as the caller of `cmd_draw` promises.
-            unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[model.set.raw], &[]) };
-        }
         let properties = self.context.properties();
-        let mut recorder = Recorder { device, properties, layout, cmd, bound, constants };
+        let mut recorder = Recorder { device, properties, layout, cmd, place, bound, constants };
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
-            if style.geometry == Geometry::Surface {
+            recorder.bind_item(model.set.raw);
+            if let Some(drawn) = drawn {
                 let lists = lists.filter(|lists| !lists.is_empty());
-                self.cmd_draw_surface(&mut recorder, (model, most), item, style, lists)
+                self.cmd_draw_surface(&mut recorder, resolved, drawn, lists)
             } else {
-                self.cmd_draw_control(&mut recorder, model, item, style);
+                self.cmd_draw_control(&mut recorder, resolved);
                 Ok(())
             }
         }
     }
 
     /// Records the draw of the control mesh.
-    unsafe fn cmd_draw_control(&self, recorder: &mut Recorder, model: &Model, item: &DrawItem, style: &Style) {
+    unsafe fn cmd_draw_control(&self, recorder: &mut Recorder, resolved: &ResolvedItem) {
+        let &ResolvedItem { item, model, style, .. } = resolved;
         let (device, cmd) = (recorder.device, recorder.cmd);
         recorder.bound.lattice = BoundLattice::default();
-        recorder.constants.colour = item.colors[0];
         let key = PipelineKey { style: item.style, geometry: GeometryKey::Control };
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
@@ -157,35 +147,33 @@ impl Renderer {
     unsafe fn cmd_draw_surface(
         &self,
         recorder: &mut Recorder,
-        (model, most): (&Model, f32),
-        item: &DrawItem,
-        style: &Style,
+        resolved: &ResolvedItem,
+        drawn: Drawn,
         lists: Option<ItemLists>,
     ) -> Result<(), Error> {
-        let (path, drawn) = (path(model.evaluation), model.drawn(item.factor)?);
+        let &ResolvedItem { item, model, style, most, .. } = resolved;
         lists.map_or(Ok(()), |lists| lists.check(drawn))?;
-        if let Some(segments) = drawn.segments() {
-            recorder.constants.set_factor(segments as f32);
-        }
         match drawn.lattice() {
             // SAFETY: as the caller of `cmd_draw` promises.
             Some(lattice) => unsafe { lattice.cmd_bind(recorder.device, recorder.cmd, &mut recorder.bound.lattice) },
             None => recorder.bound.lattice = BoundLattice::default(),
         }
-        let cut = Cut::new(item.factor, if lists.is_some() { Cull::NONE } else { item.cull });
+        let path = path(model.evaluation);
+        let level = path.level(item.factor);
+        let made = |cut| model.made.iter().find(|made| made.is_of(cut, level));
+        let of_all = made(Cut::new(item.factor, if lists.is_some() { Cull::NONE } else { item.cull }));
+        let of_lists = lists.and_then(|_| made(Cut::listed(item.factor)));
         let groups = model.tables.plan().groups();
         let pipeline = |number: usize| {
-            let stages: PatchStages = model.stages[number];
-            let listed = lists.is_some() && stages.has_hull();
-            let geometry = path.key(stages, if listed { Cut::listed(item.factor) } else { cut }, item.factor)?;
-            self.pipelines.draws.get(PipelineKey { style: item.style, geometry })
+            let made = of_lists.filter(|_| model.stages[number].has_hull()).or(of_all)?;
+            Some(made.of(number, item.style))
         };
         // Of many models, every other one is drawn from the last kind of patch to the first: its pipeline is bound already.
         let backwards = groups.len() > 1 && pipeline(groups.len() - 1) == Some(recorder.bound.pipeline);
         for i in 0..groups.len() {
             let number = if backwards { groups.len() - 1 - i } else { i };
             let (stages, group) = (model.stages[number], &groups[number]);
-            recorder.constants.colour = item.colors[stages.kind as usize];
+            recorder.constants.set_kind(stages.kind);
             // SAFETY: as the caller of `cmd_draw` promises.
             unsafe { self.bind(recorder.cmd, style, pipeline(number), recorder.bound) };
             if let Some(lists) = lists.filter(|_| stages.has_hull()) {

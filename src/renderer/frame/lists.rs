@@ -1,10 +1,13 @@
 //! Lists of the patches that can be seen, made by compute: pipelines, memory, dispatches. See [`super::cull`].
 
 use crate::constants::{ID_COPIES, REGION};
-use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, Specialization};
+use crate::gpu::{
+    Buffer, BufferDesc, DescriptorSet, DeviceContext, GpuError, MAX_OFFSET_ALIGNMENT, MemoryLocation, Specialization,
+};
 use crate::renderer::evaluate::path;
+use crate::renderer::options::Error;
 use crate::renderer::pipelines::ComputePipelines;
-use crate::renderer::shader::{Cut, PatchStages, SetLayouts, ShaderCode, ViewData};
+use crate::renderer::shader::{Cut, DrawConstants, ItemRecord, PatchStages, SetLayouts, ShaderCode, ViewData};
 use crate::table::TEXEL_BYTES;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -14,6 +17,15 @@ use std::sync::Arc;
 const PLACE_BYTES: u64 = 4;
 /// The most bytes of a list.
 const MAX_BYTES: u64 = 1 << 20;
+/// The most bytes of the lists of a frame: their offsets are of 32 bits.
+const MAX_LISTS: u64 = 1 << 31;
+/// The most records of a frame: likewise.
+const MAX_RECORDS: u64 = MAX_LISTS / ItemRecord::STRIDE;
+
+/// A capacity with room for `needed`, of at most `max`: at least twice what there was, so that growing is rare.
+fn grown(needed: u64, capacity: u64, max: u64) -> Option<u64> {
+    (needed <= max).then(|| needed.max(2 * capacity).next_power_of_two().min(max))
+}
 
 /// How large a list is, and what is in it: places of patches, then the indirect draws, then copies. Workgroups list the patches of
 /// a region each, and write its draws.
@@ -64,30 +76,25 @@ impl ListLayout {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct ListConstants {
-    /// As of [`DrawConstants`](crate::renderer::gpu_data::DrawConstants).
-    pub transform: [[f32; 4]; 3],
-    pub factor: f32,
-    pub flags: u32,
-    pub first_corner: u32,
-    pub first_patch: u32,
+    /// As in draws, but for how many patches an instance has: 0 for indexed draws with an instance for each patch.
+    pub of_draw: DrawConstants,
     /// Of the patches.
     pub count: u32,
     /// Vertices of a patch in a draw: the points of its corners, or the indices of a lattice.
     pub vertices: u32,
     /// Of a lattice.
     pub first_index: u32,
-    /// 0 for indexed draws with an instance for each patch.
-    pub patches_per_instance: u32,
     /// The word of the list where the copies start.
     pub copies: u32,
 }
 
-const _: () = assert!(std::mem::offset_of!(ListConstants, count) == 64);
-const _: () = assert!(size_of::<ListConstants>() == 84);
+const _: () = assert!(std::mem::offset_of!(ListConstants, count) == 16);
+const _: () = assert!(size_of::<ListConstants>() == 32);
 
-/// The lists of a frame, and set 0 with them.
+/// The lists of a frame, the records of its items, and set 0 with them.
 pub(crate) struct FrameLists {
     pub set: DescriptorSet,
+    pub records: Records,
     buffer: Option<Buffer>,
     /// Bytes that lists may take.
     pub capacity: u64,
@@ -95,12 +102,13 @@ pub(crate) struct FrameLists {
 }
 
 impl FrameLists {
-    /// With room for lists of so many bytes.
+    /// With room for lists of so many bytes, and for some records.
     pub(crate) fn new(
         context: &Arc<DeviceContext>,
         layouts: &SetLayouts,
         views: &Buffer,
         bytes: u64,
+        records: u32,
     ) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::INDIRECT_BUFFER | Usage::VERTEX_BUFFER;
@@ -111,19 +119,36 @@ impl FrameLists {
         // Every descriptor has to be written; without lists no draw reads any.
         let (lists, range) = buffer.as_ref().map_or((views, 4), |lists| (lists, range));
         let part = |buffer: &Buffer, range| vk::DescriptorBufferInfo { buffer: buffer.raw(), offset: 0, range };
-        let parts = [part(views, size_of::<ViewData>() as u64), part(lists, range)];
+        let records = Records::new(context, records)?;
+        let of_items = part(records.buffer.as_ref().unwrap_or(views), size_of::<ItemRecord>() as u64);
+        let parts = [part(views, size_of::<ViewData>() as u64), part(lists, range), of_items];
         // SAFETY: the layout is among those of the pool, with these; the lists go with the set, and the views with the renderer.
         let set = unsafe { DescriptorSet::of_buffers(&layouts.pool, &layouts.view, "subdiv view", &parts)? };
-        Ok(Self { set, buffer, capacity: bytes, used: 0 })
+        Ok(Self { set, records, buffer, capacity: bytes, used: 0 })
     }
 
-    /// Forgets the lists that there are.
+    /// Forgets the lists and records that there are.
     pub(crate) fn clear(&mut self) {
         self.used = 0;
+        self.records.used = 0;
     }
 
     pub(crate) fn has_room(&self, bytes: u64) -> bool {
         self.used + bytes <= self.capacity
+    }
+
+    /// Bytes and records of larger ones, with room for `bytes` bytes of lists and for `records` records.
+    pub(crate) fn grown(&self, bytes: u64, records: u64) -> Result<(u64, u32), Error> {
+        let bytes = match self.has_room(bytes) {
+            true => self.capacity,
+            false => grown(bytes, self.capacity, MAX_LISTS).ok_or(Error::ListsTooLarge { bytes, max: MAX_LISTS })?,
+        };
+        let records = match self.records.has_room(records) {
+            true => self.records.capacity.into(),
+            false => grown(records, self.records.capacity.into(), MAX_RECORDS)
+                .ok_or(Error::TooManyItems { given: records, max: MAX_RECORDS })?,
+        };
+        Ok((bytes, records as u32))
     }
 
     /// Takes room of so many bytes for a list, which there must be: where it starts.
@@ -136,6 +161,46 @@ impl FrameLists {
     /// The buffer with the lists; null if there is no room for any.
     pub(crate) fn raw(&self) -> vk::Buffer {
         self.buffer.as_ref().map_or(vk::Buffer::null(), Buffer::raw)
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        self.buffer.as_ref().map_or(0, Buffer::size)
+    }
+}
+
+/// Records of items, for the host to write.
+#[derive(Default)]
+pub(crate) struct Records {
+    buffer: Option<Buffer>,
+    pub capacity: u32,
+    used: u32,
+}
+
+impl Records {
+    fn new(context: &Arc<DeviceContext>, capacity: u32) -> Result<Self, GpuError> {
+        let desc = BufferDesc {
+            name: "subdiv items",
+            size: ItemRecord::STRIDE * u64::from(capacity),
+            usage: vk::BufferUsageFlags::UNIFORM_BUFFER,
+            location: MemoryLocation::Upload,
+        };
+        let buffer = (capacity > 0).then(|| Buffer::new(context, &desc)).transpose()?;
+        Ok(Self { buffer, capacity, used: 0 })
+    }
+
+    /// Whether there is room for `more` records.
+    pub(crate) fn has_room(&self, more: u64) -> bool {
+        u64::from(self.used) + more <= u64::from(self.capacity)
+    }
+
+    /// Writes a record, for which there must be room: where it is in the buffer.
+    pub(crate) fn push(&mut self, record: &ItemRecord) -> Result<u32, GpuError> {
+        let offset = ItemRecord::STRIDE * u64::from(self.used);
+        if let Some(buffer) = &mut self.buffer {
+            buffer.write(offset, std::slice::from_ref(record))?;
+        }
+        self.used += 1;
+        Ok(offset as u32)
     }
 
     pub(crate) fn bytes(&self) -> u64 {
@@ -169,13 +234,13 @@ impl ListPipelines {
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering; the pipeline was made; the sets and the offsets in set 0 (of the view, of the
-    /// list) are valid, and the list has room.
+    /// list, of the item's record) are valid, and the list has room.
     pub(crate) unsafe fn cmd_list(
         &self,
         cmd: vk::CommandBuffer,
         (stages, cut): (PatchStages, Cut),
         sets: [vk::DescriptorSet; 2],
-        offsets: [u32; 2],
+        offsets: [u32; 3],
         constants: &ListConstants,
     ) {
         // SAFETY: as the caller promises.

@@ -33,6 +33,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// How many renderers there were so far: each has a number of its own.
 static RENDERERS: AtomicU64 = AtomicU64::new(0);
 
+/// Items of a frame that there is room for from the start.
+const FIRST_RECORDS: u32 = 64;
+
 /// Something that must outlive the frames that may still use it.
 struct Retired {
     /// The frames that may use it; it goes when each has been prepared again.
@@ -106,7 +109,7 @@ impl Renderer {
                 location: MemoryLocation::Upload,
             },
         )?;
-        let lists = |_| FrameLists::new(context, &pipelines.sets, &views, 0);
+        let lists = |_| FrameLists::new(context, &pipelines.sets, &views, 0, FIRST_RECORDS);
         let lists = (0..options.frames_in_flight).map(lists).collect::<Result<_, _>>()?;
         Ok(Self {
             context: context.clone(),
@@ -200,6 +203,20 @@ impl Renderer {
         self.retired.push(Retired { frames: frames.collect(), _what: what });
     }
 
+    /// Makes room in a frame for lists of `bytes` bytes and the records of `items` items.
+    fn make_room(&mut self, frame: u32, bytes: u64, items: usize) -> Result<(), Error> {
+        let (lists, items) = (&self.lists[frame as usize], items as u64);
+        if lists.has_room(bytes) && lists.records.has_room(items) {
+            return Ok(());
+        }
+        let (bytes, records) = lists.grown(bytes, items)?;
+        let larger = FrameLists::new(&self.context, &self.pipelines.sets, &self.views, bytes, records)?;
+        let before = std::mem::replace(&mut self.lists[frame as usize], larger);
+        // What was found and drawn in this frame so far is in there.
+        self.retire(Some(frame), RetiredObject::Lists(Box::new(before)));
+        Ok(())
+    }
+
     /// The tables of a model.
     ///
     /// # Errors
@@ -250,7 +267,8 @@ impl Renderer {
     /// Bytes of all models together.
     pub fn memory_usage(&self) -> MemoryUsage {
         let lists = self.lists.iter().map(FrameLists::bytes).sum();
-        let mut usage = MemoryUsage { views: self.views.size(), lists, ..MemoryUsage::default() };
+        let records: u64 = self.lists.iter().map(|lists| lists.records.bytes()).sum();
+        let mut usage = MemoryUsage { views: self.views.size() + records, lists, ..MemoryUsage::default() };
         self.models.values().for_each(|model| model.add_memory(&mut usage));
         let lattices = self.models.values().filter_map(|model| model.lattice.as_ref());
         let indices: FxHashMap<_, _> =

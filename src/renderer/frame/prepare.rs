@@ -122,7 +122,8 @@ impl Renderer {
     /// The shader stages that read what models keep in buffers.
     fn shader_readers(&self) -> vk::PipelineStageFlags {
         use vk::PipelineStageFlags as Stage;
-        let mut readers = Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER;
+        let mut readers =
+            Stage::VERTEX_SHADER | Stage::TESSELLATION_CONTROL_SHADER | Stage::TESSELLATION_EVALUATION_SHADER;
         if self.context.features().geometry {
             readers |= Stage::GEOMETRY_SHADER;
         }

@@ -2,17 +2,23 @@
 
 use super::Renderer;
 use crate::constants::COUNTER_CLOCKWISE_FLAG;
+use crate::renderer::evaluate::Drawn;
 use crate::renderer::model::Model;
-use crate::renderer::options::{DrawItem, Error, Factor, Style, View, is_size};
-use crate::renderer::shader::DrawConstants;
+use crate::renderer::options::{DrawItem, Error, Factor, Geometry, Style, View, is_size};
+use crate::renderer::shader::{DrawConstants, ItemRecord, displacement_flags};
 
 /// A draw item that can be drawn, with what it names.
 pub(crate) struct ResolvedItem<'r> {
+    pub item: &'r DrawItem,
     pub model: &'r Model,
     pub style: &'r Style,
+    /// What the surface is drawn from; none where the control mesh is drawn.
+    pub drawn: Option<Drawn<'r>>,
     /// The largest factor of an edge.
     pub most: f32,
-    /// Constants of the draws, for all patches.
+    /// What shaders know of the item.
+    pub record: ItemRecord,
+    /// Constants of the draws, for no patches yet.
     pub constants: DrawConstants,
 }
 
@@ -21,7 +27,7 @@ impl Renderer {
     ///
     /// # Errors
     /// Unknown styles and models, models that were not prepared, factors and displacements that are none.
-    pub(crate) fn resolve(&self, view: &View, item: &DrawItem) -> Result<ResolvedItem<'_>, Error> {
+    pub(crate) fn resolve<'r>(&'r self, view: &View, item: &'r DrawItem) -> Result<ResolvedItem<'r>, Error> {
         let style = self.style(item)?;
         let (id, factor) = (item.model, item.factor);
         let model = self.model(id)?;
@@ -47,10 +53,12 @@ impl Renderer {
                 (scale, (scale * largest).clamp(1.0, max))
             }
         };
+        let drawn = (style.geometry == Geometry::Surface).then(|| model.drawn(factor)).transpose()?;
+        let segments = drawn.and_then(Drawn::segments).unwrap_or(0);
         let back = if style.leaves_out_counter_clockwise(&item.transform, view) { COUNTER_CLOCKWISE_FLAG } else { 0 };
-        let flags = model.displacement_flags(item.displacement) | back;
-        let constants = DrawConstants { flags, ..DrawConstants::new(&item.transform, [value, scale, bias]) };
-        Ok(ResolvedItem { model, style, most, constants })
+        let record = ItemRecord::of(item, &model.map, value, segments);
+        let constants = DrawConstants::new(displacement_flags(&model.map) | back);
+        Ok(ResolvedItem { item, model, style, drawn, most, record, constants })
     }
 
     /// The style of a draw item.

@@ -51,6 +51,23 @@ fn models_share_a_pool_and_give_back_their_sets() {
 }
 
 #[test]
+fn items_that_do_not_fit_a_frame_are_refused() {
+    let headless = Headless::new(&HeadlessOptions::default()).unwrap();
+    let renderer = renderer(&headless, &Options::default());
+    let lists = &renderer.lists[0];
+    assert_eq!(lists.grown(0, 65).unwrap(), (0, 128));
+    assert_eq!(lists.grown(5000, 1).unwrap(), (8192, 64));
+    assert_eq!(lists.grown(1 << 31, 1 << 23).unwrap(), (1 << 31, 1 << 23));
+    let error = lists.grown(0, (1 << 23) + 1).unwrap_err().to_string();
+    assert_eq!(error, "8388609 items are drawn in a frame, 8388608 at most: draw fewer");
+    let error = lists.grown((1 << 31) + 1, 1).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "lists of patches that can be seen take 2147483649 bytes in a frame, 2147483648 at most: draw fewer items"
+    );
+}
+
+#[test]
 fn storage_buffers_of_a_stage_are_as_many_as_check_says() {
     let headless = Headless::new(&HeadlessOptions::default()).unwrap();
     let options = Options { evaluations: Evaluation::ALL.to_vec(), visible_lists: true, ..Options::default() };

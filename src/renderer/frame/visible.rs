@@ -29,6 +29,8 @@ pub struct VisibleItems {
 #[derive(Debug, Clone)]
 pub(crate) struct VisibleItem {
     pub item: DrawItem,
+    /// Where its record is.
+    pub record: u32,
     pub lists: Vec<List>,
     /// Of the lattice whose indices the draws count, if it is one.
     pub segments: Option<u32>,
@@ -89,6 +91,16 @@ impl List {
         group.patches.start as u32 + self.first
     }
 
+    /// Of its draws; `of_item` are those of all draws of the item.
+    fn of_draw(self, group: &PatchGroup, of_item: &DrawConstants) -> DrawConstants {
+        DrawConstants {
+            first_corner: self.first_corner(group),
+            first_patch: self.first_patch(group),
+            patches_per_instance: self.patches_per_instance,
+            ..*of_item
+        }
+    }
+
     /// Of what makes it, where the item is drawn with these.
     pub(crate) fn constants(self, model: &Model, drawn: Drawn, of_draw: &DrawConstants) -> ListConstants {
         let (stages, group) = (model.stages[self.group], &model.tables.plan().groups()[self.group]);
@@ -97,15 +109,10 @@ impl List {
             None => (stages.input_points(), 0),
         };
         ListConstants {
-            transform: of_draw.transform,
-            factor: of_draw.factor(),
-            flags: of_draw.flags,
-            first_corner: self.first_corner(group),
-            first_patch: self.first_patch(group),
+            of_draw: self.of_draw(group, of_draw),
             count: self.count,
             vertices,
             first_index,
-            patches_per_instance: self.patches_per_instance,
             copies: (ListLayout::new(stages).copies_start(self.count) / 4) as u32,
         }
     }
@@ -132,7 +139,7 @@ impl Renderer {
                 constants.first_patch = list.first_patch(of_group);
                 constants.patches_per_instance = list.patches_per_instance;
                 recorder.push();
-                self.cmd_bind_view(cmd, visible.set, [visible.view_offset, list.offset]);
+                recorder.bind_list(list.offset);
                 let offset = u64::from(list.offset);
                 let commands = offset + ListLayout::commands_start(list.count);
                 let regions = ListLayout::regions(list.count);

@@ -10,6 +10,7 @@ mod streamed;
 mod tables;
 
 pub(crate) use displacements::Displacements;
+use pipelines::MadeCut;
 pub(crate) use pipelines::ModelPipelines;
 
 use crate::gpu::{Buffer, DeviceContext};
@@ -17,9 +18,10 @@ use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, pat
 use crate::renderer::options::{
     DisplacementId, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options,
 };
-use crate::renderer::shader::{Cut, PatchStages, VECTOR_TEXEL, displacement_flags};
+use crate::renderer::shader::{PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
 use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
+use crate::topology::PatchKind;
 use ash::vk;
 use bindings::{ModelBuffers, ModelSet};
 use edge_factors::EdgeFactors;
@@ -32,8 +34,8 @@ pub(crate) struct Model {
     pub tables: ModelTables,
     /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
-    /// What there are pipelines for: a few.
-    pub made: Vec<Cut>,
+    /// Pipelines of the draws that there were: a few.
+    pub made: Vec<MadeCut>,
     pub set: ModelSet,
     table_buffer: Tables,
     positions: Positions,
@@ -53,7 +55,7 @@ pub(crate) struct Model {
     pub control: Option<ControlIndices>,
     /// What was not copied to the device yet.
     uploads: Vec<(Buffer, vk::Buffer)>,
-    map: DisplacementMap,
+    pub(crate) map: DisplacementMap,
     pub displacement: Option<DisplacementId>,
     pub prepared: bool,
 }
@@ -98,7 +100,9 @@ impl Model {
             _ => (name, array),
         });
 
-        let (table_buffer, staged_tables) = Tables::new(context, (id, name), model_options.evaluation, &arrays)?;
+        let first_refined = tables.leaves().map_or(0, |leaves| leaves.first_patch);
+        let (table_buffer, staged_tables) =
+            Tables::new(context, (id, name), model_options.evaluation, &arrays, first_refined)?;
 
         // What shaders see whole, as storage buffers and as texel buffers.
         let properties = context.properties();
@@ -168,6 +172,7 @@ impl Model {
                 edge_factors: lattice_edges,
                 stride,
                 attributes,
+                adaptive: tables.leaves().is_some() && kind == PatchKind::IrregularQuad,
             };
             PatchStages { attributes: path(evaluation).has_attributes(&pipelines.draws, stages), ..stages }
         };
@@ -212,11 +217,6 @@ impl Model {
     /// The largest factor of an edge, if they have any: of the frame that was last prepared.
     pub(crate) fn largest_edge_factor(&self) -> Option<f32> {
         self.edge_factors.as_ref().map(EdgeFactors::largest)
-    }
-
-    /// The bits of a draw's flags that displacement by this scale and bias takes.
-    pub(crate) fn displacement_flags(&self, displacement: [f32; 2]) -> u32 {
-        displacement_flags(&self.map, displacement)
     }
 
     pub(crate) fn needs_copies(&self, frame: u32) -> bool {

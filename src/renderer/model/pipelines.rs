@@ -5,10 +5,32 @@ use crate::renderer::construct::{CachedPipelines, Conversion};
 use crate::renderer::evaluate::{LatticePipelines, path};
 use crate::renderer::options::{Factor, Options, Target};
 use crate::renderer::pipelines::DrawPipelines;
-use crate::renderer::shader::{Capture, Cut, PatchStages, SetLayouts};
+use crate::renderer::shader::{Capture, Cut, PatchStages, PipelineKey, SetLayouts};
 use crate::table::{Construction, Evaluation};
 use ash::vk;
 use std::sync::Arc;
+
+/// The pipelines of a model's draws that are cut in one way. The renderer owns them.
+pub(crate) struct MadeCut {
+    cut: Cut,
+    /// [`Path::level`](crate::renderer::evaluate::Path::level).
+    level: Option<u32>,
+    styles: usize,
+    /// By group of patches, then by style; null in styles of the control mesh.
+    pipelines: Vec<vk::Pipeline>,
+}
+
+impl MadeCut {
+    /// Whether they are of this cut and level.
+    pub(crate) fn is_of(&self, cut: Cut, level: Option<u32>) -> bool {
+        self.cut == cut && self.level == level
+    }
+
+    /// The pipeline of a group of patches in a style.
+    pub(crate) fn of(&self, group: usize, style: usize) -> vk::Pipeline {
+        self.pipelines[group * self.styles + style]
+    }
+}
 
 /// Pipelines of draws, and of what comes before them.
 pub(crate) struct ModelPipelines {
@@ -39,14 +61,22 @@ impl ModelPipelines {
         Ok(Self { context: context.clone(), cache, sets, draws, cached, conversion: None, lattice })
     }
 
-    /// Makes what draws of these patches need in every style, and what comes before.
-    pub(crate) fn make(&mut self, patches: &[PatchStages], cut: Cut, factor: Factor) -> Result<(), GpuError> {
+    /// Makes what draws of these groups of patches need in every style, and what comes before.
+    pub(crate) fn make(&mut self, groups: &[PatchStages], cut: Cut, factor: Factor) -> Result<MadeCut, GpuError> {
         self.draws.make_control()?;
-        for &stages in patches {
+        let (styles, level) =
+            (self.draws.styles().len(), groups.first().and_then(|stages| path(stages.evaluation).level(factor)));
+        let mut pipelines = Vec::with_capacity(styles * groups.len());
+        for &stages in groups {
             // A factor that the evaluation does not have is reported by the draw.
             let path = path(stages.evaluation);
-            let Some(key) = path.key(stages, cut, factor) else { continue };
+            let Some(key) = path.key(stages, cut, factor) else {
+                pipelines.resize(pipelines.len() + styles, vk::Pipeline::null());
+                continue;
+            };
             self.draws.make(key, |key, made_for| path.recipe(stages, cut, key, made_for))?;
+            let of_style = |style| self.draws.get(PipelineKey { style, geometry: key }).unwrap_or_default();
+            pipelines.extend((0..styles).map(of_style));
             match (stages.construction, stages.evaluation) {
                 (_, Evaluation::Subdivision) => {}
                 (Construction::Cached, Evaluation::GeometryTwoPass) => self.convert(stages)?,
@@ -57,7 +87,7 @@ impl ModelPipelines {
                 self.lattice.make(stages, &self.draws.shaders)?;
             }
         }
-        Ok(())
+        Ok(MadeCut { cut, level, styles, pipelines })
     }
 
     /// Makes what the first of two passes needs.

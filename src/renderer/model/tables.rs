@@ -1,5 +1,6 @@
 //! The tables of a model on the GPU: all in one buffer.
 
+use crate::constants::FACE_WORDS;
 use crate::gpu::{Buffer, DeviceContext, MAX_OFFSET_ALIGNMENT};
 use crate::renderer::options::{Error, ModelId};
 use crate::renderer::shader::TABLE_TEXELS;
@@ -10,7 +11,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Tables of a model.
-const TABLES: usize = 10;
+const TABLES: usize = 13;
+/// The table of refined faces among them.
+const FACES: usize = 10;
 
 /// The word where each table starts: a uniform block. GLSL twin: `glsl/lib/draw/tables.glsl`.
 #[repr(C)]
@@ -30,12 +33,13 @@ pub(crate) struct Tables {
 
 impl Tables {
     /// Room for some tables in the order of [`ModelTables::bindings`](crate::table::ModelTables::bindings), and the staging buffer
-    /// with what is to be copied there.
+    /// with what is to be copied there. `first_refined` is the first patch of a refined face.
     pub(crate) fn new(
         context: &Arc<DeviceContext>,
         (id, name): (ModelId, &str),
         evaluation: Evaluation,
         arrays: &[(&'static str, &[u8]); TABLES],
+        first_refined: u32,
     ) -> Result<(Self, Buffer), Error> {
         let properties = context.properties();
         // Fans are read as storage buffers only.
@@ -64,7 +68,9 @@ impl Tables {
             }
             ranges[table] = range;
         }
-        let starts = TableStarts(ranges.each_ref().map(|range| (range.start / 4) as u32));
+        let mut starts = TableStarts(ranges.each_ref().map(|range| (range.start / 4) as u32));
+        // As if all patches were refined.
+        starts.0[FACES] = starts.0[FACES].wrapping_sub(FACE_WORDS * first_refined);
         let starts_range = end..end + size_of::<TableStarts>() as u64;
 
         let mut staged = Buffer::upload(context, &format!("{name}: tables to copy"), starts_range.end)?;

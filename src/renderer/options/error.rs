@@ -50,6 +50,8 @@ pub enum Error {
     NoVisibleLists,
     #[error("lists of patches that can be seen take {bytes} bytes in a frame, {max} at most: draw fewer items")]
     ListsTooLarge { bytes: u64, max: u64 },
+    #[error("{given} items are drawn in a frame, {max} at most: draw fewer")]
+    TooManyItems { given: u64, max: u64 },
     #[error("style {given}: Options::styles has {count}")]
     NoSuchStyle { given: usize, count: usize },
     #[error("model {}: {factor:?}: a tessellation factor is a number from 1 up, pixels and scales are above 0", id.number)]

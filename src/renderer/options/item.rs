@@ -24,6 +24,8 @@ pub struct DrawItem {
     pub colors: [[f32; 4]; 4],
     /// For a model with a displacement map: what its values are multiplied with, and what is added then. Object space.
     pub displacement: [f32; 2],
+    /// Words for your own shaders, such as the number of a material: `item.words` in `glsl/lib/draw/draw.glsl`.
+    pub words: [u32; 4],
 }
 
 impl DrawItem {
@@ -37,6 +39,7 @@ impl DrawItem {
             style: 0,
             colors: [[0.7, 0.7, 0.7, 1.0]; 4],
             displacement: [0.0; 2],
+            words: [0; 4],
         }
     }
 

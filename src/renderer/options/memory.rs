@@ -19,7 +19,7 @@ pub struct MemoryUsage {
     pub staging: u64,
     /// Lists of the patches that can be seen, on the device.
     pub lists: u64,
-    /// What the host writes for each view.
+    /// What the host writes for each view, and for each item of a frame.
     pub views: u64,
 }
 

@@ -1,6 +1,7 @@
 //! How one model is drawn.
 
 use super::DisplacementId;
+use crate::adaptive::AdaptiveOptions;
 use crate::gpu::Spacing;
 use crate::patch::{Fallback, Scheme};
 use crate::table::{Construction, Evaluation, TableOptions};
@@ -34,13 +35,25 @@ pub struct ModelOptions {
     pub edge_factors: bool,
     /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
     pub refine: u32,
+    /// Refine irregular faces where they have to be, and draw the limit surface itself but for end caps at this depth: see
+    /// [`adaptive`](crate::adaptive). Still one patch a face. A mesh with faces that are no quads is refined once before.
+    pub adaptive: Option<AdaptiveOptions>,
 }
 
 impl From<&ModelOptions> for TableOptions {
     fn from(options: &ModelOptions) -> Self {
-        let &ModelOptions { scheme, fallback, construction, evaluation, shared_normals, edge_factors, refine, .. } =
-            options;
+        let &ModelOptions {
+            scheme,
+            fallback,
+            construction,
+            evaluation,
+            shared_normals,
+            edge_factors,
+            refine,
+            adaptive,
+            ..
+        } = options;
         let displaced = options.displacement.is_some();
-        Self { scheme, fallback, construction, evaluation, shared_normals, displaced, edge_factors, refine }
+        Self { scheme, fallback, construction, evaluation, shared_normals, displaced, edge_factors, refine, adaptive }
     }
 }

@@ -25,9 +25,9 @@ pub enum Geometry {
 /// Your own SPIR-V sees, for [`Geometry::Surface`], at location 0 the position in world space (`vec3`), at 1 the
 /// normal in world space (`vec3`, not of length one; where the surface is displaced, of the surface before: see
 /// `displaced_normal` in `glsl/lib/displace/displace.glsl`), and at 2 the texture coordinate (`vec2`) if [`Options::texcoords`] is
-/// on or the model is displaced; for the control mesh only location 0. Set 0, binding 0 and the push constants are
-/// those of `glsl/lib/draw/draw.glsl`; your own descriptor sets start at set 2
-/// ([`Options::set_layouts`]).
+/// on or the model is displaced; for the control mesh only location 0. `glsl/lib/draw/draw.glsl` declares the view, the item
+/// (`draw_colour()`, and [`DrawItem::words`](crate::renderer::DrawItem::words) as `item.words`) and the push constants; your own
+/// descriptor sets start at set 2 ([`Options::set_layouts`]).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub enum Fragment {
     /// One light and the sky; for [`Geometry::ControlFaces`] with the normal of each face.

@@ -4,7 +4,9 @@ use super::recipe::{MadeFor, Recipe};
 use crate::constants::ID_ENCODE_SRGB;
 use crate::gpu::{DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Specialization, pipeline_layout};
 use crate::renderer::options::{ColorEncoding, Fragment, Geometry, Options, Style, Target};
-use crate::renderer::shader::{Capture, GeometryKey, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId};
+use crate::renderer::shader::{
+    Capture, DrawConstants, GeometryKey, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId,
+};
 use ash::vk;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -31,7 +33,8 @@ impl DrawPipelines {
         layouts: &SetLayouts,
     ) -> Result<Self, GpuError> {
         let sets = [&layouts.shared()[..], &options.set_layouts].concat();
-        let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: 128 }];
+        let constants =
+            [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: size_of::<DrawConstants>() as u32 }];
         // SAFETY: the layouts are of this device; for the caller's own that is part of the contract of `Renderer::new`.
         let layout = unsafe { pipeline_layout(context, "subdiv", &sets, &constants)? };
         Ok(Self {

@@ -92,6 +92,8 @@ pub struct PatchShaders {
     pub keeps_frame: bool,
     /// Whether a corner has two inner points, one for each of its edges.
     pub two_face_points: bool,
+    /// Whether faces may be refined, with such patches for end caps: then leaves are evaluated.
+    pub may_be_adaptive: bool,
 }
 
 impl Patch {
@@ -104,12 +106,14 @@ impl Patch {
             hull: 4,
             keeps_frame: true,
             two_face_points: false,
+            may_be_adaptive: false,
         };
         let gregory = PatchShaders { scheme: "gregory", owned: 5, hull: 5, two_face_points: true, ..quad };
+        let gregory_quad = PatchShaders { may_be_adaptive: true, ..gregory };
         let pm = PatchShaders { scheme: "pm", owned: 6, hull: 0, keeps_frame: false, ..quad };
         match self {
             Self::Bicubic => quad,
-            Self::GregoryQuad => gregory,
+            Self::GregoryQuad => gregory_quad,
             Self::GregoryTriangle => PatchShaders { corners: 3, ..gregory },
             Self::AccQuad => PatchShaders { scheme: "acc", owned: 8, keeps_frame: false, ..quad },
             Self::PmQuad => pm,
@@ -316,6 +320,9 @@ impl ShaderKey {
             }
             if patch.two_face_points {
                 define("TWO_FACE_POINTS");
+            }
+            if patch.may_be_adaptive {
+                define("MAY_BE_ADAPTIVE");
             }
         }
         match self.sharing {

@@ -33,8 +33,8 @@ impl Cut {
     }
 
     /// GLSL twin: `DRAW_FLAGS` in `glsl/lib/edges/factors.glsl`.
-    pub(crate) fn flags(self) -> u32 {
-        let Cull { frustum, back, small } = self.cull;
+    pub(crate) fn flags(self, has_hull: bool) -> u32 {
+        let Cull { frustum, back, small } = if has_hull { self.cull } else { Cull::NONE };
         let flag = |set, flag| if set { flag } else { 0 };
         self.metric | flag(frustum, CULL_FRUSTUM_FLAG) | flag(back, CULL_BACK_FLAG) | flag(small, CULL_SMALL_FLAG)
     }

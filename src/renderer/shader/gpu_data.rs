@@ -1,12 +1,12 @@
 //! What the host writes for the shaders, byte for byte as they read it.
 //!
-//! [`ViewData`] is a uniform block (`std140`), [`DrawConstants`] a push-constant block (`std430`): both hold only
-//! 16-byte vectors and trailing 4-byte scalars, for which the two rules agree with `repr(C)`. GLSL twin:
-//! `glsl/lib/draw/draw.glsl`.
+//! [`ViewData`] and [`ItemRecord`] are uniform blocks (`std140`) of 16-byte vectors, [`DrawConstants`] a push-constant block
+//! (`std430`) of 4-byte scalars: for these the two rules agree with `repr(C)`. GLSL twin: `glsl/lib/draw/draw.glsl`.
 
-use crate::constants::{REACH_SHIFT, VECTOR_FLAG};
+use crate::constants::{KIND_MASK, KIND_SHIFT, VECTOR_FLAG};
 use crate::gpu::MAX_OFFSET_ALIGNMENT;
-use crate::renderer::options::{DisplacementMap, MeasuredFrom, View};
+use crate::renderer::options::{DisplacementMap, DrawItem, MeasuredFrom, View};
+use crate::topology::PatchKind;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Mat4, Vec3};
 
@@ -41,81 +41,100 @@ impl ViewData {
     }
 }
 
+/// What shaders know of a draw item: a uniform block.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct ItemRecord {
+    /// Rows of the object-to-world matrix.
+    pub transform: [[f32; 4]; 3],
+    /// Rows of its cofactor matrix, which turns normals.
+    pub normal_transform: [[f32; 4]; 3],
+    /// [`DrawItem::colors`].
+    pub colours: [[f32; 4]; 4],
+    /// [`DrawItem::words`].
+    pub words: [u32; 4],
+    /// Tessellation factor, or what its rule multiplies with.
+    pub factor: f32,
+    /// [`DrawItem::displacement`].
+    pub displacement: [f32; 2],
+    /// The longest way that a point is displaced.
+    pub reach: f32,
+    /// Segments of the uniform grid, if patches are drawn on one; else 0.
+    pub segments: u32,
+    pub unused: [u32; 3],
+}
+
+/// What changes from draw to draw of an item: push constants.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct DrawConstants {
-    /// Rows of the object-to-world matrix.
-    pub transform: [[f32; 4]; 3],
-    /// Rows of its cofactor matrix, which turns normals; in the last column the tessellation factor, and scale and bias of
-    /// the displacement.
-    pub normal_transform: [[f32; 4]; 3],
-    pub colour: [f32; 4],
     pub first_corner: u32,
     pub first_patch: u32,
     pub patches_per_instance: u32,
     pub flags: u32,
 }
 
-/// The half-precision number next to `x` that is not below it, for `x` from 0 up.
-pub(crate) fn half_not_below(x: f32) -> u16 {
-    const SMALLEST_NORMAL: f32 = 1.0 / 16384.0;
-    const LARGEST: f32 = 65504.0;
-    if x <= 0.0 {
-        0
-    } else if x > LARGEST {
-        0x7c00
-    } else {
-        // The exponent's bias goes from 127 to 15, and 13 bits of the fraction are rounded up.
-        ((x.max(SMALLEST_NORMAL).to_bits() - ((127 - 15) << 23) + 0x1fff) >> 13) as u16
+impl DrawConstants {
+    /// With these flags, for no patches yet.
+    pub(crate) fn new(flags: u32) -> Self {
+        Self { flags, ..Self::zeroed() }
+    }
+
+    /// Has the draws be of a kind of patches.
+    pub(crate) fn set_kind(&mut self, kind: PatchKind) {
+        self.flags = self.flags & !(KIND_MASK << KIND_SHIFT) | (kind as u32) << KIND_SHIFT;
     }
 }
 
-/// How far a point is moved at most by a map under this scale and bias.
-fn reach(map: &DisplacementMap, [scale, bias]: [f32; 2]) -> f32 {
-    let [low, high] = map.range.map(|value| (scale * value + bias).abs());
-    // The diagonal of a cube.
-    low.max(high) * if map.vectors { 3f32.sqrt() } else { 1.0 }
-}
-
-/// The bits of a draw's flags that displacement takes.
-pub(crate) fn displacement_flags(map: &DisplacementMap, displacement: [f32; 2]) -> u32 {
-    let vectors = if map.vectors { VECTOR_FLAG } else { 0 };
-    vectors | u32::from(half_not_below(reach(map, displacement))) << REACH_SHIFT
-}
-
 const _: () = assert!(size_of::<ViewData>() == 192);
-const _: () = assert!(std::mem::offset_of!(DrawConstants, colour) == 96);
-const _: () = assert!(std::mem::offset_of!(DrawConstants, first_corner) == 112);
-// Every Vulkan device has at least 128 bytes of push constants.
-const _: () = assert!(size_of::<DrawConstants>() == 128);
+const _: () = assert!(std::mem::offset_of!(ItemRecord, colours) == 96);
+const _: () = assert!(std::mem::offset_of!(ItemRecord, words) == 160);
+const _: () = assert!(std::mem::offset_of!(ItemRecord, factor) == 176);
+const _: () = assert!(size_of::<ItemRecord>() == 208);
+// Every Vulkan device has at least 128 bytes of push constants: the rest is free.
+const _: () = assert!(size_of::<DrawConstants>() == 16);
+const _: () = assert!(PatchKind::ALL.len() == 4);
 
-impl DrawConstants {
-    /// For an object-to-world matrix given by columns, with a tessellation factor, and scale and bias of the displacement.
-    pub(crate) fn new(transform: &[[f32; 4]; 4], [factor, scale, bias]: [f32; 3]) -> Self {
+impl ItemRecord {
+    /// Bytes from one record to the next: there is room for more.
+    pub(crate) const STRIDE: u64 = (size_of::<Self>() as u64).next_multiple_of(MAX_OFFSET_ALIGNMENT);
+
+    /// For an item that is not displaced, with a tessellation factor.
+    pub(crate) fn new(transform: &[[f32; 4]; 4], colours: [[f32; 4]; 4], factor: f32) -> Self {
         let transform = Mat4::from_cols_array_2d(transform);
         let linear = Mat3::from_mat4(transform);
         let rows = [transform.row(0), transform.row(1), transform.row(2)];
         let [x, y, z] = [0, 1, 2].map(|i| linear.row(i));
-        let cofactors: [Vec3; 3] = [y.cross(z), z.cross(x), x.cross(y)];
         // A mirroring transform turns the faces inside out; their normals must go with them.
+        let cofactors = [y.cross(z), z.cross(x), x.cross(y)];
         Self {
             transform: rows.map(Into::into),
-            normal_transform: [
-                cofactors[0].extend(factor).into(),
-                cofactors[1].extend(scale).into(),
-                cofactors[2].extend(bias).into(),
-            ],
+            normal_transform: cofactors.map(|row| row.extend(0.0).into()),
+            colours,
+            factor,
             ..Self::zeroed()
         }
     }
 
-    pub(crate) fn factor(&self) -> f32 {
-        self.normal_transform[0][3]
+    /// For an item of a model with this displacement map. `segments` are those of a uniform grid, or 0.
+    pub(crate) fn of(item: &DrawItem, map: &DisplacementMap, factor: f32, segments: u32) -> Self {
+        let [scale, bias] = item.displacement;
+        let [low, high] = map.range.map(|value| (scale * value + bias).abs());
+        // Vectors reach to the corner of a cube. Rounded up.
+        let reach = low.max(high) * if map.vectors { 3f32.sqrt() } else { 1.0 } * 1.000_01;
+        Self {
+            words: item.words,
+            displacement: item.displacement,
+            reach,
+            segments,
+            ..Self::new(&item.transform, item.colors, factor)
+        }
     }
+}
 
-    pub(crate) fn set_factor(&mut self, factor: f32) {
-        self.normal_transform[0][3] = factor;
-    }
+/// The bits of a draw's flags that its displacement map takes.
+pub(crate) fn displacement_flags(map: &DisplacementMap) -> u32 {
+    if map.vectors { VECTOR_FLAG } else { 0 }
 }
 
 #[cfg(test)]
@@ -130,32 +149,16 @@ mod tests {
             Quat::from_rotation_y(0.7) * Quat::from_rotation_x(0.3),
             Vec3::new(5.0, 6.0, 7.0),
         );
-        let constants = DrawConstants::new(&transform.to_cols_array_2d(), [9.0, 0.5, 0.25]);
+        let record = ItemRecord::new(&transform.to_cols_array_2d(), [[1.0; 4]; 4], 9.0);
         let apply = |rows: &[[f32; 4]; 3], v: Vec4| Vec3::from(rows.map(|row| Vec4::from(row).dot(v)));
         let (a, b) = (Vec3::new(1.0, 2.0, 0.5), Vec3::new(-1.0, 0.3, 2.0));
-        let turn = |v: Vec3| apply(&constants.transform, v.extend(0.0));
-        let without_others = constants.normal_transform.map(|[x, y, z, _]| [x, y, z, 0.0]);
-        let normal = apply(&without_others, a.cross(b).extend(0.0));
+        let turn = |v: Vec3| apply(&record.transform, v.extend(0.0));
+        let normal = apply(&record.normal_transform, a.cross(b).extend(0.0));
         assert!(normal.dot(turn(a)).abs() < 1e-4 && normal.dot(turn(b)).abs() < 1e-4);
         // It is the cross product of the turned tangents itself, so it points out where the faces do.
         assert!((normal - turn(a).cross(turn(b))).length() < 1e-4);
-        assert_eq!(constants.normal_transform.map(|row| row[3]), [9.0, 0.5, 0.25]);
-        let moved = apply(&constants.transform, a.extend(1.0));
+        let moved = apply(&record.transform, a.extend(1.0));
         assert!((moved - transform.transform_point3(a)).length() < 1e-5);
-    }
-
-    #[test]
-    fn halves_are_not_below() {
-        let value = |half: u16| match half >> 10 {
-            0 => 0.0,
-            31 => f32::INFINITY,
-            exponent => (1.0 + f32::from(half & 0x3ff) / 1024.0) * 2f32.powi(i32::from(exponent) - 15),
-        };
-        for x in [0.0, 1e-9, 6.2e-5, 0.03, 0.5, 0.500_01, 1.0, 3.3, 1000.3, 65504.0, 65505.0, 1e9] {
-            let half = value(half_not_below(x));
-            let normal = (1e-4..=65504.0).contains(&x);
-            assert!(half >= x && (half <= x * 1.001 || !normal), "{x}: {half}");
-        }
     }
 
     #[test]

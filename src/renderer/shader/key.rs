@@ -62,6 +62,8 @@ pub(crate) struct PatchStages {
     pub stride: u32,
     /// Whether the vertex shader has the control points as attributes of an instance.
     pub attributes: bool,
+    /// Whether its faces are refined: leaves are evaluated.
+    pub adaptive: bool,
 }
 
 /// The patch that a scheme's shaders are compiled for.
@@ -110,7 +112,7 @@ impl PatchStages {
     /// What tells apart the pipelines that make control points by compute: what is of no concern to them is as usual.
     pub(crate) fn for_control_points(self) -> Self {
         let (evaluation, spacing) = (Evaluation::Tessellation, Spacing::Equal);
-        Self { evaluation, spacing, edge_factors: false, attributes: false, ..self }
+        Self { evaluation, spacing, edge_factors: false, attributes: false, adaptive: false, ..self }
     }
 
     /// Whether it does with no more control points than a device has attributes.
@@ -157,7 +159,8 @@ impl PatchStages {
     /// Whether its control points enclose it, so that they tell whether it can be seen. See
     /// `glsl/lib/edges/culling.glsl`.
     pub(crate) fn has_hull(self) -> bool {
-        patch(self.scheme, self.kind).shaders().hull > 0
+        // Leaves may reach beyond the control points of the whole.
+        patch(self.scheme, self.kind).shaders().hull > 0 && !self.adaptive
     }
 
     /// What tells apart the pipelines that list which patches can be seen.
@@ -176,12 +179,12 @@ impl PatchStages {
     }
 
     /// What the shaders of draws that are cut so are specialized to, but for those that evaluate and shade.
-    pub(crate) fn specialization(self, cut: Cut, device: &DeviceProperties) -> [Specialization; 11] {
+    pub(crate) fn specialization(self, cut: Cut, device: &DeviceProperties) -> [Specialization; 12] {
         [
             Specialization::uint(constants::ID_CORNERS, self.kind.corners() as u32),
             Specialization::float(constants::ID_MAX_FACTOR, device.max_tessellation_level as f32),
             Specialization::uint(constants::ID_STRIDE, self.stride),
-            Specialization::uint(constants::ID_DRAW_FLAGS, cut.flags()),
+            Specialization::uint(constants::ID_DRAW_FLAGS, cut.flags(self.has_hull())),
             Specialization::bool(constants::ID_MAY_BE_FITTED, self.scheme == Scheme::GregoryFitted),
             Specialization::bool(constants::ID_MAY_HAVE_PENTAGONS, self.scheme.has_pentagons()),
             Specialization::bool(constants::ID_HAS_SPEAKERS, self.has_speakers),
@@ -189,6 +192,7 @@ impl PatchStages {
             reads_texels(device),
             Specialization::bool(constants::ID_LISTED, cut.is_listed()),
             Specialization::uint(constants::ID_CONSTRUCTION, construction_number(self.construction)),
+            Specialization::bool(constants::ID_ADAPTIVE, self.adaptive),
         ]
     }
 
@@ -256,6 +260,7 @@ mod tests {
             edge_factors: false,
             stride,
             attributes: false,
+            adaptive: false,
         };
         // As many as every Vulkan device has, unless patches share more.
         for (sharing, stride, needed) in

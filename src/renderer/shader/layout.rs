@@ -34,7 +34,7 @@ impl SetLayouts {
     }
 }
 
-/// The layout of set 0: what draws know of their view, and the list of what can be seen in it.
+/// The layout of set 0: what draws know of their view, and the list of what can be seen in it, and the record of an item.
 fn view_layout(context: &Arc<DeviceContext>) -> Result<SetLayout, GpuError> {
     let stages = STAGES | vk::ShaderStageFlags::COMPUTE;
     descriptor_set_layout(context, "subdiv view", &VIEW_BINDINGS.map(|ty| (ty, stages)))
@@ -58,8 +58,11 @@ pub(crate) const TABLE_TEXELS: [(vk::Format, u64); 4] =
 pub(crate) const MODEL_TEXELS: usize = 3 + TABLE_TEXELS.len();
 
 /// What set 0 has, by binding.
-const VIEW_BINDINGS: [vk::DescriptorType; 2] =
-    [vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, vk::DescriptorType::STORAGE_BUFFER_DYNAMIC];
+const VIEW_BINDINGS: [vk::DescriptorType; 3] = [
+    vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC,
+    vk::DescriptorType::STORAGE_BUFFER_DYNAMIC,
+    vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC,
+];
 
 /// What set 1 has, by binding.
 fn model_bindings() -> Vec<vk::DescriptorType> {

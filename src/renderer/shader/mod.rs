@@ -18,7 +18,7 @@ mod spirv;
 pub(crate) use axes::{Output, ShaderKey, Source};
 pub(crate) use code::ShaderCode;
 pub(crate) use cut::Cut;
-pub(crate) use gpu_data::{DrawConstants, ViewData, displacement_flags};
+pub(crate) use gpu_data::{DrawConstants, ItemRecord, ViewData, displacement_flags};
 pub use ids::ShaderId;
 pub(crate) use key::{Capture, GeometryKey, PatchStages, PipelineKey, reads_texels};
 pub(crate) use layout::{

@@ -1,0 +1,196 @@
+//! What shaders read of faces that are refined: quadtrees, leaves, and who owns edges and corners.
+
+use super::plan::PatchPlan;
+use crate::adaptive::{self, LEAF, LeafKind};
+use crate::blend::Row;
+use crate::constants::{
+    FACE_WORDS, LEAF_BIT, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, MAX_DEPTH, NORMAL_OWNERS, OWNER_NONE,
+    OWNER_SHIFT,
+};
+use crate::mesh::SHARPNESS_INFINITE;
+use crate::patch::Scheme;
+use crate::topology::{PatchKind, Topology};
+use glam::DVec3;
+use rayon::prelude::*;
+
+const _: () = assert!(MAX_DEPTH == adaptive::MAX_DEPTH && LEAF_BIT == LEAF);
+
+/// The faces of a plan of adaptive subdivision, as shaders read them. GLSL twin: `glsl/lib/evaluate/leaves.glsl`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeafTable {
+    /// For each irregular quad, in the order of the patches: its root; the owners of the positions on its edges, from corner k to the
+    /// next, and at its corners; likewise the owners of the normals, which differ where infinitely sharp edges part faces. An owner
+    /// is a patch from bit `OWNER_SHIFT` on, and its edge or corner; or `OWNER_NONE`, where a neighbour is not refined.
+    pub faces: Vec<[u32; FACE_WORDS as usize]>,
+    /// For each leaf, its kind; a crease's sharpness or the first control point of an end cap; then its 16 control points, row by row
+    /// along v.
+    pub leaves: Vec<[u32; 4 * LEAF_FOURS as usize]>,
+    /// The plan. Control points of end caps are as [`Scheme::kept`] has them.
+    pub(super) plan: adaptive::Plan,
+    /// The number of the first irregular quad among all patches.
+    pub first_patch: u32,
+}
+
+impl LeafTable {
+    /// For the patches in `patches` of the mesh that was planned.
+    pub(super) fn new(topology: &Topology, patches: &PatchPlan, mut plan: adaptive::Plan) -> Self {
+        keep_caps(&mut plan);
+        let range = patches.range(PatchKind::IrregularQuad);
+        let owners = Owners::new(topology, patches);
+        let faces = patches.patches()[range.clone()].par_iter();
+        let faces = faces.map(|patch| {
+            let first = topology.mesh().face_corners(patch.face).start as u32;
+            let mut words = [0; FACE_WORDS as usize];
+            words[0] = plan.face_roots[patch.face as usize];
+            for (k, h) in (first..first + 4).enumerate() {
+                [words[1 + k], words[NORMAL_OWNERS as usize + k]] = owners.edge(h);
+                [words[5 + k], words[NORMAL_OWNERS as usize + 4 + k]] = owners.corner(h);
+            }
+            words
+        });
+        let faces = faces.collect();
+        let leaves = plan.leaves.par_iter().map(|leaf| leaf_words(&plan, leaf, |vertex| patches.vertex(vertex)));
+        Self { faces, leaves: leaves.collect(), plan, first_patch: range.start as u32 }
+    }
+
+    /// The quadtrees: [`adaptive::Plan::nodes`].
+    pub fn quadtrees(&self) -> &[u32] {
+        &self.plan.nodes
+    }
+
+    /// Number of vertices that shaders read besides those of the mesh.
+    pub(super) fn added_vertices(&self) -> usize {
+        self.plan.rows.len()
+    }
+
+    /// Those vertices, where the vertices of the mesh are at `positions`.
+    pub(super) fn added_points(&self, positions: &[DVec3]) -> Vec<DVec3> {
+        self.plan.points(positions).split_off(positions.len())
+    }
+}
+
+/// Whether a face is no leaf itself, which a bicubic patch draws.
+pub(super) fn is_refined(plan: &adaptive::Plan, face: u32) -> bool {
+    let roots = plan.face_roots[face as usize]..plan.face_roots[face as usize + 1];
+    let whole = |root: u32| match plan.nodes[root as usize] {
+        node if node & LEAF == 0 => false,
+        node => plan.leaves[(node & !LEAF) as usize].kind == LeafKind::Regular,
+    };
+    !(roots.len() == 1 && whole(roots.start))
+}
+
+fn leaf_words(
+    plan: &adaptive::Plan,
+    leaf: &adaptive::Leaf,
+    vertex: impl Fn(u32) -> u32,
+) -> [u32; 4 * LEAF_FOURS as usize] {
+    let mut words = [0; 4 * LEAF_FOURS as usize];
+    let (kind, word) = match leaf.kind {
+        LeafKind::Regular => (LEAF_REGULAR, 0),
+        LeafKind::SingleCrease { edge, sharpness } => (LEAF_CREASE + edge, sharpness.to_bits()),
+        LeafKind::Cap => (LEAF_CAP, vertex(leaf.points)),
+    };
+    words[..2].copy_from_slice(&[kind, word]);
+    if leaf.kind != LeafKind::Cap {
+        let grid = &plan.grids[leaf.points as usize..][..16];
+        words[4..].iter_mut().zip(grid).for_each(|(word, &point)| *word = vertex(point));
+    }
+    words
+}
+
+/// Has the control points of end caps as shaders keep them, corner by corner.
+fn keep_caps(plan: &mut adaptive::Plan) {
+    let first = (plan.cap_points.start - plan.control_vertices) as usize;
+    let kind = PatchKind::IrregularQuad;
+    let points = Scheme::Gregory.points(kind);
+    let rows: Vec<Vec<Row>> = (first..plan.rows.len())
+        .into_par_iter()
+        .step_by(points)
+        .map(|cap| {
+            let rows: Vec<Row> = (cap..cap + points).map(|row| Row::new(plan.rows.row(row).collect())).collect();
+            let owned = |k| Scheme::Gregory.corner_slots(kind, k).into_iter().map(|slot| rows[slot].clone());
+            (0..4).flat_map(|k| Scheme::Gregory.kept(kind, &owned(k).collect::<Vec<_>>())).collect()
+        })
+        .collect();
+    plan.rows.truncate(first);
+    rows.into_iter().flatten().for_each(|row| plan.rows.push(row.weights().iter().copied()));
+}
+
+/// Who makes what patches share.
+struct Owners<'t> {
+    topology: &'t Topology,
+    /// The number of each face's patch, if it is an irregular quad.
+    refined: Vec<u32>,
+    /// Whether each face is drawn, but not refined.
+    coarse: Vec<bool>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<'t> Owners<'t> {
+    fn new(topology: &'t Topology, patches: &PatchPlan) -> Self {
+        let faces = topology.mesh().face_count();
+        let (mut refined, mut coarse) = (vec![NONE; faces], vec![false; faces]);
+        for (patch, number) in patches.patches().iter().zip(0..) {
+            match patch.kind {
+                PatchKind::IrregularQuad => refined[patch.face as usize] = number,
+                _ => coarse[patch.face as usize] = true,
+            }
+        }
+        Self { topology, refined, coarse }
+    }
+
+    /// The owner that a half-edge, or its start, is of.
+    fn word(&self, h: u32) -> u32 {
+        let face = self.topology.face(h);
+        let k = h - self.topology.mesh().face_corners(face).start as u32;
+        self.refined[face as usize] << OWNER_SHIFT | k
+    }
+
+    /// The first of some half-edges, in the order of their patches.
+    fn first(&self, half_edges: impl IntoIterator<Item = u32>) -> Option<u32> {
+        half_edges.into_iter().min_by_key(|&h| (self.refined[self.topology.face(h) as usize], h))
+    }
+
+    fn is_sharp(&self, h: u32) -> bool {
+        self.topology.sharpness(h) >= SHARPNESS_INFINITE
+    }
+
+    fn is_coarse(&self, h: u32) -> bool {
+        self.coarse[self.topology.face(h) as usize]
+    }
+
+    /// The owners of position and normal along the edge of a half-edge.
+    fn edge(&self, h: u32) -> [u32; 2] {
+        let twin = self.topology.twin(h);
+        if twin.is_some_and(|twin| self.is_coarse(twin)) {
+            return [OWNER_NONE; 2];
+        }
+        let drawn = [h].into_iter().chain(twin.filter(|&twin| self.refined[self.topology.face(twin) as usize] != NONE));
+        let owner = self.first(drawn).unwrap_or(h);
+        [owner, if self.is_sharp(h) { h } else { owner }].map(|h| self.word(h))
+    }
+
+    /// The owners of position and normal where a half-edge starts.
+    fn corner(&self, h: u32) -> [u32; 2] {
+        let (fan, _) = self.topology.fan(h);
+        if fan.iter().any(|&h| self.is_coarse(h)) {
+            return [OWNER_NONE; 2];
+        }
+        let drawn = |h: &u32| self.refined[self.topology.face(*h) as usize] != NONE;
+        let owner = self.first(fan.iter().copied().filter(drawn)).unwrap_or(h);
+        // The faces on the same side of all sharp edges. Half-edges of a fan follow each other around the vertex.
+        let start = fan.iter().position(|&h| self.is_sharp(h)).unwrap_or(0);
+        let around = (0..fan.len()).map(|i| fan[(start + i) % fan.len()]);
+        let mut sides: Vec<Vec<u32>> = vec![vec![]];
+        for each in around {
+            if self.is_sharp(each) && !sides[0].is_empty() {
+                sides.push(vec![]);
+            }
+            sides.last_mut().expect("one at least").push(each);
+        }
+        let own = sides.into_iter().find(|side| side.contains(&h)).unwrap_or_default();
+        let of_normal = self.first(own.into_iter().filter(drawn)).unwrap_or(h);
+        [owner, of_normal].map(|h| self.word(h))
+    }
+}

@@ -1,0 +1,177 @@
+//! Adaptive surfaces on the GPU: every evaluation draws the limit surface, and neighbouring faces meet to the bit.
+
+use crate::common;
+use crate::common::limit::{mesh_and_limit, names};
+use ash_subdiv::adaptive::AdaptiveOptions;
+use ash_subdiv::capture::Captured;
+use ash_subdiv::headless::Headless;
+use ash_subdiv::limit::{LimitSurface, refine};
+use ash_subdiv::renderer::Evaluation;
+use ash_subdiv::table::{ModelTables, grid_parameters};
+use ash_subdiv::topology::{PatchKind, Topology};
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, shape, shapes};
+use glam::Vec3;
+use std::collections::HashMap;
+
+/// Samples along each side of a face: those of small meshes fall into end caps, too.
+fn grid(mesh: &ControlMesh) -> u32 {
+    if mesh.face_count() < 30 { 50 } else { 9 }
+}
+
+fn adaptive(depth: u32, construction: Construction) -> ModelOptions {
+    let adaptive = Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });
+    ModelOptions { adaptive, construction, ..ModelOptions::default() }
+}
+
+/// The mesh, refined once if it has faces that are no quads.
+fn quads(mesh: ControlMesh) -> ControlMesh {
+    if mesh.data().face_sizes.iter().all(|&size| size == 4) {
+        return mesh;
+    }
+    refine(&Topology::new(&mesh)).expect("small").mesh
+}
+
+fn diagonal(mesh: &ControlMesh) -> f64 {
+    let [low, high] = mesh.bounds();
+    (high - low).length()
+}
+
+/// The largest distances of irregular faces from the limit surface, of positions as parts of the mesh's diagonal, and of normals at
+/// inner samples.
+fn distance(headless: &Headless, mesh: &ControlMesh, options: &ModelOptions) -> [f64; 2] {
+    let surface = LimitSurface::new(mesh).expect("a surface");
+    let captured = Captured::new(headless, mesh, options).expect("a model");
+    let grid = grid(mesh);
+    let samples = captured.grid(grid).expect("a capture");
+    let plan = captured.tables().plan();
+    let (mut of_positions, mut of_normals) = (0.0_f64, 0.0_f64);
+    for (patch, samples) in plan.patches().iter().zip(&samples) {
+        for ([u, v], sample) in grid_parameters(PatchKind::Regular, grid).into_iter().zip(samples) {
+            let limit = surface.evaluate(patch.face, -1, u, v);
+            let away = (Vec3::from(sample.position).as_dvec3() - limit.position).length();
+            of_positions = of_positions.max(away / diagonal(mesh));
+            let inner = [u, v].iter().all(|t| (0.1..0.9).contains(t));
+            if inner && limit.normal.length() > 0.5 {
+                let normal = Vec3::from(sample.normal).as_dvec3().normalize_or_zero();
+                of_normals = of_normals.max((normal - limit.normal).length());
+            }
+        }
+    }
+    [of_positions, of_normals]
+}
+
+#[test]
+fn samples_come_to_the_limit_surface() {
+    let headless = common::headless();
+    for info in shapes() {
+        let mesh = quads(shape(info.name).expect("built in"));
+        let mut before = f64::INFINITY;
+        for (depth, construction) in [0, 2, 5].into_iter().zip(Construction::ALL) {
+            let [positions, normals] = distance(&headless, &mesh, &adaptive(depth, construction));
+            println!("{:16} depth {depth}: {positions:8.1e} normals {normals:8.1e}", info.name);
+            assert!(positions < 1.001 * before || positions < 1e-6, "{} at depth {depth}: {positions:e}", info.name);
+            before = positions;
+            if depth == 5 {
+                // End caps are not the surface itself; samples of larger meshes lie between them.
+                let most = if mesh.face_count() < 30 { 1e-3 } else { 1e-5 };
+                assert!(positions < most, "{}: {positions:e}", info.name);
+                assert!(normals < 2e-3, "{}: {normals:e}", info.name);
+            }
+        }
+    }
+    headless.finish_silent();
+}
+
+/// What `../shared` holds of other programs' surfaces, where that is.
+#[test]
+fn samples_are_those_of_reference_surfaces() {
+    let headless = common::headless();
+    let mut compared = 0;
+    // That has edges of three faces.
+    for name in names().into_iter().filter(|name| name != "catmark_fan") {
+        let (mesh, limit) = mesh_and_limit(&name);
+        // Of faces other than quads the parts are other faces of the refined mesh.
+        if !mesh.data().face_sizes.iter().all(|&size| size == 4) || mesh.face_count() > 2000 {
+            continue;
+        }
+        let options = adaptive(5, Construction::Stencil);
+        let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+        let samples = captured.grid(limit.side as u32).expect("a capture");
+        let mut worst = 0.0_f64;
+        for (patch, samples) in captured.tables().plan().patches().iter().zip(&samples) {
+            let Some(record) = limit.records.iter().find(|r| (r.face, r.sub) == (patch.face, -1)) else { continue };
+            for (sample, expected) in samples.iter().zip(&record.samples) {
+                let away = (Vec3::from(sample.position).as_dvec3() - expected.position).length();
+                worst = worst.max(away / diagonal(&mesh));
+                compared += 1;
+            }
+        }
+        println!("{name:28} {worst:8.1e}");
+        assert!(worst < 1e-5, "{name}: {worst:e}");
+    }
+    assert!(compared > 2000, "{compared} samples");
+    headless.finish_silent();
+}
+
+/// The vertices of irregular faces by face and place.
+fn vertices(
+    headless: &Headless,
+    mesh: &ControlMesh,
+    options: &ModelOptions,
+) -> HashMap<(u32, [u32; 2]), [[f32; 3]; 2]> {
+    const SEGMENTS: f32 = 8.0;
+    let captured = Captured::new(headless, mesh, options).expect("a model");
+    let patches = captured.tables().plan().patches();
+    let place = |coordinate: [f32; 3]| [coordinate[0], coordinate[1]].map(|x| (x * SEGMENTS).round() as u32);
+    let vertices = captured.vertices(SEGMENTS).expect("a capture").into_iter();
+    let of_patch = |vertex: &ash_subdiv::capture::CapturedVertex| patches[vertex.patch as usize];
+    let refined = vertices.filter(|vertex| of_patch(vertex).kind == PatchKind::IrregularQuad);
+    refined.map(|v| ((of_patch(&v).face, place(v.coordinate)), [v.position, v.normal])).collect()
+}
+
+#[test]
+fn every_evaluation_draws_the_same_leaves() {
+    let headless = common::headless();
+    for name in ["creature", "machine-part"] {
+        let mesh = quads(shape(name).expect("built in"));
+        let expected = vertices(&headless, &mesh, &adaptive(3, Construction::TwoStage));
+        assert!(expected.len() > 1000, "{name}");
+        let lattices = [Evaluation::Instanced, Evaluation::Geometry, Evaluation::GeometryTwoPass];
+        for evaluation in [Evaluation::Tessellation].into_iter().chain(lattices) {
+            for &construction in evaluation.constructions() {
+                let options = ModelOptions { evaluation, ..adaptive(3, construction) };
+                let vertices = vertices(&headless, &mesh, &options);
+                assert_eq!(vertices.len(), expected.len(), "{name} {evaluation:?} {construction:?}");
+                // Next to faces that are not refined, constructions differ by rounding.
+                let same = |a: [f32; 3], b: [f32; 3]| Vec3::from(a).distance(Vec3::from(b)) < 1e-5;
+                for (place, [position, normal]) in &vertices {
+                    let [p, n] = expected[place];
+                    assert!(
+                        same(*position, p),
+                        "{name} {evaluation:?} {construction:?} {place:?}: {position:?}, not {p:?}"
+                    );
+                    let [normal, n] = [*normal, n].map(|n| Vec3::from(n).normalize_or_zero().to_array());
+                    assert!(
+                        Vec3::from(normal).distance(Vec3::from(n)) < 1e-3,
+                        "{name} {evaluation:?} {construction:?} {place:?}: normal {normal:?}, not {n:?}"
+                    );
+                }
+            }
+        }
+    }
+    headless.finish_silent();
+}
+
+#[test]
+fn what_cannot_be_refined_is_refused() {
+    let error = |mesh: &ControlMesh, options: &ModelOptions| ModelTables::new(mesh, options).err().unwrap().to_string();
+    let cube = shape("cube").expect("built in");
+    let deep = adaptive(11, Construction::TwoStage);
+    assert_eq!(error(&cube, &deep), "depth 11: adaptive subdivision goes 10 levels deep at most");
+    let scheme = ash_subdiv::Scheme::Acc;
+    let acc = ModelOptions { scheme, ..adaptive(2, Construction::TwoStage) };
+    assert_eq!(error(&cube, &acc), "scheme acc: end caps are patches of gregory or gregory-fitted");
+    let evaluation = Evaluation::Subdivision;
+    let subdivided = ModelOptions { evaluation, ..adaptive(2, Construction::TwoStage) };
+    assert_eq!(error(&cube, &subdivided), "evaluation by subdivision has no patches: it cannot be adaptive");
+}
