@@ -1,6 +1,6 @@
 //! How a plan is made: level by level, then without what nothing reads.
 
-use super::caps::{self, Caps, Limits};
+use super::caps::{self, Around, Caps, FRAME, Known};
 use super::error::AdaptiveError;
 use super::feature::Shape;
 use super::grids::{fill, grid, is_boundary};
@@ -29,12 +29,16 @@ impl Plan {
         let mut level = builder.control_level(topology);
         loop {
             let fates = level.fates(options);
-            builder.add_leaves(&level, &fates)?;
             let children = builder.add_refined(&level, &fates);
-            if children.is_empty() {
-                return builder.finish();
+            let next = match children.is_empty() {
+                true => None,
+                false => Some(builder.refine(&level, &fates, &children)?),
+            };
+            builder.add_leaves(&level, &fates)?;
+            match next {
+                None => return builder.finish(),
+                Some(next) => level = next,
             }
-            level = builder.refine(&level, &fates, &children)?;
         }
     }
 }
@@ -53,12 +57,16 @@ struct Builder {
     rows: Stencils,
     /// Where those of each level start, from level 1.
     level_starts: Vec<u32>,
+    /// The vertices of level 1 that are the points of faces of five and more corners, by face.
+    centres: HashMap<u32, u32>,
     ghosts: Vec<Row>,
     /// The ghost beyond each vertex, mirroring another.
     ghost_numbers: HashMap<(u32, u32), u32>,
     /// The control points of end caps.
     cap_points: Stencils,
     caps: Caps,
+    /// Points of frames that caps share.
+    frames: Vec<Row>,
 }
 
 impl Builder {
@@ -84,10 +92,12 @@ impl Builder {
             refined: Vec::new(),
             rows: Stencils::default(),
             level_starts: Vec::new(),
+            centres: HashMap::new(),
             ghosts: Vec::new(),
             ghost_numbers: HashMap::new(),
             cap_points: Stencils::default(),
             caps: Caps::new(options.scheme),
+            frames: Vec::new(),
         }
     }
 
@@ -100,7 +110,7 @@ impl Builder {
     }
 
     fn add_leaves(&mut self, level: &Level, fates: &[Fate]) -> Result<(), AdaptiveError> {
-        let mut limits = Limits::new();
+        let mut known = Known::default();
         for (face, fate) in (0..).zip(fates) {
             let Fate::Leaf(shape) = *fate else { continue };
             let cell = level.cells[face as usize];
@@ -118,7 +128,7 @@ impl Builder {
                 Shape::Irregular => LeafKind::Cap,
             };
             let points = match kind {
-                LeafKind::Cap => self.add_cap(level, half_edges, &mut limits)?,
+                LeafKind::Cap => self.add_cap(level, half_edges, &mut known)?,
                 _ => self.add_grid(level, half_edges, boundary),
             };
             let Root { face, part, .. } = self.roots[cell.root as usize];
@@ -130,12 +140,12 @@ impl Builder {
         Ok(())
     }
 
-    fn add_cap(&mut self, level: &Level, half_edges: [u32; 4], limits: &mut Limits) -> Result<u32, AdaptiveError> {
-        let Self { caps, cap_points, .. } = self;
-        let (first, terms) = (cap_points.len() as u32, cap_points.indices.len());
-        let pushed = caps.push(&level.topology, half_edges, limits, cap_points);
+    fn add_cap(&mut self, level: &Level, half_edges: [u32; 4], known: &mut Known) -> Result<u32, AdaptiveError> {
+        let Self { caps, cap_points, frames, centres, .. } = self;
+        let first = cap_points.len() as u32;
+        let around = Around { topology: &level.topology, first_vertex: level.first_vertex, centres };
+        let pushed = caps.push(&around, half_edges, known, frames, cap_points);
         pushed.map_err(|error| AdaptiveError::Level { level: level.number, error })?;
-        cap_points.indices[terms..].iter_mut().for_each(|vertex| *vertex += level.first_vertex);
         Ok(first)
     }
 
@@ -202,17 +212,22 @@ impl Builder {
         };
         let number = level.number + 1;
         let refined = level.refine(fates, first_vertex, child);
-        let (next, rows) = refined.map_err(|error| AdaptiveError::Level { level: number, error })?;
+        let (next, rows, centres) = refined.map_err(|error| AdaptiveError::Level { level: number, error })?;
+        // After one step all faces are quads.
+        self.centres.extend(centres.into_iter().zip(first_vertex..));
         self.level_starts.push(self.rows.len() as u32);
         self.rows = std::mem::take(&mut self.rows).chain(rows);
         self.check_vertices(self.rows.len())?;
         Ok(next)
     }
 
-    fn check_vertices(&self, rows: usize) -> Result<(), AdaptiveError> {
-        let (count, max) = (self.control_vertices as usize + rows, GHOST as usize);
+    fn check(&self, what: &'static str, count: usize, max: usize) -> Result<(), AdaptiveError> {
         let depth = self.options.depth.max(self.options.sharp_depth());
-        if count > max { Err(AdaptiveError::TooLarge { depth, what: "vertices", count, max }) } else { Ok(()) }
+        if count > max { Err(AdaptiveError::TooLarge { depth, what, count, max }) } else { Ok(()) }
+    }
+
+    fn check_vertices(&self, rows: usize) -> Result<(), AdaptiveError> {
+        self.check("vertices", self.control_vertices as usize + rows, FRAME as usize)
     }
 
     /// Which refined vertices are read, by leaves or by others that are.
@@ -220,12 +235,12 @@ impl Builder {
         let mut used = vec![false; self.rows.len()];
         let control = self.control_vertices;
         let mark = |used: &mut Vec<bool>, vertex: u32| {
-            if vertex & GHOST == 0 && vertex >= control {
+            if vertex & (GHOST | FRAME) == 0 && vertex >= control {
                 used[(vertex - control) as usize] = true;
             }
         };
         self.grids.iter().for_each(|&vertex| mark(&mut used, vertex));
-        for row in &self.ghosts {
+        for row in self.ghosts.iter().chain(&self.frames) {
             row.weights().iter().for_each(|&(vertex, _)| mark(&mut used, vertex));
         }
         self.cap_points.indices.iter().for_each(|&vertex| mark(&mut used, vertex));
@@ -249,25 +264,31 @@ impl Builder {
         let numbers: Vec<u32> = used.iter().map(count).collect();
         let kept = next;
         let number = |vertex: u32| if vertex < control { vertex } else { numbers[(vertex - control) as usize] };
-        let all = kept as usize - control as usize + self.ghosts.len() + self.cap_points.len();
+        let shared = self.ghosts.len() + self.frames.len();
+        let all = kept as usize - control as usize + shared + self.cap_points.len();
         self.check_vertices(all)?;
 
-        let terms = self.rows.indices.len() + self.cap_points.indices.len();
+        let of_shared = self.ghosts.iter().chain(&self.frames).map(|row| row.weights().len()).sum::<usize>();
+        let terms = self.rows.indices.len() + of_shared + self.cap_points.indices.len();
+        self.check("terms", terms, u32::MAX as usize)?;
         let mut rows = Stencils::with_capacity(all, terms);
-        let renumber = |(vertex, weight)| (number(vertex), weight);
+        let ghosts = kept..kept + self.ghosts.len() as u32;
+        let frames = ghosts.end..ghosts.end + self.frames.len() as u32;
+        let in_sum = |vertex: u32| if vertex & FRAME == 0 { number(vertex) } else { frames.start + (vertex & !FRAME) };
+        let renumber = |(vertex, weight)| (in_sum(vertex), weight);
         for row in (0..self.rows.len()).filter(|&row| used[row]) {
             rows.push(self.rows.row(row).map(renumber));
         }
-        for row in &self.ghosts {
+        for row in self.ghosts.iter().chain(&self.frames) {
             rows.push(row.weights().iter().copied().map(renumber));
         }
         for row in 0..self.cap_points.len() {
             rows.push(self.cap_points.row(row).map(renumber));
         }
+        let centres = control..control + used[..self.centres.len()].iter().filter(|used| **used).count() as u32;
         let start_of = |start: u32| numbers.get(start as usize).copied().unwrap_or(kept);
         let starts: Vec<u32> = self.level_starts.iter().map(|&s| start_of(s)).chain([kept]).collect();
-        let ghosts = kept..kept + self.ghosts.len() as u32;
-        let cap_points: Range<u32> = ghosts.end..ghosts.end + self.cap_points.len() as u32;
+        let cap_points: Range<u32> = frames.end..frames.end + self.cap_points.len() as u32;
         let in_grid = |vertex: u32| if vertex & GHOST == 0 { number(vertex) } else { ghosts.start + (vertex & !GHOST) };
         let place = |leaf: Leaf| match leaf.kind {
             LeafKind::Cap => Leaf { points: cap_points.start + leaf.points, ..leaf },
@@ -281,7 +302,9 @@ impl Builder {
             levels: starts.windows(2).map(|pair| pair[0]..pair[1]).collect(),
             grids: self.grids.iter().map(|&vertex| in_grid(vertex)).collect(),
             leaves: self.leaves.into_iter().map(place).collect(),
+            centres,
             ghosts,
+            frames,
             cap_points,
             roots: self.roots,
             face_roots: self.face_roots,

@@ -2,10 +2,17 @@
 
 use super::feature::{Class, Reason, Shape, classify, is_constant, shape};
 use super::options::AdaptiveOptions;
-use crate::limit::{Stencils, refine_part};
+use crate::limit::{Part, Stencils, refine_part};
 use crate::mesh::{ControlMesh, CreaseMethod, MeshError};
 use crate::topology::Topology;
+use rayon::prelude::*;
 use std::borrow::Cow;
+
+/// In the place of a half-edge.
+const NONE: u32 = u32::MAX;
+
+/// Vertices, or faces, for one thread at least.
+const MIN_LEN: usize = 1024;
 
 /// Where a face of a level lies.
 #[derive(Debug, Clone, Copy)]
@@ -45,18 +52,19 @@ impl Level<'_> {
     /// What becomes of each face.
     pub(super) fn fates(&self, options: &AdaptiveOptions) -> Vec<Fate> {
         let topology = &*self.topology;
-        let mut classes: Vec<Option<Class>> = vec![None; topology.vertex_count()];
-        for (face, _) in self.cells.iter().enumerate().filter(|(_, cell)| cell.own) {
-            for h in topology.mesh().face_corners(face as u32).map(|h| h as u32) {
-                classes[topology.vertex(h) as usize].get_or_insert_with(|| classify(topology, h));
-            }
+        // A half-edge from each vertex of the plan's own faces.
+        let mut starts = vec![NONE; topology.vertex_count()];
+        for (face, _) in (0..).zip(&self.cells).filter(|(_, cell)| cell.own) {
+            self.corners(face).for_each(|h| starts[topology.vertex(h) as usize] = h);
         }
-        let class = |h: u32| classes[topology.vertex(h) as usize].unwrap_or(Class::Plain);
+        let classify = |h: u32| if h == NONE { Class::Plain } else { classify(topology, h) };
+        let classes: Vec<Class> = starts.into_par_iter().with_min_len(MIN_LEN).map(classify).collect();
+        let class = |h: u32| classes[topology.vertex(h) as usize];
         let fate = |(face, cell): (usize, &Cell)| match cell.own {
             true => self.fate(face as u32, class, options),
             false => Fate::Support,
         };
-        self.cells.iter().enumerate().map(fate).collect()
+        self.cells.par_iter().enumerate().with_min_len(MIN_LEN).map(fate).collect()
     }
 
     fn fate(&self, face: u32, class: impl Fn(u32) -> Class, options: &AdaptiveOptions) -> Fate {
@@ -93,18 +101,21 @@ impl Level<'_> {
         [0, 1, 2, 3].map(|corner| start + (corner + 4 - first) % 4)
     }
 
-    /// The next level: the children of the refined faces and all faces around them; and its vertices as sums of this level's.
-    /// `child` tells the cell of a face's child around its corner.
+    /// The next level: the children of the refined faces and all faces around them; its vertices as sums; and the faces of five
+    /// and more corners whose points are its first vertices. `child` tells the cell of a face's child around its corner.
     pub(super) fn refine(
         &self,
         fates: &[Fate],
         first_vertex: u32,
         child: impl Fn(u32, u32) -> Cell,
-    ) -> Result<(Level<'static>, Stencils), MeshError> {
+    ) -> Result<(Level<'static>, Stencils, Vec<u32>), MeshError> {
         let topology = &*self.topology;
         let half_edges = self.half_edges_with_children(fates);
-        let (data, mut rows) = refine_part(topology, &half_edges);
-        rows.indices.iter_mut().for_each(|vertex| *vertex += self.first_vertex);
+        let Part { data, mut rows, centres } = refine_part(topology, &half_edges);
+        let own = topology.mesh().vertex_count() as u32;
+        for vertex in &mut rows.indices {
+            *vertex = if *vertex < own { self.first_vertex + *vertex } else { first_vertex + (*vertex - own) };
+        }
         let cell = |&h: &u32| {
             let face = topology.face(h);
             let cell = child(face, h - topology.mesh().face_corners(face).start as u32);
@@ -112,7 +123,7 @@ impl Level<'_> {
         };
         let cells = half_edges.iter().map(cell).collect();
         let topology = Cow::Owned(Topology::new(&ControlMesh::new(data)?));
-        Ok((Level { number: self.number + 1, topology, first_vertex, cells }, rows))
+        Ok((Level { number: self.number + 1, topology, first_vertex, cells }, rows, centres))
     }
 
     /// The face corners whose children are refined faces' or touch one; by Chaikin's method, which looks further, one ring

@@ -18,13 +18,19 @@ pub struct Plan {
     /// Number of control vertices, which are the first vertices of the plan.
     pub control_vertices: u32,
     /// The vertices after the control vertices as sums: row i makes vertex `control_vertices + i`, of vertices with lower
-    /// numbers. A refined vertex sums those of the level before; a ghost vertex and a cap's control point those of any level.
+    /// numbers. A refined vertex sums those of the level before, or centres; ghost vertices and frames those of any level; a cap's
+    /// control points those of any level, or frames.
     pub rows: Stencils,
     /// The refined vertices of levels 1, 2, ..: their numbers. Each level follows on the one before.
     pub levels: Vec<Range<u32>>,
+    /// The first vertices of level 1: the points of faces of five and more corners. Rows of level 1 and of end caps read them.
+    pub centres: Range<u32>,
     /// The ghost vertices: those beyond boundaries and infinitely sharp creases, mirrored (`2 b - i`), that make leaves there
     /// regular.
     pub ghosts: Range<u32>,
+    /// The frames of extraordinary vertices with many faces, which their end caps read: limit point, and the ends of two
+    /// tangents there.
+    pub frames: Range<u32>,
     /// The control points of end caps: 20 a cap, in the order of [`gregory`](crate::patch::gregory).
     pub cap_points: Range<u32>,
     /// The roots, by face. Root r is node r.

@@ -15,9 +15,12 @@ impl Plan {
         self.control_vertices as usize + self.rows.len()
     }
 
-    /// The ranges of vertices that can be made one after the other, each all at once: levels, then the rest.
+    /// The ranges of vertices that can be made one after the other, each all at once: the points of faces of five and more
+    /// corners, level 1, the other levels, ghosts with frames, end caps. Some may be empty.
     pub fn steps(&self) -> impl Iterator<Item = Range<u32>> + '_ {
-        self.levels.iter().cloned().chain([self.ghosts.start..self.cap_points.end])
+        let levels = self.levels.iter().map(|level| level.start.max(self.centres.end)..level.end);
+        let rest = [self.ghosts.start..self.frames.end, self.cap_points.clone()];
+        std::iter::once(self.centres.clone()).chain(levels).chain(rest)
     }
 
     /// All vertices, by number, where the control vertices are at `positions`.

@@ -15,7 +15,7 @@ mod surface;
 
 pub(crate) use fan::{Fan, FanRows, Fans};
 pub(crate) use masks::{dart_edge, dart_frame};
-pub(crate) use part::refine_part;
+pub(crate) use part::{Part, refine_part};
 pub use refine::{Refined, refine};
 pub use sample::LimitSample;
 pub(crate) use sharpness::{EdgeProfile, LEVELS, is_semi_sharp};

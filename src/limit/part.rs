@@ -8,26 +8,43 @@ use rayon::prelude::*;
 use rustc_hash::FxBuildHasher;
 use std::collections::HashMap;
 
-/// The children of some face corners as a mesh of their own, whose face i is the child of the i-th, begins there, and has the
-/// parent's order of corners; and its vertices as sums of the coarse mesh's. Positions are left at zero.
+/// The children of some face corners: [`refine_part`].
+pub(crate) struct Part {
+    /// A mesh of its own, whose face i is the child of the i-th corner, begins there, and has the parent's order of corners.
+    /// Positions are left at zero.
+    pub data: MeshData,
+    /// Its vertices as sums of the coarse mesh's vertices and, numbered after these, of its own first vertices, the centres.
+    pub rows: Stencils,
+    /// The faces of five and more corners whose points are the first vertices.
+    pub centres: Vec<u32>,
+}
+
+/// Refines what is around some face corners. Faces of many corners take part through their points, which are vertices
+/// already: so rows stay short.
 ///
 /// At the rim of the part tags may be missing, and rows are right as far as the coarse mesh is.
-pub(crate) fn refine_part(topology: &Topology, half_edges: &[u32]) -> (MeshData, Stencils) {
-    let step = Step::new(topology);
+pub(crate) fn refine_part(topology: &Topology, half_edges: &[u32]) -> Part {
+    let mut step = Step::new(topology);
     let mut numbers = vec![u32::MAX; step.vertex_count()];
     // Each vertex in the numbering of the whole refined mesh, and a corner that has a child with it.
     let mut vertices = Vec::with_capacity(half_edges.len());
-    let mut face_vertices = Vec::with_capacity(4 * half_edges.len());
-    for &h in half_edges {
-        for vertex in step.child(h) {
-            let number = &mut numbers[vertex as usize];
-            if *number == u32::MAX {
-                *number = vertices.len() as u32;
-                vertices.push((vertex, h));
-            }
-            face_vertices.push(*number);
+    let mut see = |vertex: u32, h: u32| {
+        let number = &mut numbers[vertex as usize];
+        if *number == u32::MAX {
+            *number = vertices.len() as u32;
+            vertices.push((vertex, h));
+        }
+        *number
+    };
+    let mut centres = Vec::new();
+    for &h in half_edges.iter().filter(|&&h| topology.face_size(h) > 4) {
+        if see(step.face_vertex(h), h) as usize == centres.len() {
+            centres.push(topology.face(h));
         }
     }
+    let face_vertices = half_edges.iter().flat_map(|&h| step.child(h).map(|vertex| see(vertex, h))).collect();
+    step.centres = centres.iter().copied().zip(topology.mesh().vertex_count() as u32..).collect();
+    let step = step;
     let number = |vertex: u32| numbers[vertex as usize];
     let creases = half_edges.iter().flat_map(|&h| step.creases_at(h));
     let creases = creases.map(|crease| Crease { vertices: crease.vertices.map(number), ..crease }).collect();
@@ -42,7 +59,8 @@ pub(crate) fn refine_part(topology: &Topology, half_edges: &[u32]) -> (MeshData,
         ..child_rules(topology)
     };
     let parts = vertices.par_chunks(4 * MIN_LEN).map(|vertices| PartRows::new(&step).rows(vertices));
-    (data, parts.collect::<Vec<_>>().into_iter().fold(Stencils::default(), Stencils::chain))
+    let rows = parts.collect::<Vec<_>>().into_iter().fold(Stencils::default(), Stencils::chain);
+    Part { data, rows, centres }
 }
 
 /// Makes rows. Among quads, where nothing is sharp, weights are those of the first vertex of the kind.

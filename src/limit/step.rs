@@ -78,6 +78,8 @@ pub(super) struct Step<'t> {
     sharp_ends: HashMap<u32, Vec<(u32, SharpEnd)>>,
     /// Sharpness of the manifold vertices that have any.
     vertex_sharpness: HashMap<u32, f32>,
+    /// Faces whose point rows take as an unknown of its own.
+    pub(super) centres: HashMap<u32, u32>,
 }
 
 impl<'t> Step<'t> {
@@ -94,8 +96,14 @@ impl<'t> Step<'t> {
                 }
             };
         }
-        let mut step =
-            Self { topology, edges, edge_half_edges, sharp_ends: HashMap::new(), vertex_sharpness: HashMap::new() };
+        let mut step = Self {
+            topology,
+            edges,
+            edge_half_edges,
+            sharp_ends: HashMap::new(),
+            vertex_sharpness: HashMap::new(),
+            centres: HashMap::new(),
+        };
         step.find_sharp_ends();
         step.find_sharp_vertices();
         step
@@ -116,7 +124,7 @@ impl<'t> Step<'t> {
         match self.kind(vertex) {
             Kind::Vertex => self.vertex_row(h),
             Kind::Edge(edge) => self.edge_row(edge),
-            Kind::Face(face) => self.face_row(face),
+            Kind::Face(face) => self.mean_row(face),
         }
     }
 
@@ -156,7 +164,7 @@ impl<'t> Step<'t> {
         self.topology.vertex_count() as u32 + self.edges[h as usize]
     }
 
-    fn face_vertex(&self, h: u32) -> u32 {
+    pub(super) fn face_vertex(&self, h: u32) -> u32 {
         (self.topology.vertex_count() + self.edge_half_edges.len()) as u32 + self.topology.face(h)
     }
 
@@ -211,7 +219,7 @@ impl<'t> Step<'t> {
         let edges =
             (0..self.edge_half_edges.len() as u32).into_par_iter().with_min_len(MIN_LEN).map(|e| self.edge_row(e));
         let faces =
-            (0..topology.mesh().face_count() as u32).into_par_iter().with_min_len(MIN_LEN).map(|f| self.face_row(f));
+            (0..topology.mesh().face_count() as u32).into_par_iter().with_min_len(MIN_LEN).map(|f| self.mean_row(f));
         vertices.chain(edges).chain(faces).collect()
     }
 
@@ -219,7 +227,13 @@ impl<'t> Step<'t> {
         Row::unit(self.topology.mesh_vertex(half_edge))
     }
 
+    /// The face point, as other rows take it.
     fn face_row(&self, face: u32) -> Row {
+        let centre = self.centres.get(&face);
+        centre.map_or_else(|| self.mean_row(face), |&centre| Row::unit(centre))
+    }
+
+    fn mean_row(&self, face: u32) -> Row {
         let vertices = self.topology.mesh().face(face);
         let mut row = Row::default();
         for &vertex in vertices {

@@ -6,7 +6,7 @@ use ash_subdiv::adaptive::{AdaptiveError, AdaptiveOptions, Leaf, LeafKind, Plan}
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::mesh::{BoundaryRule, Corner, Crease, CreaseMethod, TriangleRule};
 use ash_subdiv::topology::{PatchKind, Topology};
-use ash_subdiv::{ControlMesh, MeshData, MeshError, Scheme, shape};
+use ash_subdiv::{ControlMesh, MeshData, MeshError, Scheme, grid_torus, shape};
 use glam::{DVec2, DVec3};
 
 /// A random mesh, some of whose edges and vertices have random sharpness.
@@ -192,7 +192,7 @@ fn check_rows(plan: &Plan, mesh: &ControlMesh) {
     assert!(read[plan.control_vertices as usize..].iter().all(|&read| read), "each vertex is read");
     let mut end = plan.control_vertices;
     let mut below = 0..plan.control_vertices;
-    for range in plan.levels.iter().cloned().chain([plan.ghosts.start..plan.cap_points.end]) {
+    for range in plan.steps() {
         assert_eq!(range.start, end);
         end = range.end;
         let is_level = range.end <= plan.ghosts.start;
@@ -201,10 +201,15 @@ fn check_rows(plan: &Plan, mesh: &ControlMesh) {
             let terms = plan.rows.offsets[row] as usize..plan.rows.offsets[row + 1] as usize;
             let sum: f64 = plan.rows.weights[terms.clone()].iter().sum();
             assert!((sum - 1.0).abs() < 1e-13, "{sum}");
-            let lower = plan.rows.indices[terms].iter();
-            assert!(lower.clone().all(|&v| if is_level { below.contains(&v) } else { v < plan.ghosts.start }));
+            let is_readable = |&v: &u32| match is_level {
+                true => below.contains(&v) || plan.centres.contains(&v),
+                false => v < range.start && !plan.ghosts.contains(&v),
+            };
+            assert!(plan.rows.indices[terms].iter().all(is_readable));
         }
-        below = range;
+        if range != plan.centres {
+            below = range;
+        }
     }
     assert_eq!(end as usize, plan.vertex_count());
     let positions = positions(mesh);
@@ -213,6 +218,57 @@ fn check_rows(plan: &Plan, mesh: &ControlMesh) {
     for (point, composed) in points[positions.len()..].iter().zip(composed) {
         assert!((*point - composed).length() < 1e-13 * mesh.diagonal());
     }
+}
+
+#[test]
+fn chaikins_creases_leave_no_leaves_two_levels_apart() {
+    // A crease once round a torus, sharper at one edge.
+    let mut data = grid_torus(12, 6);
+    let topology = Topology::new(&ControlMesh::new(data.clone()).unwrap());
+    let straight_on = |&h: &u32| Some(topology.next(topology.twin(topology.next(h))?));
+    let crease: Vec<u32> = std::iter::successors(Some(0), straight_on).skip(1).take_while(|&h| h != 0).collect();
+    assert!(crease.len() >= 5);
+    let sharpness = |i: usize| if i == 0 { 4.5 } else { 3.0 };
+    let edge = |h: u32| [topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h))];
+    let tag = |(i, h): (usize, u32)| Crease { vertices: edge(h), sharpness: sharpness(i) };
+    data.creases = std::iter::once(0).chain(crease).enumerate().map(tag).collect();
+    data.crease_method = CreaseMethod::Chaikin;
+    let mesh = ControlMesh::new(data).unwrap();
+    let surface = LimitSurface::new(&mesh).unwrap();
+    for depth in 0..6 {
+        let planned = Planned::at_depth(&mesh, depth);
+        check_neighbours(&planned, &format!("depth {depth}"));
+        let Distance { exact, .. } = distance(&planned, &surface);
+        assert!(exact < 1e-8, "{exact:e}");
+    }
+}
+
+/// Two polygons of n corners, and quads between them.
+fn drum(n: u32) -> ControlMesh {
+    let ring = |z: f64| (0..n).map(move |i| (std::f64::consts::TAU * f64::from(i) / f64::from(n), z));
+    let quad = |i: u32| [i, (i + 1) % n, n + (i + 1) % n, n + i];
+    ControlMesh::new(MeshData {
+        positions: ring(0.0).chain(ring(1.0)).map(|(angle, z)| [angle.cos(), angle.sin(), z]).collect(),
+        face_sizes: [n, n].into_iter().chain((0..n).map(|_| 4)).collect(),
+        face_vertices: (0..n).rev().chain(n..2 * n).chain((0..n).flat_map(quad)).collect(),
+        ..MeshData::default()
+    })
+    .unwrap()
+}
+
+#[test]
+fn polygons_of_many_corners_cost_what_their_corners_do() {
+    for depth in [0, 1, 3] {
+        let terms = |n| Planned::at_depth(&drum(n), depth).plan.rows.indices.len() as f64 / f64::from(n);
+        let (few, many) = (terms(50), terms(400));
+        assert!(many < 1.05 * few, "{few} terms a corner of 50, {many} of 400");
+    }
+    let mesh = drum(24);
+    let planned = Planned::at_depth(&mesh, 4);
+    check_rows(&planned.plan, &mesh);
+    check_neighbours(&planned, "drum");
+    let Distance { exact, lift, .. } = distance(&planned, &LimitSurface::new(&mesh).unwrap());
+    assert!(exact < 1e-12 && lift < 1e-3, "{exact:e} {lift:e}");
 }
 
 #[test]
@@ -270,6 +326,10 @@ fn bad_options_are_refused() {
 fn the_greatest_depth_is_exact_too() {
     let mesh = shape("machine-part").unwrap();
     let planned = Planned::at_depth(&mesh, 10);
+    let counts = planned.plan.counts();
+    // Each level has as many leaves as the one before.
+    assert_eq!((counts.len(), counts[..10].iter().map(|level| level.caps).sum::<usize>()), (11, 0));
+    assert!(counts[4..10].iter().all(|level| level.regular == counts[4].regular) && counts[10].caps > 0);
     let Distance { exact, slope, lift, .. } = distance(&planned, &LimitSurface::new(&mesh).unwrap());
     println!("{exact:e} {slope:e} {lift:e}");
     assert!(exact < 1e-12 && slope < 1e-8 && lift < 1e-5, "{exact:e} {slope:e} {lift:e}");
