@@ -5,7 +5,14 @@ use super::options::AdaptiveOptions;
 use crate::limit::{Part, Stencils, refine_part};
 use crate::mesh::{ControlMesh, CreaseMethod, MeshError};
 use crate::topology::Topology;
+use rayon::prelude::*;
 use std::borrow::Cow;
+
+/// In the place of a half-edge.
+const NONE: u32 = u32::MAX;
+
+/// Vertices, or faces, for one thread at least.
+const MIN_LEN: usize = 1024;
 
 /// Where a face of a level lies.
 #[derive(Debug, Clone, Copy)]
@@ -45,18 +52,19 @@ impl Level<'_> {
     /// What becomes of each face.
     pub(super) fn fates(&self, options: &AdaptiveOptions) -> Vec<Fate> {
         let topology = &*self.topology;
-        let mut classes: Vec<Option<Class>> = vec![None; topology.vertex_count()];
-        for (face, _) in self.cells.iter().enumerate().filter(|(_, cell)| cell.own) {
-            for h in topology.mesh().face_corners(face as u32).map(|h| h as u32) {
-                classes[topology.vertex(h) as usize].get_or_insert_with(|| classify(topology, h));
-            }
+        // A half-edge from each vertex of the plan's own faces.
+        let mut starts = vec![NONE; topology.vertex_count()];
+        for (face, _) in (0..).zip(&self.cells).filter(|(_, cell)| cell.own) {
+            self.corners(face).for_each(|h| starts[topology.vertex(h) as usize] = h);
         }
-        let class = |h: u32| classes[topology.vertex(h) as usize].unwrap_or(Class::Plain);
+        let classify = |h: u32| if h == NONE { Class::Plain } else { classify(topology, h) };
+        let classes: Vec<Class> = starts.into_par_iter().with_min_len(MIN_LEN).map(classify).collect();
+        let class = |h: u32| classes[topology.vertex(h) as usize];
         let fate = |(face, cell): (usize, &Cell)| match cell.own {
             true => self.fate(face as u32, class, options),
             false => Fate::Support,
         };
-        self.cells.iter().enumerate().map(fate).collect()
+        self.cells.par_iter().enumerate().with_min_len(MIN_LEN).map(fate).collect()
     }
 
     fn fate(&self, face: u32, class: impl Fn(u32) -> Class, options: &AdaptiveOptions) -> Fate {

@@ -10,8 +10,9 @@
 //! root of level 1 for each corner.
 //!
 //! **Exactness.** [`LeafKind::Regular`] and [`LeafKind::SingleCrease`] are the limit surface but for rounding, whatever the
-//! depth. A [`LeafKind::Cap`] is the chosen scheme's patch of a face that is refined as often as its level says; it draws
-//! sharpness as that scheme does ([`SHARP_FROM`](crate::topology::SHARP_FROM)).
+//! depth. A [`LeafKind::Cap`] is the chosen scheme's patch of a face that is refined as often as its level says. It goes
+//! through the limits of its corners, also at darts and where sharpness is finite (there not by Chaikin's method); but for that
+//! it draws sharpness as the scheme does ([`SHARP_FROM`](crate::topology::SHARP_FROM)).
 //!
 //! **Neighbours.** Across an edge two leaves differ by at most one level while both depths of [`AdaptiveOptions`] are the same.
 //! Two rules see to that, which refine more than the surface needs: all faces around a feature are refined, those too which an

@@ -1,6 +1,7 @@
 //! Drawables: what the race needs of every path.
 
 use super::{BenchError, Contestant, Motion, Normals, Subject};
+use crate::adaptive::AdaptiveOptions;
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
 use crate::renderer::{ModelOptions, TableBytes, View};
@@ -145,6 +146,7 @@ impl Contestant {
             spacing: lane.spacing,
             shared_normals: self.normals == Normals::Shared,
             refine: lane.subject.refine,
+            adaptive: self.depth.map(|depth| AdaptiveOptions { depth, ..AdaptiveOptions::default() }),
             ..ModelOptions::default()
         }
     }

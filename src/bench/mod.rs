@@ -172,6 +172,8 @@ pub struct Contestant {
     pub path: Path,
     /// Scheme and construction of the patches; `None` for floors and subdivision.
     pub patches: Option<(Scheme, Construction)>,
+    /// Depth of adaptive subdivision; `None` where each face is one patch of the scheme.
+    pub depth: Option<u32>,
     /// Source of its normals.
     pub normals: Normals,
     /// Patches that it culls.
@@ -183,7 +185,7 @@ pub struct Contestant {
 impl Contestant {
     /// A contestant with each patch's own normals, without culling; `cull_by` is [as usual](CullBy::usual).
     pub const fn new(path: Path, patches: Option<(Scheme, Construction)>) -> Self {
-        Self { path, patches, normals: Normals::Own, cull: Cull::NONE, cull_by: CullBy::usual(patches) }
+        Self { path, patches, depth: None, normals: Normals::Own, cull: Cull::NONE, cull_by: CullBy::usual(patches) }
     }
 
     /// Variants with each of these normals and cullings that it can be combined with: patches are culled where
@@ -214,6 +216,13 @@ impl Contestant {
         let culled: Vec<Self> = culls.iter().flat_map(culled).collect();
         let with = |&normals| culled.iter().map(move |&one| Self { normals, ..one });
         normals.flat_map(with).collect()
+    }
+
+    /// The same, and adaptive surfaces of these depths where the scheme has end caps and the path draws them.
+    pub fn at_depths(self, depths: &[u32]) -> Vec<Self> {
+        let caps = matches!(self.patches, Some((Scheme::Gregory | Scheme::GregoryFitted, _)));
+        let depths = if caps { depths } else { &[] };
+        [self].into_iter().chain(depths.iter().map(|&depth| Self { depth: Some(depth), ..self })).collect()
     }
 
     /// Each path with each scheme and construction that it can be combined with.

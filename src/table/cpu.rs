@@ -127,11 +127,7 @@ impl CpuSurface {
         let kind = plan.leaves[leaf as usize].kind;
         let points = &points[starts[leaf as usize] as usize..][..kind.points()];
         let [position, du, dv] = kind.evaluate(points, u, v);
-        let across = match kind {
-            adaptive::LeafKind::Cap => (points[2] - points[0]).cross(points[3] - points[1]),
-            _ => P::default(),
-        };
-        Sample { position, normal: unit_normal(du, dv, across) }
+        Sample { position, normal: unit_normal(du, dv, P::default()) }
     }
 
     /// The leaves, if the patch is a face that is refined.

@@ -2,13 +2,11 @@
 
 use super::plan::PatchPlan;
 use crate::adaptive::{self, LEAF, LeafKind, LevelCounts};
-use crate::blend::Row;
 use crate::constants::{
     FACE_WORDS, LEAF_BIT, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, MAX_DEPTH, NORMAL_OWNERS, OWNER_NONE,
     OWNER_SHIFT,
 };
 use crate::mesh::SHARPNESS_INFINITE;
-use crate::patch::Scheme;
 use crate::topology::{PatchKind, Topology};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -22,10 +20,10 @@ pub struct LeafTable {
     /// next, and at its corners; likewise the owners of the normals, which differ where infinitely sharp edges part faces. An owner
     /// is a patch from bit `OWNER_SHIFT` on, and its edge or corner; or `OWNER_NONE`, where a neighbour is not refined.
     pub faces: Vec<[u32; FACE_WORDS as usize]>,
-    /// For each leaf, its kind; a crease's sharpness or the first control point of an end cap; then its 16 control points, row by row
-    /// along v.
+    /// For each leaf, its kind; a crease's sharpness or the first of the four face points f- of an end cap; two words that are not
+    /// used; then 16 control points, row by row along v.
     pub leaves: Vec<[u32; 4 * LEAF_FOURS as usize]>,
-    /// The plan. Control points of end caps are as [`Scheme::kept`] has them.
+    /// The plan. Control points of end caps are a grid of 16, with face points f+ inside, and four face points f-.
     pub(super) plan: adaptive::Plan,
     /// The number of the first irregular quad among all patches.
     pub first_patch: u32,
@@ -34,7 +32,7 @@ pub struct LeafTable {
 impl LeafTable {
     /// For the patches in `patches` of the mesh that was planned.
     pub(super) fn new(topology: &Topology, patches: &PatchPlan, mut plan: adaptive::Plan) -> Self {
-        keep_caps(&mut plan);
+        order_caps(&mut plan);
         let range = patches.range(PatchKind::IrregularQuad);
         let owners = Owners::new(topology, patches);
         let faces = patches.patches()[range.clone()].par_iter();
@@ -90,35 +88,30 @@ fn leaf_words(
     vertex: impl Fn(u32) -> u32,
 ) -> [u32; 4 * LEAF_FOURS as usize] {
     let mut words = [0; 4 * LEAF_FOURS as usize];
+    let first = leaf.points;
     let (kind, word) = match leaf.kind {
         LeafKind::Regular => (LEAF_REGULAR, 0),
         LeafKind::SingleCrease { edge, sharpness } => (LEAF_CREASE + edge, sharpness.to_bits()),
-        LeafKind::Cap => (LEAF_CAP, vertex(leaf.points)),
+        LeafKind::Cap => (LEAF_CAP, vertex(first + 16)),
     };
     words[..2].copy_from_slice(&[kind, word]);
-    if leaf.kind != LeafKind::Cap {
-        let grid = &plan.grids[leaf.points as usize..][..16];
-        words[4..].iter_mut().zip(grid).for_each(|(word, &point)| *word = vertex(point));
+    for (word, i) in words[4..].iter_mut().zip(first..) {
+        *word = vertex(if leaf.kind == LeafKind::Cap { i } else { plan.grids[i as usize] });
     }
     words
 }
 
-/// Has the control points of end caps as shaders keep them, corner by corner.
-fn keep_caps(plan: &mut adaptive::Plan) {
+/// Where the points of a Gregory quad stand: a grid like that of a regular leaf, then the face points f- of the corners.
+const CAP_ORDER: [usize; 20] = [0, 5, 10, 3, 4, 12, 18, 11, 7, 14, 16, 8, 1, 6, 9, 2, 13, 15, 17, 19];
+
+/// Has the control points of end caps in [`CAP_ORDER`].
+fn order_caps(plan: &mut adaptive::Plan) {
     let first = (plan.cap_points.start - plan.control_vertices) as usize;
-    let kind = PatchKind::IrregularQuad;
-    let points = Scheme::Gregory.points(kind);
-    let rows: Vec<Vec<Row>> = (first..plan.rows.len())
-        .into_par_iter()
-        .step_by(points)
-        .map(|cap| {
-            let rows: Vec<Row> = (cap..cap + points).map(|row| Row::new(plan.rows.row(row).collect())).collect();
-            let owned = |k| Scheme::Gregory.corner_slots(kind, k).into_iter().map(|slot| rows[slot].clone());
-            (0..4).flat_map(|k| Scheme::Gregory.kept(kind, &owned(k).collect::<Vec<_>>())).collect()
-        })
-        .collect();
+    let caps = first..plan.rows.len();
+    let points: Vec<usize> = caps.step_by(CAP_ORDER.len()).flat_map(|cap| CAP_ORDER.map(|point| cap + point)).collect();
+    let rows: Vec<Vec<(u32, f64)>> = points.into_iter().map(|point| plan.rows.row(point).collect()).collect();
     plan.rows.truncate(first);
-    rows.into_iter().flatten().for_each(|row| plan.rows.push(row.weights().iter().copied()));
+    rows.into_iter().for_each(|row| plan.rows.push(row));
 }
 
 /// Who makes what patches share.

@@ -50,7 +50,7 @@ pub(crate) struct Distance {
 pub(crate) fn distance(planned: &Planned, surface: &LimitSurface) -> Distance {
     let Planned { mesh, plan, points, .. } = planned;
     let mut distance = Distance::default();
-    let steps = 5;
+    let steps = 3;
     for (number, leaf) in (0..).zip(&plan.leaves) {
         let root = plan.roots[leaf.root as usize];
         let sub = if root.level == 0 { -1 } else { root.part as i32 };

@@ -67,35 +67,33 @@ Spline creased_spline(float t, float sharpness, bool turned) {
     return turned ? Spline(value.wzyx, -slope.wzyx) : Spline(value, slope);
 }
 
+// The Bernstein polynomials, as an end cap has them.
+Spline bezier(float t) {
+    precise float s = 1.0 - t;
+    precise float tt = t * t, ss = s * s;
+    precise vec4 value = vec4(ss * s, 3.0 * ss * t, 3.0 * tt * s, tt * t);
+    precise vec4 slope = vec4(-ss, ss - 2.0 * s * t, 2.0 * s * t - tt, tt);
+    return Spline(value, slope);
+}
+
 vec3 weighted(vec4 weights, vec3 x0, vec3 x1, vec3 x2, vec3 x3) {
     precise vec3 sum = (weights.x * x0 + weights.y * x1) + (weights.z * x2 + weights.w * x3);
     return sum;
-}
-
-// An end cap, by its control points as `Scheme::kept` has them, which stand in a row.
-Surface evaluate_cap(uint first, float u, float v) {
-    precise float s = 1.0 - u;
-    precise float t = 1.0 - v;
-#define AT(k, i) vertex_position(first + uint(5 * k + i))
-#define CORNER(k, x, y) TensorCorner(AT(k, 0), AT(k, 1), AT(k, 2), blend(AT(k, 3), x, AT(k, 4), y))
-    return evaluate_tensor(CORNER(0, u, v), CORNER(1, v, s), CORNER(2, s, t), CORNER(3, t, u), u, v);
-#undef CORNER
-#undef AT
 }
 
 // A leaf at its own parameters. Rust twin: `Plan::evaluate_leaf`.
 Surface evaluate_leaf(uint leaf, vec2 at) {
     uint start = tables.leaves / 4u + LEAF_FOURS * leaf;
     uvec4 head = table_fours[start];
-    if (head.x == LEAF_CAP) {
-        return evaluate_cap(head.y, at.x, at.y);
-    }
+    bool is_cap = head.x == LEAF_CAP;
     Spline in_u = spline(at.x), in_v = spline(at.y);
-    if (head.x != LEAF_REGULAR) {
+    if (is_cap) {
+        in_u = bezier(at.x);
+        in_v = bezier(at.y);
+    } else if (head.x != LEAF_REGULAR) {
         uint edge = head.x - LEAF_CREASE;
-        float sharpness = uintBitsToFloat(head.y);
         bool across_u = (edge & 1u) != 0u, turned = edge == 0u || edge == 3u;
-        Spline across = creased_spline(across_u ? at.x : at.y, sharpness, turned);
+        Spline across = creased_spline(across_u ? at.x : at.y, uintBitsToFloat(head.y), turned);
         if (across_u) {
             in_u = across;
         } else {
@@ -103,14 +101,33 @@ Surface evaluate_leaf(uint leaf, vec2 at) {
         }
     }
     // As seen from one of them, for sums to keep the bits of small leaves.
-    vec3 origin = vertex_position(table_fours[start + 2u].y);
+    uvec4 rows[4] = { table_fours[start + 1u], table_fours[start + 2u], table_fours[start + 3u], table_fours[start + 4u] };
+    vec3 origin = vertex_position(rows[1].y);
+    vec3 points[4][4];
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+            precise vec3 point = vertex_position(rows[i][j]) - origin;
+            points[i][j] = point;
+        }
+    }
+    if (is_cap) {
+        // The other inner point of each corner, and between which of both the patch has it.
+        precise float s = 1.0 - at.x, t = 1.0 - at.y;
+#define INNER(i, j, k, a, b) \
+    { \
+        precise vec3 change = (vertex_position(head.y + k) - origin) - points[i][j]; \
+        points[i][j] = blend(points[i][j], a, change, b); \
+    }
+        INNER(1, 1, 0u, at.x, at.y)
+        INNER(2, 1, 1u, at.y, s)
+        INNER(2, 2, 2u, s, t)
+        INNER(1, 2, 3u, t, at.x)
+#undef INNER
+    }
     vec3 of_u[4], slopes[4];
-    for (uint i = 0u; i < 4u; ++i) {
-        uvec4 row = table_fours[start + 1u + i];
-        precise vec3 x0 = vertex_position(row.x) - origin, x1 = vertex_position(row.y) - origin;
-        precise vec3 x2 = vertex_position(row.z) - origin, x3 = vertex_position(row.w) - origin;
-        of_u[i] = weighted(in_v.value, x0, x1, x2, x3);
-        slopes[i] = weighted(in_v.slope, x0, x1, x2, x3);
+    for (int i = 0; i < 4; ++i) {
+        of_u[i] = weighted(in_v.value, points[i][0], points[i][1], points[i][2], points[i][3]);
+        slopes[i] = weighted(in_v.slope, points[i][0], points[i][1], points[i][2], points[i][3]);
     }
     precise vec3 position = origin + weighted(in_u.value, of_u[0], of_u[1], of_u[2], of_u[3]);
     vec3 du = weighted(in_u.slope, of_u[0], of_u[1], of_u[2], of_u[3]);
@@ -147,15 +164,15 @@ uint normal_owner_of(uint edge_or_corner) {
     return table_words[tables.faces + FACE_WORDS * evaluated_patch + NORMAL_OWNERS + edge_or_corner];
 }
 
-// A point of an edge or a corner, by the leaves of the owner: on an edge, `back` from the end of the patch's own.
-Surface evaluate_owned(uint owner, uint edge_or_corner, vec2 at, float back) {
-    uint k = owner & 3u, patch_number = owner >> OWNER_SHIFT;
-    bool is_own = patch_number == evaluated_patch && k == (edge_or_corner & 3u);
+// Where a point of an edge or a corner is on the side of the owner: on an edge, `back` from the end of the patch's own.
+vec2 place_of(uint owner, uint edge_or_corner, vec2 at, float back) {
+    uint k = owner & 3u;
+    bool is_own = owner >> OWNER_SHIFT == evaluated_patch && k == (edge_or_corner & 3u);
     // The other side goes the other way.
     float way = edge_or_corner < 4u ? back : 0.0;
     precise float left = 1.0 - way;
     vec2 place = k == 0u ? vec2(way, 0.0) : k == 1u ? vec2(1.0, way) : k == 2u ? vec2(left, 1.0) : vec2(0.0, left);
-    return evaluate_face(patch_number, is_own ? at : place);
+    return is_own ? at : place;
 }
 
 // Whether leaves make a point of an edge or a corner.

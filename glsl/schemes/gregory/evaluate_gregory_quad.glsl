@@ -19,20 +19,25 @@ Surface evaluate_gregory_quad(float u, float v) {
 // neighbour is not refined, what both make of their corners.
 Surface evaluate_leaves(vec3 at) {
     bvec4 on = bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
-    if (!any(on)) {
-        return evaluate_face(evaluated_patch, at.xy);
+    uint owner = evaluated_patch << OWNER_SHIFT, of_normal = owner;
+    vec2 place = at.xy;
+    float back = 0.0;
+    uint edge = 0u;
+    if (any(on)) {
+        edge = edge_or_corner(on);
+        owner = owner_of(edge);
+        if (owner == OWNER_NONE) {
+            return evaluate_gregory_quad(at.x, at.y);
+        }
+        of_normal = normal_owner_of(edge);
+        precise float left = 1.0 - at.x, up = 1.0 - at.y;
+        back = on.x ? left : on.y ? up : on.z ? at.x : at.y;
+        place = place_of(owner, edge, at.xy, back);
     }
-    uint place = edge_or_corner(on), owner = owner_of(place);
-    if (owner == OWNER_NONE) {
-        return evaluate_gregory_quad(at.x, at.y);
-    }
-    precise float left = 1.0 - at.x, up = 1.0 - at.y;
-    float back = on.x ? left : on.y ? up : on.z ? at.x : at.y;
-    Surface surface = evaluate_owned(owner, place, at.xy, back);
+    Surface surface = evaluate_face(owner >> OWNER_SHIFT, place);
     surface.facing = unit_normal(surface.du, surface.dv, vec3(0.0));
-    uint of_normal = normal_owner_of(place);
     if (of_normal != owner) {
-        Surface side = evaluate_owned(of_normal, place, at.xy, back);
+        Surface side = evaluate_face(of_normal >> OWNER_SHIFT, place_of(of_normal, edge, at.xy, back));
         surface.du = side.du;
         surface.dv = side.dv;
     }

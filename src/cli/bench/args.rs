@@ -39,6 +39,9 @@ pub(in super::super) struct BenchArgs {
     /// Where normals come from, with commas: those that patches share cost time. For watertight schemes.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', default_value = "own", value_parser = parse::one_of(Normals::ALL, Normals::name))]
     pub(super) normals: Vec<Normals>,
+    /// Measure each row of gregory and gregory-fitted again as adaptive surfaces of these depths, with commas.
+    #[arg(long, value_name = "DEPTH", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=10))]
+    pub(super) adaptive: Vec<u32>,
     /// Measure each row of the tessellation stages and of instances again with patches culled that are not seen: `back`
     /// those that face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
@@ -107,7 +110,7 @@ pub(in super::super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
+        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]
@@ -193,7 +196,8 @@ impl BenchArgs {
         let mut culls = vec![Cull::NONE, cull(&self.cull)];
         culls.dedup();
         let cull_by = pick(&self.cull_by, Some(&[]), &CullBy::ALL);
-        all.into_iter().flat_map(|contestant| contestant.variants(&normals, &culls, &cull_by)).collect()
+        let adaptive = all.into_iter().flat_map(|contestant| contestant.at_depths(&self.adaptive));
+        adaptive.flat_map(|contestant| contestant.variants(&normals, &culls, &cull_by)).collect()
     }
 
     pub(super) fn factors(&self) -> Vec<f32> {

@@ -55,6 +55,9 @@ described! {
         pub construction: String,
         pub path: String,
         pub normals: String,
+        /// Depth of an adaptive surface.
+        #[serde(default)]
+        pub adaptive: Option<u32>,
         /// And by what, if that is not what usually does.
         pub cull: String,
     }
@@ -189,6 +192,7 @@ impl Who {
             construction: contestant.construction_name().to_owned(),
             path: contestant.path.name().to_owned(),
             normals: contestant.normals.name().to_owned(),
+            adaptive: contestant.depth,
             cull: cull::name(cull) + &by,
         }
     }
@@ -196,7 +200,7 @@ impl Who {
     /// In a few words.
     pub(super) fn label(&self) -> String {
         let Self { scheme, construction, path, .. } = self;
-        let named = [scheme, construction, path].into_iter().filter(|s| *s != NONE).map(String::as_str);
+        let named = [scheme, construction, path].into_iter().filter(|s| *s != NONE).cloned();
         named.chain(self.drawn()).collect::<Vec<_>>().join(" ")
     }
 
@@ -207,13 +211,14 @@ impl Who {
 
     /// The path, and what is not as always with it.
     pub(super) fn path_label(&self) -> String {
-        [self.path.as_str()].into_iter().chain(self.drawn()).collect::<Vec<_>>().join(", ")
+        [self.path.clone()].into_iter().chain(self.drawn()).collect::<Vec<_>>().join(", ")
     }
 
-    fn drawn(&self) -> impl Iterator<Item = &str> {
-        let normals = (self.normals != Normals::Own.name()).then_some("shared normals");
-        let cull = (self.cull != NONE).then_some(self.cull.as_str());
-        normals.into_iter().chain(cull)
+    fn drawn(&self) -> impl Iterator<Item = String> {
+        let depth = self.adaptive.map(|depth| format!("adaptive {depth}"));
+        let normals = (self.normals != Normals::Own.name()).then(|| "shared normals".to_owned());
+        let cull = (self.cull != NONE).then(|| self.cull.clone());
+        depth.into_iter().chain(normals).chain(cull)
     }
 }
 
