@@ -114,8 +114,12 @@ impl CpuSurface {
         plan.leaves_of(plan.face_roots[patch.face as usize]).into_iter().flat_map(of_leaf).collect()
     }
 
-    /// A patch with these control points at the parameters (u, v), which a refined face looks its leaf up by. GLSL twin:
+    /// A patch with these control points at the parameters (u, v), by which a refined face finds its leaf. GLSL twin:
     /// `evaluate_face` in `glsl/lib/evaluate/leaves.glsl`.
+    ///
+    /// On its edges, too, the face asks its own leaves, where shaders ask those of the edge's owner. The two differ by rounding, but
+    /// for positions next to an end cap that does not have the crease of finite sharpness beside it, and for normals where several
+    /// faces meet whose caps have different ones.
     ///
     /// # Panics
     /// If `points` are not those of [`CpuSurface::points_of`].
