@@ -8,6 +8,7 @@
 //! | `cull` | which patches are culled |
 //! | `error_rows`, `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
+//! | `leaves` | what `patches` needs |
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
@@ -27,6 +28,7 @@ mod error_rows;
 mod errors;
 mod evaluation;
 mod info;
+mod leaves;
 mod legend;
 mod memory;
 mod obj;

@@ -140,3 +140,67 @@ fn what_cannot_be_refined_is_said() {
     let message = "the following required arguments were not provided: --adaptive <DEPTH>";
     fails("info --shape cube --sharp-depth 2", 2, message);
 }
+
+#[test]
+fn patches_are_leaves() {
+    let out = json("patches --shape cube --adaptive 2 --construction cpu");
+    assert_eq!((keys(&out), &out["construction"]), (vec!["construction", "leaves"], &"cpu".into()));
+    let leaves = out["leaves"].as_array().unwrap();
+    assert_eq!(leaves.len() as u64, json("info --shape cube --adaptive 2")["adaptive"]["leaves"].as_u64().unwrap());
+    let limit = json("sample --shape cube --scheme limit --cpu --grid 5");
+    for leaf in leaves {
+        assert_eq!(keys(leaf), ["edge", "face", "kind", "level", "points", "sharpness", "sub", "u", "v"]);
+        let place = ["face", "level", "u", "v"].map(|key| leaf[key].as_u64().unwrap() as usize);
+        let [face, 2, u, v] = place else { panic!("{place:?}") };
+        // The corner of the leaf is a sample of the limit surface.
+        let expected = &limit["faces"][face]["positions"][5 * v + u];
+        let points: Vec<Vec<f64>> = leaf["points"].as_array().unwrap().iter().map(numbers).collect();
+        let corner = match (leaf["kind"].as_str().unwrap(), points.len()) {
+            ("cap", 20) => points[0].clone(),
+            ("regular", 16) => {
+                let weights = [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0];
+                let sum =
+                    |x: usize| (0..9).map(|i| weights[i / 3] * weights[i % 3] * points[i / 3 * 4 + i % 3][x]).sum();
+                [0, 1, 2].map(sum).into()
+            }
+            other => panic!("{other:?}"),
+        };
+        assert_close(&serde_json::json!(corner), expected, 1e-12);
+    }
+    let out = json("patches --shape machine-part --adaptive 0 --construction cpu");
+    let creased = out["leaves"].as_array().unwrap().iter().filter(|leaf| leaf["kind"] == "single_crease");
+    let creased: Vec<_> = creased.map(|leaf| (&leaf["sharpness"], leaf["edge"].as_u64().unwrap() < 4)).collect();
+    assert!(
+        creased.len() > 100
+            && creased.iter().all(|&(sharpness, edge)| [1.5, 2.0].iter().any(|known| sharpness == known) && edge),
+        "{creased:?}"
+    );
+    let text = String::from_utf8(run("patches --shape cube --adaptive 1 --construction cpu").stdout).unwrap();
+    assert!(text.starts_with("face 0: level 1, cell 0 0: end cap\n  p0 ") && text.lines().count() == 24 * 21, "{text}");
+    let message = "--adaptive: leaves are written as the CPU makes them: add --construction cpu";
+    fails("patches --shape cube --adaptive 1", 2, message);
+}
+
+#[test]
+fn triangles_come_to_the_surface_of_their_depth() {
+    let row = |more: &str| {
+        let out = json(&format!("screen --shape cube --size 128x128 --bend 0.5 {more}"));
+        let uniform = out["rows"].as_array().unwrap().iter().find(|row| row["value"] == 32.0).unwrap();
+        ["shift", "facets"].map(|of| uniform[of]["max"].as_f64().unwrap())
+    };
+    let ([plain, _], [depth_0, _], [depth_3, facets]) = (row(""), row("--adaptive 0"), row("--adaptive 3"));
+    assert!((depth_0 / plain - 1.0).abs() < 0.01 && depth_3 < 0.1 * plain, "{plain} {depth_0} {depth_3}");
+    // Facets are measured from the surface that is drawn.
+    assert!(0.0 < facets && facets < 2.0 * depth_3 + 0.05, "{facets} {depth_3}");
+}
+
+#[test]
+fn pictures_show_the_errors_of_their_depth() {
+    let path = folder("adaptive-errors").join("x.png");
+    let largest = |more: &str| {
+        let picture = "render --shape polygons --shading error-position --size 240x120 --samples 1";
+        json(&format!("{picture} -o {} {more}", path.display()))["error"]["largest"].as_f64().unwrap()
+    };
+    let [plain, depth_0, depth_2] = ["", "--adaptive 0", "--adaptive 2"].map(largest);
+    assert!((depth_0 / plain - 1.0).abs() < 1e-6 && depth_2 < 0.5 * plain, "{plain} {depth_0} {depth_2}");
+}
