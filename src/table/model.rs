@@ -238,6 +238,8 @@ impl ModelTables {
             entries,
             types,
             corners,
+            ("quadtrees", array(&self.leaves, |t| t.quadtrees())),
+            ("leaves", array(&self.leaves, |t| t.leaves.as_flattened())),
             ("stencil_patches", array(stencils, |t| &t.patches)),
             ("stencil_vertices", array(stencils, |t| &t.vertices)),
             ("stencil_types", array(stencils, |t| &t.types)),
@@ -245,8 +247,6 @@ impl ModelTables {
             ("shared_corners", array(&self.shared, |t| t.corners.as_flattened())),
             ("shared_texcoords", array(&self.shared, |t| &t.texcoords)),
             ("faces", array(&self.leaves, |t| t.faces.as_flattened())),
-            ("quadtrees", array(&self.leaves, |t| t.quadtrees())),
-            ("leaves", array(&self.leaves, |t| t.leaves.as_flattened())),
         ]
     }
 }

@@ -8,14 +8,15 @@ use crate::common;
 use crate::common::golden;
 use crate::common::passes::{Moment, PassTarget};
 use ash::vk;
+use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
 use ash_subdiv::mesh::Crease;
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style, Target,
-    View, shape, shapes,
+    Construction, ControlMesh, DrawItem, Fallback, MeshData, ModelOptions, Options, Renderer, Scheme, Spacing, Style,
+    Target, View, shape, shapes,
 };
 
 const SIDE: u32 = 192;
@@ -63,6 +64,8 @@ pub struct Picture {
     evaluation: Evaluation,
     /// Of patches on lattices, which the tessellator draws otherwise.
     of_lattice: bool,
+    /// Depth of an adaptive surface.
+    depth: Option<u32>,
     /// Seen from behind: what is left out when it is seen from the front.
     culled: bool,
 }
@@ -83,8 +86,15 @@ impl Picture {
             displacement: None,
             evaluation: Evaluation::Tessellation,
             of_lattice: false,
+            depth: None,
             culled: false,
         }
+    }
+
+    /// An adaptive surface.
+    fn of_leaves(shape: &'static str, depth: u32, factor: f32) -> Self {
+        let (name, factor) = (format!("leaves-{shape}"), Factor::Uniform(factor));
+        Self { name, depth: Some(depth), factor, ..Self::lit(shape) }
     }
 
     /// Normals, in which schemes differ most.
@@ -166,6 +176,17 @@ pub fn pictures() -> Vec<Picture> {
         Picture::subdivided("subdivided-semi-sharp", "semi-sharp", 8.0),
         Picture { layers: wire(), ..Picture::subdivided("subdivided-wireframe", "cube", 4.0) },
         Picture { around: Some(0.25), ..Picture::subdivided("subdivided-creature-mixed", "creature-mixed", 4.0) },
+        // Creases of every sharpness, as they were authored.
+        Picture::of_leaves("semi-sharp", 5, 24.0),
+        Picture::of_leaves("ridges", 0, 12.0),
+        // Cracks would show the paper through a closed surface.
+        Picture { displacement: Some(0.012), around: Some(0.25), ..Picture::of_leaves("creature", 3, 12.0) },
+        Picture {
+            layers: vec![surface(Fragment::Normals)],
+            format: vk::Format::R8G8B8A8_UNORM,
+            around: Some(0.15),
+            ..Picture::of_leaves("valences", 5, 32.0)
+        },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
         Picture::of_scheme(Scheme::GregoryFitted, "creature-mixed", Some(0.2)),
         Picture::of_scheme(Scheme::Acc, "cube", None),
@@ -206,6 +227,29 @@ fn semi_sharp() -> ControlMesh {
     ControlMesh::new(data).expect("tags only")
 }
 
+/// Four ridges, each sharper than the one behind it: 0, 0.9, 1.8, 2.7.
+fn ridges() -> ControlMesh {
+    let mut data = MeshData::default();
+    let (across, along) = (7, 5);
+    for ridge in 0..4 {
+        let first = data.positions.len() as u32;
+        let vertex = |i: u32, j: u32| first + j * across + i;
+        for (j, i) in (0..along).flat_map(|j| (0..across).map(move |i| (j, i))) {
+            let height = if i == across / 2 { 4.0 } else { 0.0 };
+            let (i, j) = (f64::from(i), f64::from(j));
+            data.positions.push([1.2 * i + 2.0 * f64::from(ridge), height, -j + 4.5 * f64::from(ridge)]);
+        }
+        for (j, i) in (1..along).flat_map(|j| (1..across).map(move |i| (j, i))) {
+            data.face_sizes.push(4);
+            data.face_vertices.extend([vertex(i - 1, j - 1), vertex(i, j - 1), vertex(i, j), vertex(i - 1, j)]);
+        }
+        let crease =
+            |j| Crease { vertices: [vertex(across / 2, j - 1), vertex(across / 2, j)], sharpness: 0.9 * ridge as f32 };
+        data.creases.extend((1..along).map(crease).filter(|crease| crease.sharpness > 0.0));
+    }
+    ControlMesh::new(data).expect("a mesh")
+}
+
 /// About this much around a point, with nothing cut off in front of it.
 fn close_up(point: Vec3, towards: Vec3, half: f32) -> View {
     let eye = point + towards * (5.0 * half);
@@ -216,6 +260,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     let mesh = match picture.shape {
         "pentagons" => common::pentagons(),
         "semi-sharp" => semi_sharp(),
+        "ridges" => ridges(),
         name => shape(name).expect("built in"),
     };
     let styles = picture.layers.iter().map(|layer| layer.style.clone()).collect();
@@ -246,8 +291,17 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     // SAFETY: the texture outlives the renderer.
     let displacement = texture.as_ref().map(|texture| unsafe { renderer.add_displacement(texture.into()) });
     let Picture { scheme, spacing, factor, evaluation, .. } = *picture;
-    let model_options =
-        ModelOptions { construction, fallback, scheme, spacing, displacement, evaluation, ..ModelOptions::default() };
+    let adaptive = picture.depth.map(|depth| AdaptiveOptions { depth, ..AdaptiveOptions::default() });
+    let model_options = ModelOptions {
+        construction,
+        fallback,
+        scheme,
+        spacing,
+        displacement,
+        evaluation,
+        adaptive,
+        ..ModelOptions::default()
+    };
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
     if evaluation.needs_segments() {
         renderer.set_segments(model, factor.value() as u32).expect("segments");

@@ -38,7 +38,7 @@ void keep_vector(uint corner, uint i, vec3 x) {
 #define KEPT_TEXELS PACKED_ROWS(KEPT)
 
 layout(set = 1, binding = 4, std430) readonly buffer ControlPoints { vec4 control_points[]; };
-layout(set = 1, binding = 13) uniform samplerBuffer control_point_texels;
+layout(set = 1, binding = 15) uniform samplerBuffer control_point_texels;
 
 vec4 kept_texel(uint corner, uint i) {
     uint at = STRIDE * corner + i;

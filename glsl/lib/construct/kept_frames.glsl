@@ -19,7 +19,7 @@ void keep_frame(uint ring, KeptFrame frame) {
 }
 #else
 layout(set = 1, binding = 2, std430) readonly buffer Frames { vec4 frames[]; };
-layout(set = 1, binding = 12) uniform samplerBuffer frame_texels;
+layout(set = 1, binding = 14) uniform samplerBuffer frame_texels;
 
 vec4 frame_vector(uint i) {
     return READS_TEXELS ? texelFetch(frame_texels, int(i)) : frames[i];

@@ -13,6 +13,8 @@ layout(set = 1, binding = 5, std140) uniform Tables {
     uint ring_entries;
     uint ring_types;
     uint patch_corners;
+    uint quadtrees;
+    uint leaves;
     uint stencil_patches;
     uint stencil_vertices;
     uint stencil_types;
@@ -20,8 +22,6 @@ layout(set = 1, binding = 5, std140) uniform Tables {
     uint shared_corners;
     uint shared_texcoords;
     uint faces;  // where that of patch 0 would be
-    uint quadtrees;
-    uint leaves;
 } tables;
 
 // The texture coordinate of a corner by its number among all.

@@ -12,6 +12,17 @@
 // Whether irregular quads are refined.
 layout(constant_id = ID_ADAPTIVE) const bool ADAPTIVE = false;
 
+layout(set = 1, binding = 12) uniform usamplerBuffer quadtree_texels;
+layout(set = 1, binding = 13) uniform usamplerBuffer leaf_texels;
+
+uint quadtree_node(uint i) {
+    return READS_TEXELS ? texelFetch(quadtree_texels, int(i)).x : table_words[tables.quadtrees + i];
+}
+
+uvec4 leaf_four(uint i) {
+    return READS_TEXELS ? texelFetch(leaf_texels, int(i)) : table_fours[tables.leaves / 4u + i];
+}
+
 // The patch that is evaluated, among all of the model.
 uint evaluated_patch;
 
@@ -83,8 +94,8 @@ vec3 weighted(vec4 weights, vec3 x0, vec3 x1, vec3 x2, vec3 x3) {
 
 // A leaf at its own parameters. Rust twin: `Plan::evaluate_leaf`.
 Surface evaluate_leaf(uint leaf, vec2 at) {
-    uint start = tables.leaves / 4u + LEAF_FOURS * leaf;
-    uvec4 head = table_fours[start];
+    uint start = LEAF_FOURS * leaf;
+    uvec4 head = leaf_four(start);
     bool is_cap = head.x == LEAF_CAP;
     Spline in_u = spline(at.x), in_v = spline(at.y);
     if (is_cap) {
@@ -101,7 +112,7 @@ Surface evaluate_leaf(uint leaf, vec2 at) {
         }
     }
     // As seen from one of them, for sums to keep the bits of small leaves.
-    uvec4 rows[4] = { table_fours[start + 1u], table_fours[start + 2u], table_fours[start + 3u], table_fours[start + 4u] };
+    uvec4 rows[4] = { leaf_four(start + 1u), leaf_four(start + 2u), leaf_four(start + 3u), leaf_four(start + 4u) };
     vec3 origin = vertex_position(rows[1].y);
     vec3 points[4][4];
     for (int i = 0; i < 4; ++i) {
@@ -137,12 +148,12 @@ Surface evaluate_leaf(uint leaf, vec2 at) {
 
 // A face at (u, v), whose patch is given. Rust twin: `Plan::locate`.
 Surface evaluate_face(uint patch_number, vec2 at) {
-    uint node = table_words[tables.quadtrees + table_words[tables.faces + FACE_WORDS * patch_number]];
+    uint node = quadtree_node(table_words[tables.faces + FACE_WORDS * patch_number]);
     for (uint level = 0u; level < MAX_DEPTH && (node & LEAF_BIT) == 0u; ++level) {
         uvec2 far = uvec2(greaterThanEqual(at, vec2(0.5)));
         precise vec2 inside = 2.0 * at - vec2(far);
         at = inside;
-        node = table_words[tables.quadtrees + node + far.x + 2u * far.y];
+        node = quadtree_node(node + far.x + 2u * far.y);
     }
     return evaluate_leaf(node & ~LEAF_BIT, at);
 }

@@ -35,7 +35,9 @@ Surface evaluate_leaves(vec3 at) {
         place = place_of(owner, edge, at.xy, back);
     }
     Surface surface = evaluate_face(owner >> OWNER_SHIFT, place);
+#ifdef DISPLACED
     surface.facing = unit_normal(surface.du, surface.dv, vec3(0.0));
+#endif
     if (of_normal != owner) {
         Surface side = evaluate_face(of_normal >> OWNER_SHIFT, place_of(of_normal, edge, at.xy, back));
         surface.du = side.du;

@@ -51,7 +51,10 @@ fn texel_views(of: &ModelBuffers) -> Result<[Owned<vk::BufferView>; MODEL_TEXELS
         let ((format, texel), range) = (TABLE_TEXELS[i], &of.tables.texels[i]);
         of.tables.buffer.texels(format, texel, range.start, range.end - range.start)
     };
-    Ok([whole(None)?, table(0)?, table(1)?, table(2)?, table(3)?, whole(of.frames)?, whole(of.control_points)?])
+    let tables = (0..TABLE_TEXELS.len()).map(table);
+    let views = std::iter::once(whole(None)).chain(tables).chain([whole(of.frames), whole(of.control_points)]);
+    let views = views.collect::<Result<Vec<_>, _>>()?;
+    Ok(views.try_into().unwrap_or_else(|_| unreachable!("as many as there are texel buffers")))
 }
 
 fn write_set(context: &DeviceContext, set: vk::DescriptorSet, of: &ModelBuffers, texels: &[Owned<vk::BufferView>]) {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Tables of a model.
 const TABLES: usize = 13;
 /// The table of refined faces among them.
-const FACES: usize = 10;
+const FACES: usize = TABLES - 1;
 
 /// The word where each table starts: a uniform block. GLSL twin: `glsl/lib/draw/tables.glsl`.
 #[repr(C)]

@@ -50,9 +50,16 @@ pub(crate) const MODEL_BUFFERS: usize = 5;
 pub(crate) const VECTOR_TEXEL: (vk::Format, u64) = (vk::Format::R32G32B32A32_SFLOAT, 16);
 
 /// The tables that shaders may see as texel buffers, the first of all: format and bytes of a texel of the headers of rings, their
-/// entries, their types and the corners of patches. GLSL twin: `glsl/lib/construct/rings.glsl`.
-pub(crate) const TABLE_TEXELS: [(vk::Format, u64); 4] =
-    [(vk::Format::R32G32B32A32_UINT, 16), (vk::Format::R32_UINT, 4), VECTOR_TEXEL, (vk::Format::R32G32_UINT, 8)];
+/// entries, their types and the corners of patches; quadtrees of faces, and their leaves. GLSL twins: `glsl/lib/construct/rings.glsl`,
+/// `glsl/lib/evaluate/leaves.glsl`.
+pub(crate) const TABLE_TEXELS: [(vk::Format, u64); 6] = [
+    (vk::Format::R32G32B32A32_UINT, 16),
+    (vk::Format::R32_UINT, 4),
+    VECTOR_TEXEL,
+    (vk::Format::R32G32_UINT, 8),
+    (vk::Format::R32_UINT, 4),
+    (vk::Format::R32G32B32A32_UINT, 16),
+];
 
 /// Texel buffers of a model.
 pub(crate) const MODEL_TEXELS: usize = 3 + TABLE_TEXELS.len();
