@@ -151,20 +151,22 @@ pub fn surface_errors(
         let fallen_back = surface.plan().fallen_back().count();
         SchemeError { all: measured.errors(number, false), irregular, fallen_back }
     };
-    let errors = |(scheme, surface): &(Scheme, Result<CpuSurface, Undefined>)| {
-        (*scheme, surface.as_ref().map(&mut of_scheme).map_err(Clone::clone))
-    };
+    let errors =
+        |(scheme, surface): &SchemeSurface| (*scheme, surface.as_ref().map(&mut of_scheme).map_err(Clone::clone));
     let schemes = of_schemes.iter().map(errors).collect();
     let (area, patches) = (areas.iter().sum(), measured.kinds.len());
     Ok(ErrorReport { diagonal, area, patches, irregular_patches, nearest_floor: measured.nearest_floor(), schemes })
 }
 
-/// The surface of each scheme, or why there is none; all of the same faces.
+/// A scheme and its surface, or why there is none.
+type SchemeSurface = (Scheme, Result<CpuSurface, Undefined>);
+
+/// The surfaces of schemes, all of the same faces.
 fn of_schemes(
     mesh: &ControlMesh,
     schemes: &[Scheme],
     options: &ErrorOptions,
-) -> Result<Vec<(Scheme, Result<CpuSurface, Undefined>)>, TableError> {
+) -> Result<Vec<SchemeSurface>, TableError> {
     let &ErrorOptions { fallback, refine, adaptive, .. } = options;
     if adaptive.is_some() {
         let surface = |&scheme: &Scheme| {
