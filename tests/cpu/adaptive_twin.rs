@@ -21,7 +21,8 @@ fn samples(surface: &CpuSurface) -> Vec<Vec<Sample<DVec3>>> {
 
 #[test]
 fn samples_come_to_the_limit_surface() {
-    for info in shapes() {
+    // Larger meshes have nothing else.
+    for info in shapes().iter().filter(|info| !info.name.starts_with("creature")) {
         let mesh = shape(info.name).unwrap();
         let mut before = f64::INFINITY;
         for depth in [0, 2, 5] {
