@@ -9,6 +9,7 @@ use super::options::AdaptiveOptions;
 use super::plan::{LEAF, Leaf, LeafKind, Plan, RefinedCell, Root};
 use crate::blend::{Blend, Row};
 use crate::limit::Stencils;
+use crate::patch::Scheme;
 use crate::topology::{Topology, draws_face};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -18,14 +19,17 @@ use std::ops::Range;
 const GHOST: u32 = 1 << 31;
 
 impl Plan {
-    /// Plans a mesh: linear in its size and, for each level, in its features.
+    /// Plans a mesh, whose end caps are patches of `scheme`: linear in its size and, for each level, in its features.
     ///
     /// # Errors
     /// [`AdaptiveError::TooDeep`], [`AdaptiveError::NoCaps`]; [`AdaptiveError::TooLarge`] and [`AdaptiveError::Level`] if the
     /// plan or a level of it cannot be addressed.
-    pub fn new(topology: &Topology, options: &AdaptiveOptions) -> Result<Self, AdaptiveError> {
+    pub fn new(topology: &Topology, scheme: Scheme, options: &AdaptiveOptions) -> Result<Self, AdaptiveError> {
         options.check()?;
-        let mut builder = Builder::new(topology, *options);
+        if !scheme.has_caps() {
+            return Err(AdaptiveError::NoCaps { scheme });
+        }
+        let mut builder = Builder::new(topology, scheme, *options);
         let mut level = builder.control_level(topology);
         loop {
             let fates = level.fates(options);
@@ -70,7 +74,7 @@ struct Builder {
 }
 
 impl Builder {
-    fn new(topology: &Topology, options: AdaptiveOptions) -> Self {
+    fn new(topology: &Topology, scheme: Scheme, options: AdaptiveOptions) -> Self {
         let mesh = topology.mesh();
         let (mut roots, mut face_roots) = (Vec::new(), vec![0]);
         for (face, drawn) in (0..).zip(draws_face(topology)) {
@@ -96,7 +100,7 @@ impl Builder {
             ghosts: Vec::new(),
             ghost_numbers: HashMap::new(),
             cap_points: Stencils::default(),
-            caps: Caps::new(options.scheme),
+            caps: Caps::new(scheme),
             frames: Vec::new(),
         }
     }

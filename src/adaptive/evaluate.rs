@@ -2,7 +2,8 @@
 
 use super::caps;
 use super::crease::{creased_spline, spline};
-use super::plan::{LEAF, LeafKind, Plan};
+use super::plan::{LEAF, Leaf, LeafKind, Plan};
+use crate::blend::{Point, scalar};
 use crate::limit::LimitSample;
 use crate::patch::gregory::gregory_quad_derivatives;
 use glam::DVec3;
@@ -23,6 +24,21 @@ impl Plan {
             node = self.nodes[(node + i + 2 * j) as usize];
         }
         (node & !LEAF, u, v)
+    }
+
+    /// The leaves of a root, in the order of its quadtree.
+    ///
+    /// # Panics
+    /// If there is no such root.
+    pub fn leaves_of(&self, root: u32) -> Vec<u32> {
+        let (mut leaves, mut nodes) = (Vec::new(), vec![self.nodes[root as usize]]);
+        while let Some(node) = nodes.pop() {
+            match node & LEAF {
+                0 => nodes.extend((0..4).rev().map(|child| self.nodes[(node + child) as usize])),
+                _ => leaves.push(node & !LEAF),
+            }
+        }
+        leaves
     }
 
     /// The surface at (u, v) of a root, which are clamped to 0..=1, with [`Plan::points`]. `du` and `dv` are derivatives by
@@ -46,16 +62,49 @@ impl Plan {
     pub fn evaluate_leaf(&self, leaf: u32, u: f64, v: f64, points: &[DVec3]) -> LimitSample {
         assert_eq!(points.len(), self.vertex_count(), "one point a vertex of the plan");
         let leaf = &self.leaves[leaf as usize];
-        let first = leaf.points as usize;
-        let [mut in_u, mut in_v] = match leaf.kind {
-            LeafKind::Cap => {
-                let points = points[first..first + caps::POINTS as usize].try_into().expect("20 points");
-                let [position, du, dv] = gregory_quad_derivatives(points, u, v);
-                return sample(position, du, dv);
+        let [position, du, dv] = match leaf.kind {
+            LeafKind::Cap => leaf.kind.evaluate(&points[leaf.points as usize..][..leaf.kind.points()], u, v),
+            _ => leaf.kind.evaluate(&self.grid(leaf).map(|vertex| points[vertex as usize]), u, v),
+        };
+        LimitSample { position, du, dv, normal: du.cross(dv).normalize_or_zero() }
+    }
+
+    /// The control points of a leaf, in order, with [`Plan::points`].
+    pub fn control_points<T: Clone>(&self, leaf: &Leaf, points: &[T]) -> Vec<T> {
+        match leaf.kind {
+            LeafKind::Cap => points[leaf.points as usize..][..leaf.kind.points()].to_vec(),
+            _ => self.grid(leaf).map(|vertex| points[vertex as usize].clone()).to_vec(),
+        }
+    }
+
+    /// The vertices of a regular or single-crease leaf.
+    fn grid(&self, leaf: &Leaf) -> [u32; 16] {
+        std::array::from_fn(|point| self.grids[leaf.points as usize + point])
+    }
+}
+
+impl LeafKind {
+    /// Number of control points: 16 of a bicubic B-spline patch, 20 of a Gregory patch.
+    pub fn points(self) -> usize {
+        match self {
+            Self::Regular | Self::SingleCrease { .. } => 16,
+            Self::Cap => caps::POINTS as usize,
+        }
+    }
+
+    /// Position and derivatives by u and v of a leaf with these control points, at its own parameters.
+    ///
+    /// # Panics
+    /// If there are not [`LeafKind::points`] of them.
+    pub fn evaluate<P: Point>(self, points: &[P], u: f64, v: f64) -> [P; 3] {
+        let [mut in_u, mut in_v] = match self {
+            Self::Cap => {
+                let points = points.try_into().expect("20 points");
+                return gregory_quad_derivatives(points, scalar::<P>(u), scalar::<P>(v));
             }
             _ => [spline(u), spline(v)],
         };
-        if let LeafKind::SingleCrease { edge, sharpness } = leaf.kind {
+        if let Self::SingleCrease { edge, sharpness } = self {
             let (along, t) = if edge % 2 == 1 { (&mut in_u, u) } else { (&mut in_v, v) };
             let is_far = edge == 1 || edge == 2;
             let [mut value, mut slope] = creased_spline(if is_far { t } else { 1.0 - t }, f64::from(sharpness));
@@ -66,15 +115,14 @@ impl Plan {
             }
             *along = [value, slope];
         }
-        let grid = &self.grids[first..first + 16];
-        let sum = |in_u: &[f64; 4], in_v: &[f64; 4]| {
-            let row = |i: usize| (0..4).map(|j| in_v[j] * points[grid[4 * i + j] as usize]).sum::<DVec3>();
-            (0..4).map(|i| in_u[i] * row(i)).sum::<DVec3>()
+        let points: &[P; 16] = points.try_into().expect("16 points");
+        let sum = |weights: &[f64; 4], points: [P; 4]| {
+            let terms = weights.iter().zip(points).map(|(&weight, point)| point * scalar::<P>(weight));
+            terms.fold(P::default(), |sum, term| sum + term)
         };
-        sample(sum(&in_u[0], &in_v[0]), sum(&in_u[1], &in_v[0]), sum(&in_u[0], &in_v[1]))
+        let at = |in_u: &[f64; 4], in_v: &[f64; 4]| {
+            sum(in_u, [0, 1, 2, 3].map(|i| sum(in_v, [0, 1, 2, 3].map(|j| points[4 * i + j]))))
+        };
+        [at(&in_u[0], &in_v[0]), at(&in_u[1], &in_v[0]), at(&in_u[0], &in_v[1])]
     }
-}
-
-fn sample(position: DVec3, du: DVec3, dv: DVec3) -> LimitSample {
-    LimitSample { position, du, dv, normal: du.cross(dv).normalize_or_zero() }
 }

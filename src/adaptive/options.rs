@@ -1,12 +1,11 @@
 //! What a caller chooses.
 
 use super::error::AdaptiveError;
-use crate::patch::Scheme;
 
 /// The greatest depth.
 pub const MAX_DEPTH: u32 = 10;
 
-/// How deep faces are refined, and what covers the rest.
+/// Depths to which faces are refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AdaptiveOptions {
     /// The level of the end caps around extraordinary vertices, 0 to [`MAX_DEPTH`]. At 0 an irregular quad is one end cap.
@@ -15,8 +14,6 @@ pub struct AdaptiveOptions {
     /// The level of the end caps around sharp features: darts, corners, creases whose sharpness varies. `None` is
     /// [`AdaptiveOptions::depth`].
     pub sharp_depth: Option<u32>,
-    /// The scheme of the end caps: [`Scheme::Gregory`] or [`Scheme::GregoryFitted`].
-    pub scheme: Scheme,
 }
 
 impl AdaptiveOptions {
@@ -31,9 +28,6 @@ impl AdaptiveOptions {
                 return Err(AdaptiveError::TooDeep { what, depth });
             }
         }
-        match self.scheme {
-            Scheme::Gregory | Scheme::GregoryFitted => Ok(()),
-            scheme => Err(AdaptiveError::NoCaps { scheme }),
-        }
+        Ok(())
     }
 }

@@ -1,8 +1,8 @@
 //! The vertices of a plan as sums.
 
 use super::plan::Plan;
+use crate::blend::Blend;
 use crate::limit::Stencils;
-use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -27,12 +27,12 @@ impl Plan {
     ///
     /// # Panics
     /// If there are not as many positions as control vertices.
-    pub fn points(&self, positions: &[DVec3]) -> Vec<DVec3> {
+    pub fn points<T: Blend + Send + Sync>(&self, positions: &[T]) -> Vec<T> {
         assert_eq!(positions.len(), self.control_vertices as usize, "one position a control vertex");
         let mut points = Vec::with_capacity(self.vertex_count());
         points.extend_from_slice(positions);
         for step in self.steps() {
-            let point = |vertex: u32| self.terms(vertex).map(|(index, weight)| weight * points[index]).sum::<DVec3>();
+            let point = |vertex: u32| T::sum(self.terms(vertex).map(|(index, weight)| (weight, &points[index])));
             let made: Vec<_> = step.into_par_iter().with_min_len(MIN_LEN).map(point).collect();
             points.extend(made);
         }

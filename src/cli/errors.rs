@@ -2,13 +2,14 @@
 
 use super::described::{described, help};
 use super::error::CliError;
-use super::output::{self, Progress, Table};
+use super::error_rows::{Row, of_depths, of_schemes, print_csv, print_table};
+use super::output::{self, Progress};
 use super::plot::{self, Curve, CurvePoint, Figure};
 use super::source::SourceArgs;
 use super::{parse, published};
-use ash_subdiv::measure::{Deviation, ErrorOptions, ErrorReport, FaceErrors, SchemeError, surface_errors};
-use ash_subdiv::renderer::ModelTables;
-use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme};
+use ash_subdiv::adaptive::AdaptiveOptions;
+use ash_subdiv::measure::{ErrorOptions, ErrorReport, FaceErrors, surface_errors};
+use ash_subdiv::{ControlMesh, Scheme};
 use clap::Args;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -22,6 +23,10 @@ pub(super) struct ErrorArgs {
     /// A scheme to measure; may be given several times. All that have patches for the mesh if not given.
     #[arg(long, value_name = "SCHEME", value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     scheme: Vec<Scheme>,
+    /// Depths of adaptive subdivision to measure too, of the schemes gregory and gregory-fitted, or gregory alone if no --scheme is
+    /// given; several with commas between. --adaptive adds one.
+    #[arg(long, value_name = "DEPTH", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=10))]
+    depths: Vec<u32>,
     /// Samples along each side of a face.
     #[arg(long, value_name = "N", default_value_t = 33, value_parser = clap::value_parser!(u32).range(1..=1025))]
     samples: u32,
@@ -31,8 +36,8 @@ pub(super) struct ErrorArgs {
     /// Write comma-separated values, one line for each scheme and set of faces.
     #[arg(long, conflicts_with = "json")]
     csv: bool,
-    /// Refine the mesh uniformly, 0, 1, .. times, and plot the errors against patches and bytes of tables:
-    /// PREFIX.svg and PREFIX.png.
+    /// Refine the mesh uniformly, 0, 1, .. times, and plot the errors against patches and bytes of tables, with a curve of the
+    /// depths beside them: PREFIX.svg and PREFIX.png.
     #[arg(long, value_name = "PREFIX")]
     plot: Option<PathBuf>,
     /// With --plot: how many times the mesh is refined at most.
@@ -57,7 +62,8 @@ const EXAMPLES: &str = "\
 Examples:
   subdiv error --shape creature
   subdiv error model.obj --scheme gregory --scheme acc --samples 17 --json
-  subdiv error model.obj --plot errors";
+  subdiv error model.obj --depths 0,1,2,3,5 --scheme gregory
+  subdiv error model.obj --plot errors --depths 0,1,2,3";
 
 described! {
     #[derive(Serialize)]
@@ -71,7 +77,8 @@ described! {
         nearest_floor_rms: Option<f64> = "measured of the exact surface itself",
         patches: usize,
         irregular_patches: usize,
-        schemes: BTreeMap<&'static str, SchemeOut>,
+        /// By depth, too.
+        schemes: BTreeMap<String, SchemeOut> = "with --depths also NAME depth DEPTH",
         /// Schemes that have no patches for the mesh, and why.
         undefined: BTreeMap<&'static str, String> = "schemes without patches for the mesh, and why",
         /// Errors that are plotted: the mesh refined 0, 1, .. times more.
@@ -87,7 +94,7 @@ described! {
         samples: u32,
         nearest_floor_rms: Option<f64>,
         patches: usize,
-        schemes: BTreeMap<&'static str, RefinedSchemeOut>,
+        schemes: BTreeMap<String, RefinedSchemeOut>,
     }
 }
 
@@ -108,12 +115,20 @@ described! {
         irregular: Option<ErrorsOut>,
         /// Faces measured with the patches of the fallback.
         fallen_back: usize,
+        /// Depth of adaptive subdivision.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        depth: Option<u32> = "with --depths",
+        /// Leaves of adaptive subdivision.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        leaves: Option<usize> = "with --depths",
+        patches: usize,
+        table_bytes: u64,
     }
 }
 
 described! {
     #[derive(Serialize)]
-    struct ErrorsOut {
+    pub(super) struct ErrorsOut {
         position_rms: f64,
         position_rms_per_sample: f64,
         position_max: f64,
@@ -123,17 +138,6 @@ described! {
         normal_rms: f64,
         normal_rms_per_sample: f64,
         normal_max: f64,
-    }
-}
-
-described! {
-    /// A line of comma-separated values.
-    #[derive(Serialize)]
-    struct Line {
-        scheme: &'static str,
-        faces: &'static str,
-        #[serde(flatten)]
-        errors: ErrorsOut,
     }
 }
 
@@ -158,16 +162,12 @@ pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
     let published = if args.published { Some(published::rows(&args.mesh.name())?) } else { None };
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
-    let mut schemes = Vec::new();
-    for &scheme in if args.scheme.is_empty() { &Scheme::ALL[..] } else { &args.scheme } {
-        if !schemes.contains(&scheme) {
-            schemes.push(scheme);
-        }
-    }
+    let schemes = args.schemes();
     progress.now("measuring");
     let options = ErrorOptions {
         fallback: args.mesh.fallback(),
         refine: args.mesh.refine,
+        adaptive: None,
         samples: args.samples,
         nearest: args.nearest,
     };
@@ -178,21 +178,25 @@ pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
     {
         return Err(CliError::Work(error.to_string()));
     }
+    let mut rows = of_schemes(&args.mesh, &mesh, &report, &options)?;
     let refinements = match &args.plot {
         Some(_) => refinements(args, &mesh, &schemes, &options, &report, &progress)?,
         None => Vec::new(),
     };
+    progress.now("measuring depths");
+    let capped = if args.scheme.is_empty() { &[Scheme::Gregory][..] } else { &schemes };
+    rows.extend(of_depths(&args.mesh, &mesh, capped, &args.depths(), &options)?);
     drop(progress);
     if let Some(prefix) = &args.plot {
-        plot(prefix, args, &schemes, &refinements)?;
+        plot(prefix, args, &schemes, &refinements, &rows)?;
     }
     if json {
-        return output::json_pretty(&out(args, &report, refinements));
+        return output::json_pretty(&out(args, &report, &rows, refinements));
     }
     if args.csv {
-        print_csv(&report)?
+        print_csv(&rows)?
     } else {
-        print_table(&report)?
+        print_table(&report, &rows)?
     }
     if let Some(rows) = published {
         published::print(rows, &report)?;
@@ -201,8 +205,26 @@ pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
     Ok(())
 }
 
-fn measured(report: &ErrorReport) -> impl Iterator<Item = (Scheme, &SchemeError)> {
-    report.schemes.iter().filter_map(|(scheme, result)| Some((*scheme, result.as_ref().ok()?)))
+impl ErrorArgs {
+    /// The schemes to measure, each once.
+    fn schemes(&self) -> Vec<Scheme> {
+        let mut schemes = Vec::new();
+        for &scheme in if self.scheme.is_empty() { &Scheme::ALL[..] } else { &self.scheme } {
+            if !schemes.contains(&scheme) {
+                schemes.push(scheme);
+            }
+        }
+        schemes
+    }
+
+    /// The depths to measure, each once, the lesser first.
+    fn depths(&self) -> Vec<AdaptiveOptions> {
+        let depths = self.depths.iter().map(|&depth| AdaptiveOptions { depth, sharp_depth: None });
+        let mut depths: Vec<_> = depths.chain(self.mesh.adaptive()).collect();
+        depths.sort_by_key(|options| (options.depth, options.sharp_depth));
+        depths.dedup();
+        depths
+    }
 }
 
 /// The errors at each step of refinement; `first` is the report without.
@@ -219,25 +241,28 @@ fn refinements(
         let refine = options.refine + step;
         // As many samples over each face of the mesh as without refinement, and not so few that they miss its middle.
         let samples = options.samples.div_ceil(1 << step).max(options.samples.min(5));
+        let options = ErrorOptions { refine, samples, ..*options };
         let refined = match step {
             0 => None,
-            _ => Some(surface_errors(mesh, schemes, &ErrorOptions { refine, samples, ..*options })?),
+            _ => Some(surface_errors(mesh, schemes, &options)?),
         };
         let report = refined.as_ref().unwrap_or(first);
-        let scheme = |(scheme, error): (Scheme, &SchemeError)| {
-            let options = ModelOptions { refine, ..args.mesh.model_options(scheme, Construction::TwoStage) };
-            let bytes = ModelTables::new(mesh, &options)?.bytes();
-            let table_bytes = bytes.iter().map(|(_, bytes)| bytes).sum();
-            Ok((scheme.name(), RefinedSchemeOut { all: error.all.into(), table_bytes }))
-        };
-        let schemes = measured(report).map(scheme).collect::<Result<_, CliError>>()?;
+        let scheme =
+            |row: &Row| (row.name(), RefinedSchemeOut { all: row.error.all.into(), table_bytes: row.table_bytes });
+        let schemes = of_schemes(&args.mesh, mesh, report, &options)?.iter().map(scheme).collect();
         let nearest_floor_rms = report.nearest_floor.map(|floor| floor.rms);
         Ok(RefinementOut { refine, samples, nearest_floor_rms, patches: report.patches, schemes })
     };
     (0..=args.plot_steps).map(step).collect()
 }
 
-fn plot(prefix: &Path, args: &ErrorArgs, schemes: &[Scheme], refinements: &[RefinementOut]) -> Result<(), CliError> {
+fn plot(
+    prefix: &Path,
+    args: &ErrorArgs,
+    schemes: &[Scheme],
+    refinements: &[RefinementOut],
+    rows: &[Row],
+) -> Result<(), CliError> {
     let curve = |scheme: &Scheme| {
         let name = scheme.name();
         let point = |refinement: &RefinementOut| {
@@ -248,30 +273,51 @@ fn plot(prefix: &Path, args: &ErrorArgs, schemes: &[Scheme], refinements: &[Refi
                 errors: [Some(all.position_rms), all.nearest_rms, Some(all.normal_rms)],
             })
         };
-        Curve { name, points: refinements.iter().filter_map(point).collect() }
+        Curve { name: name.into(), points: refinements.iter().filter_map(point).collect() }
     };
-    let curves: Vec<Curve> = schemes.iter().map(curve).filter(|curve| !curve.points.is_empty()).collect();
+    let uniform = schemes.iter().map(curve);
+    let by_depth = schemes.iter().map(|&scheme| depth_curve(scheme, rows));
+    let curves: Vec<Curve> = uniform.chain(by_depth).filter(|curve| !curve.points.is_empty()).collect();
     let exact = |refinement: &RefinementOut| {
         let patches = refinement.patches as f64;
         let table_bytes = refinement.schemes.values().next()?.table_bytes as f64;
         Some(CurvePoint { patches, table_bytes, errors: [None, refinement.nearest_floor_rms, None] })
     };
-    let floor = Curve { name: "floor of measuring", points: refinements.iter().filter_map(exact).collect() };
+    let floor = Curve { name: "floor of measuring".into(), points: refinements.iter().filter_map(exact).collect() };
     let name = args.mesh.name();
     let title = format!("{}: distance from the limit surface", name.rsplit(['/', '\\']).next().unwrap_or(&name));
     let last = args.mesh.refine + args.plot_steps;
+    let by_depth = if args.depths().is_empty() { "" } else { ", or by depth irregular faces alone, one patch a face" };
     let subtitle = format!(
-        "dots: the whole mesh refined {} to {last} times before patches are made (uniform, not feature-adaptive); tables of the two-stage construction",
+        "dots: the whole mesh refined {} to {last} times before patches are made{by_depth}; tables of the two-stage construction",
         args.mesh.refine
     );
     plot::write(prefix, &Figure { title, subtitle, curves, floor })
 }
 
-fn out(args: &ErrorArgs, report: &ErrorReport, refinements: Vec<RefinementOut>) -> ReportOut {
-    let scheme = |error: &SchemeError| SchemeOut {
-        all: error.all.into(),
-        irregular: error.irregular.map(Into::into),
-        fallen_back: error.fallen_back,
+/// The errors of a scheme by depth.
+fn depth_curve(scheme: Scheme, rows: &[Row]) -> Curve {
+    let point = |row: &Row| {
+        let FaceErrors { position, nearest, normal } = row.error.all;
+        CurvePoint {
+            patches: row.patches as f64,
+            table_bytes: row.table_bytes as f64,
+            errors: [Some(position.rms), nearest.map(|d| d.rms), Some(normal.rms)],
+        }
+    };
+    let of_scheme = rows.iter().filter(|row| row.scheme == scheme && row.adaptive.is_some());
+    Curve { name: format!("{} by depth", scheme.name()), points: of_scheme.map(point).collect() }
+}
+
+fn out(args: &ErrorArgs, report: &ErrorReport, rows: &[Row], refinements: Vec<RefinementOut>) -> ReportOut {
+    let scheme = |row: &Row| SchemeOut {
+        all: row.error.all.into(),
+        irregular: row.error.irregular.map(Into::into),
+        fallen_back: row.error.fallen_back,
+        depth: row.adaptive.map(|options| options.depth),
+        leaves: row.leaves,
+        patches: row.patches,
+        table_bytes: row.table_bytes,
     };
     let undefined =
         report.schemes.iter().filter_map(|(s, result)| Some((s.name(), result.as_ref().err()?.to_string())));
@@ -284,59 +330,8 @@ fn out(args: &ErrorArgs, report: &ErrorReport, refinements: Vec<RefinementOut>) 
         nearest_floor_rms: report.nearest_floor.map(|floor| floor.rms),
         patches: report.patches,
         irregular_patches: report.irregular_patches,
-        schemes: measured(report).map(|(s, error)| (s.name(), scheme(error))).collect(),
+        schemes: rows.iter().map(|row| (row.name(), scheme(row))).collect(),
         undefined: undefined.collect(),
         refinements,
     }
-}
-
-/// Each scheme over all faces and over irregular ones, each with its number of faces.
-fn rows(report: &ErrorReport) -> impl Iterator<Item = (Scheme, &'static str, FaceErrors)> {
-    measured(report).flat_map(|(scheme, error)| {
-        let irregular = error.irregular.map(|errors| (scheme, "irregular", errors));
-        std::iter::once((scheme, "all", error.all)).chain(irregular)
-    })
-}
-
-fn print_csv(report: &ErrorReport) -> Result<(), CliError> {
-    let line =
-        |(scheme, faces, errors): (Scheme, _, FaceErrors)| Line { scheme: scheme.name(), faces, errors: errors.into() };
-    let lines: Vec<Line> = rows(report).map(line).collect();
-    output::with_stdout(|out| output::csv(&lines, out))
-}
-
-fn print_table(report: &ErrorReport) -> Result<(), CliError> {
-    let mut table = Table::new(&[2, 3, 4, 5, 6, 7]);
-    table.row([&"scheme", &"faces", &"position", &"max", &"nearest", &"max", &"normal", &"max"]);
-    for (scheme, faces, FaceErrors { position, nearest, normal }) in rows(report) {
-        let distance = |d: f64| format!("{d:.3e}");
-        let near = |value: fn(Deviation) -> f64| nearest.map_or("-".into(), |d| distance(value(d)));
-        table.row([
-            &scheme.name(),
-            &faces,
-            &distance(position.rms),
-            &distance(position.max),
-            &near(|d| d.rms),
-            &near(|d| d.max),
-            &format!("{:.5}", normal.rms),
-            &format!("{:.5}", normal.max),
-        ]);
-    }
-    table.print()?;
-    let (patches, irregular) = (report.patches, report.irregular_patches);
-    output::with_stdout(|out| {
-        write!(out, "{patches} faces, {irregular} irregular; diagonal {}", report.diagonal)?;
-        if let Some(floor) = report.nearest_floor {
-            write!(out, "; nearest of the exact surface itself {}", output::short(floor.rms))?;
-        }
-        writeln!(out)?;
-        for (scheme, error) in measured(report).filter(|(_, error)| error.fallen_back > 0) {
-            let (name, faces) = (scheme.name(), error.fallen_back);
-            writeln!(
-                out,
-                "{name} has no patches for {faces} of the irregular faces: those of the fallback are measured"
-            )?;
-        }
-        Ok(())
-    })
 }

@@ -5,12 +5,14 @@ use super::error::CliError;
 use super::output::{self, Progress, Table};
 use super::parse;
 use super::source::MeshArgs;
+use ash_subdiv::adaptive::{AdaptiveOptions, LevelCounts, Reason};
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions};
 use clap::Args;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 #[derive(Debug, Args)]
 #[command(after_help = help::<Info>("", EXAMPLES))]
@@ -27,7 +29,8 @@ const EXAMPLES: &str = "\
 
 Examples:
   subdiv info --shape creature
-  subdiv info model.obj --construction stencil --json";
+  subdiv info model.obj --construction stencil --json
+  subdiv info model.obj --adaptive 5";
 
 described! {
     #[derive(Serialize)]
@@ -48,6 +51,9 @@ described! {
         bounds: [[f64; 3]; 2] = "[low, high]",
         refine: u32,
         patches: Patches,
+        /// What irregular faces are refined to.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        adaptive: Option<Leaves> = "with --adaptive",
         construction: &'static str,
         /// Rings (two-stage, cached) or patches (stencil) that differ in connectivity and so have weights of their own.
         connectivity_types: usize,
@@ -69,6 +75,92 @@ described! {
     }
 }
 
+described! {
+    /// The leaves of adaptive subdivision, those too that are whole faces.
+    #[derive(Serialize)]
+    struct Leaves {
+        depth: u32,
+        sharp_depth: u32,
+        leaves: usize,
+        /// The sums of all levels.
+        #[serde(flatten)]
+        kinds: LeafKinds,
+        levels: Vec<Level> = "from level 0",
+    }
+}
+
+described! {
+    /// Leaves by kind, and refined cells.
+    #[derive(Default, Serialize)]
+    struct LeafKinds {
+        regular: usize,
+        single_crease: usize,
+        caps: usize,
+        /// Refined cells by reason.
+        refined: BTreeMap<&'static str, usize> = "cells by reason",
+    }
+}
+
+described! {
+    #[derive(Serialize)]
+    struct Level {
+        level: usize,
+        #[serde(flatten)]
+        kinds: LeafKinds,
+    }
+}
+
+impl LeafKinds {
+    fn new(counts: &LevelCounts) -> Self {
+        let &LevelCounts { regular, single_crease, caps, refined } = counts;
+        let refined = Reason::ALL.into_iter().zip(refined).filter(|&(_, count)| count > 0);
+        Self { regular, single_crease, caps, refined: refined.map(|(reason, count)| (reason.name(), count)).collect() }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.regular += other.regular;
+        self.single_crease += other.single_crease;
+        self.caps += other.caps;
+        other.refined.iter().for_each(|(reason, count)| *self.refined.entry(reason).or_default() += count);
+    }
+
+    fn leaves(&self) -> usize {
+        self.regular + self.single_crease + self.caps
+    }
+
+    /// Why cells are refined.
+    fn reasons(&self) -> String {
+        let reasons: Vec<_> = self.refined.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+        reasons.join(", ")
+    }
+}
+
+impl Leaves {
+    fn new(options: AdaptiveOptions, counts: &[LevelCounts]) -> Self {
+        let level = |(level, counts)| Level { level, kinds: LeafKinds::new(counts) };
+        let levels: Vec<Level> = counts.iter().enumerate().map(level).collect();
+        let mut kinds = LeafKinds::default();
+        levels.iter().for_each(|level| kinds.add(&level.kinds));
+        let (depth, sharp_depth) = (options.depth, options.sharp_depth());
+        Self { depth, sharp_depth, leaves: kinds.leaves(), kinds, levels }
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        let mut table = Table::new(&[1, 2, 3, 4, 5]);
+        table.row([&"leaves", &"all", &"regular", &"single-crease", &"end caps", &"refined", &"because of"]);
+        let mut row = |name: &dyn Display, kinds: &LeafKinds| {
+            let refined: usize = kinds.refined.values().sum();
+            let LeafKinds { regular, single_crease, caps, .. } = kinds;
+            table.row([name, &kinds.leaves(), regular, single_crease, caps, &refined, &kinds.reasons()]);
+        };
+        for Level { level, kinds } in &self.levels {
+            row(&format!("level {level}"), kinds);
+        }
+        row(&"all levels", &self.kinds);
+        table.print()
+    }
+}
+
 impl Patches {
     pub(super) fn of(tables: &ModelTables) -> Self {
         Self {
@@ -84,7 +176,7 @@ impl Patches {
     }
 }
 
-impl std::fmt::Display for Patches {
+impl Display for Patches {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { regular, irregular_quad, triangle, pentagon } = self;
         write!(f, "{} patches ({regular} regular, {irregular_quad} irregular, {triangle} triangles", self.total())?;
@@ -127,6 +219,10 @@ impl Info {
             bounds: mesh.bounds().map(Into::into),
             refine: options.refine,
             patches: Patches::of(tables),
+            adaptive: options
+                .adaptive
+                .zip(tables.leaves())
+                .map(|(options, table)| Leaves::new(options, &table.counts())),
             construction: options.construction.name(),
             connectivity_types: tables.type_count(),
             bytes,
@@ -160,6 +256,9 @@ impl Info {
             table.row([&format!("  {}", name.replace('_', " ")), bytes]);
         }
         table.print()?;
+        if let Some(leaves) = &self.adaptive {
+            leaves.print()?;
+        }
         self.notices.iter().for_each(output::note);
         Ok(())
     }

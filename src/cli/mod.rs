@@ -6,8 +6,9 @@
 //! | `camera`, `displacement`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
 //! | `described` | the keys of JSON, for help and tables |
 //! | `cull` | which patches are culled |
-//! | `plot`, `published` | what `error` needs |
+//! | `error_rows`, `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
+//! | `leaves` | what `patches` needs |
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
@@ -23,9 +24,11 @@ mod devices;
 mod displacement;
 mod error;
 mod error_map;
+mod error_rows;
 mod errors;
 mod evaluation;
 mod info;
+mod leaves;
 mod legend;
 mod memory;
 mod obj;

@@ -1,6 +1,7 @@
 //! `subdiv patches`: the control points of every patch.
 
 use super::error::CliError;
+use super::leaves;
 use super::output::{self, Progress};
 use super::source::{DeviceArgs, MeshArgs, report_notices};
 use ash_subdiv::capture::Captured;
@@ -47,9 +48,15 @@ JSON: construction, patches[{face, sub, kind, scheme, points[[x, y, z]]}]: face 
 corner of the face around which refinement made the patch, or at which the edge of a pentagon's sector starts;
 kind is regular, irregular_quad, triangle or pentagon; scheme is the one asked for, or the fallback.
 
+With --adaptive: construction, leaves[{face, sub, level, u, v, kind, edge, sharpness, points[[x, y, z]]}], of each patch
+in the order of its quadtree: a leaf is the cell in column u and row v of the 2^level by 2^level cells of the patch.
+kind is regular, single_crease (edge 0 to 3 at v = 0, u = 1, v = 1, u = 0; sharpness at the level of the leaf) or cap.
+Points: 4 x 4 of a uniform bicubic B-spline, row-major with rows along u; of caps those of gregory.
+
 Examples:
   subdiv patches --shape cube
-  subdiv patches model.obj --construction cpu --json > patches.json";
+  subdiv patches model.obj --construction cpu --json > patches.json
+  subdiv patches model.obj --construction cpu --adaptive 3 --json > leaves.json";
 
 /// A patch as it is written.
 #[derive(Serialize)]
@@ -97,12 +104,21 @@ pub(super) fn by_origin(origins: &[FaceOrigin]) -> Vec<usize> {
 }
 
 pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
+    if args.mesh.source.adaptive().is_some() && args.construction != Maker::Cpu {
+        return Err(CliError::Usage(
+            "--adaptive: leaves are written as the CPU makes them: add --construction cpu".into(),
+        ));
+    }
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
     match args.construction {
         Maker::Cpu => {
             progress.now("making control points");
             let surface = args.mesh.cpu_surface(&mesh, &progress)?;
+            if let Some(plan) = surface.adaptive() {
+                drop(progress);
+                return leaves::write(&surface, plan, json);
+            }
             let points = surface.control_points(|p| p);
             drop(progress);
             let points: Vec<Vec<[f64; 3]>> =
@@ -170,7 +186,7 @@ pub(super) fn heading(origin: FaceOrigin) -> String {
 }
 
 /// Name of a control point.
-fn label(scheme: Scheme, kind: PatchKind, number: usize) -> String {
+pub(super) fn label(scheme: Scheme, kind: PatchKind, number: usize) -> String {
     let n = kind.corners();
     let sign = if (number - number.min(n)).is_multiple_of(2) { '+' } else { '-' };
     match (number, scheme) {

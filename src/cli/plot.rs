@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// A scheme at several costs.
 pub(super) struct Curve {
-    pub name: &'static str,
+    pub name: String,
     pub points: Vec<CurvePoint>,
 }
 
@@ -158,7 +158,7 @@ impl Figure {
             let size = (self.curves.len() - number) as u32 * scale;
             chart
                 .draw_series(LineSeries::new(points(curve), colour.stroke_width(size + scale)))?
-                .label(curve.name)
+                .label(curve.name.as_str())
                 .legend(move |(x, y)| Circle::new((x + 8 * scale as i32, y), 5 * scale, colour.filled()));
             let dot = (3 * scale) + size;
             chart.draw_series(points(curve).into_iter().map(|at| Circle::new(at, dot, colour.filled())))?;
@@ -166,7 +166,7 @@ impl Figure {
         if error == 0 && cost_name == COSTS[0].0 {
             chart
                 .configure_series_labels()
-                .position(SeriesLabelPosition::LowerLeft)
+                .position(SeriesLabelPosition::UpperRight)
                 .label_font(font(15))
                 .background_style(WHITE.mix(0.9))
                 .border_style(RGBColor(200, 200, 200))

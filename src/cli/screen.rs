@@ -178,7 +178,7 @@ pub(super) fn run(args: &ScreenArgs, json: bool) -> Result<(), CliError> {
         progress.now("measuring");
         let row = |factor: Factor| -> Result<Row, CliError> {
             let draw = CaptureDraw { view, cull: args.cull.cull(), ..CaptureDraw::new(factor) };
-            Ok(Row::new(factor, screen_error(&captured, &mesh, options.refine, &draw)?))
+            Ok(Row::new(factor, screen_error(&captured, &mesh, &draw)?))
         };
         let adaptive = args.adaptive().into_iter().map(row).collect::<Result<Vec<_>, _>>()?;
         let uniform = UNIFORM.into_iter().map(Factor::Uniform).map(row).collect::<Result<Vec<_>, _>>()?;

@@ -6,7 +6,7 @@ use super::parse;
 use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, read, shape};
-use ash_subdiv::table::{CpuSurface, Notice};
+use ash_subdiv::table::{CpuSurface, Notice, TableOptions};
 use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme};
 use clap::Args;
 use glam::DVec3;
@@ -59,10 +59,11 @@ impl MeshArgs {
         self.source.model_options(self.scheme, construction)
     }
 
-    /// Points around which the whole surface is: the control points of its patches.
+    /// Points around which the whole surface is: the control points of its patches. Of adaptive surfaces they are those without
+    /// adaptive subdivision, so that pictures of all depths show the same.
     pub(super) fn hull(&self, mesh: &ControlMesh) -> Result<Vec<DVec3>, CliError> {
-        let (fallback, refine) = (self.source.fallback(), self.source.refine);
-        let mut points = CpuSurface::with_fallback(mesh, self.scheme, fallback, refine)?.control_points(|p| p).concat();
+        let options = TableOptions { adaptive: None, ..self.source.table_options(self.scheme) };
+        let mut points = CpuSurface::with_options(mesh, &options)?.control_points(|p| p).concat();
         // Where nothing is drawn, such as where all faces are holes.
         if points.is_empty() {
             points.extend(mesh.bounds());
@@ -91,15 +92,19 @@ impl SourceArgs {
     /// Options of the model, with this scheme and construction.
     pub(super) fn model_options(&self, scheme: Scheme, construction: Construction) -> ModelOptions {
         let name = self.shape.clone().unwrap_or_else(|| "mesh".into());
-        ModelOptions {
-            name,
-            scheme,
-            construction,
-            fallback: self.fallback(),
-            refine: self.refine,
-            adaptive: self.adaptive.map(|depth| AdaptiveOptions { depth, sharp_depth: self.sharp_depth, scheme }),
-            ..ModelOptions::default()
-        }
+        let TableOptions { fallback, refine, adaptive, .. } = self.table_options(scheme);
+        ModelOptions { name, scheme, construction, fallback, refine, adaptive, ..ModelOptions::default() }
+    }
+
+    /// How the mesh becomes patches of this scheme.
+    pub(super) fn table_options(&self, scheme: Scheme) -> TableOptions {
+        let adaptive = self.adaptive();
+        TableOptions { scheme, fallback: self.fallback(), refine: self.refine, adaptive, ..TableOptions::default() }
+    }
+
+    /// Depths of adaptive subdivision, if there is any.
+    pub(super) fn adaptive(&self) -> Option<AdaptiveOptions> {
+        self.adaptive.map(|depth| AdaptiveOptions { depth, sharp_depth: self.sharp_depth })
     }
 
     /// The patches of the mesh on the CPU; reports the notices about it.
@@ -109,7 +114,7 @@ impl SourceArgs {
         scheme: Scheme,
         progress: &Progress,
     ) -> Result<CpuSurface, CliError> {
-        let surface = CpuSurface::with_fallback(mesh, scheme, self.fallback(), self.refine)?;
+        let surface = CpuSurface::with_options(mesh, &self.table_options(scheme))?;
         report_notices(&surface.notices(), progress);
         Ok(surface)
     }

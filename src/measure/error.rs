@@ -3,10 +3,11 @@
 use super::nearest::{self, Nearest};
 use super::sums::{Deviation, Sums};
 use super::surfaces::{Parameters, SchemePatches, Surfaces, angle, drawn_faces, parts};
+use crate::adaptive::AdaptiveOptions;
 use crate::limit::LimitSurface;
-use crate::mesh::{ControlMesh, MeshError};
+use crate::mesh::ControlMesh;
 use crate::patch::{Fallback, Scheme, Undefined};
-use crate::table::{PatchPlan, prepare};
+use crate::table::{CpuSurface, TableError, TableOptions, prepare};
 use crate::topology::PatchKind;
 
 /// Options of the measurement.
@@ -16,6 +17,8 @@ pub struct ErrorOptions {
     pub fallback: Fallback,
     /// Steps of refinement before patches are made, at least.
     pub refine: u32,
+    /// Depths of adaptive subdivision, if schemes are measured as the end caps of that: only those that have some.
+    pub adaptive: Option<AdaptiveOptions>,
     /// Samples along each side of a quad, and of each of the three parts of a triangle; at least 1.
     pub samples: u32,
     /// Samples of each surface for the nearest distance, over the whole mesh; none is measured if 0.
@@ -23,9 +26,9 @@ pub struct ErrorOptions {
 }
 
 impl Default for ErrorOptions {
-    /// Nothing falls back or is refined; 33 by 33 samples a patch, 60 000 for the nearest distance.
+    /// Nothing falls back or is refined, adaptively or not; 33 by 33 samples a patch, 60 000 for the nearest distance.
     fn default() -> Self {
-        Self { fallback: Fallback::Refuse, refine: 0, samples: 33, nearest: 60_000 }
+        Self { fallback: Fallback::Refuse, refine: 0, adaptive: None, samples: 33, nearest: 60_000 }
     }
 }
 
@@ -78,7 +81,8 @@ pub struct ErrorReport {
 /// between corner k, the middles of its edges and the centre. That is a convention: other ways to lay the parameters of
 /// a triangle over those of the limit surface give other distances, and slightly other angles. Where the mesh is refined
 /// before patches are made, samples are those of the refined faces. A mesh with faces of five or more corners is refined
-/// once for every scheme, [`Scheme::Pm`] too, so that all are measured on the same faces.
+/// once for every scheme, [`Scheme::Pm`] too, so that all are measured on the same faces; for adaptive subdivision a mesh with
+/// triangles is refined once, too.
 ///
 /// **Nearest distance.** As many points of both surfaces, spread evenly over the area, each against the other surface
 /// as a mesh of triangles (about two million, at least 32 a patch, at most 2048). Chords of such a mesh are off the
@@ -103,11 +107,12 @@ pub struct ErrorReport {
 /// let report = surface_errors(&shape("torus")?, &[Scheme::Gregory], &options)?;
 /// let error = report.schemes[0].1.as_ref().expect("Gregory patches are defined everywhere");
 /// assert!(error.all.position.max < 1e-12 && error.irregular.is_none());
-/// # Ok::<(), ash_subdiv::MeshError>(())
+/// # Ok::<(), ash_subdiv::table::TableError>(())
 /// ```
 ///
 /// # Errors
-/// A refined mesh that cannot be addressed; coordinates beyond those of [`LimitSurface::new`].
+/// A refined mesh that cannot be addressed; coordinates beyond those of [`LimitSurface::new`]; with
+/// [`ErrorOptions::adaptive`] those of [`adaptive::Plan::new`](crate::adaptive::Plan::new), also of schemes without end caps.
 ///
 /// # Panics
 /// If `options.samples` is 0.
@@ -115,17 +120,19 @@ pub fn surface_errors(
     mesh: &ControlMesh,
     schemes: &[Scheme],
     options: &ErrorOptions,
-) -> Result<ErrorReport, MeshError> {
+) -> Result<ErrorReport, TableError> {
     assert!(options.samples > 0, "at least one sample along a side");
     let [low, high] = mesh.bounds();
     let diagonal = low.distance(high);
-    let prepared = prepare(mesh, options.refine)?;
+    let of_schemes = of_schemes(mesh, schemes, options)?;
+    let defined: Vec<_> = of_schemes.iter().filter_map(|(_, surface)| surface.as_ref().ok()).collect();
+    let prepared = match defined.first() {
+        Some(surface) => surface.prepared(),
+        None => &prepare(mesh, options.refine)?,
+    };
     let topology = prepared.topology();
-    let plan = |scheme: &Scheme| (*scheme, prepared.plan(*scheme, options.fallback));
-    let plans: Vec<_> = schemes.iter().map(plan).collect();
-    let defined = plans.iter().filter_map(|(_, plan)| plan.as_ref().ok());
-    let surfaces =
-        Surfaces { topology, faces: drawn_faces(topology), schemes: defined.map(SchemePatches::new).collect() };
+    let schemes = defined.into_iter().map(SchemePatches::new).collect();
+    let surfaces = Surfaces { topology, faces: drawn_faces(topology), schemes };
 
     let faces = surfaces.for_each(|limit, face| measure_face(&surfaces, limit, face, options.samples))?;
     let areas: Vec<f64> = faces.iter().map(|face| face.area).collect();
@@ -138,14 +145,42 @@ pub fn surface_errors(
     let measured = Measured { kinds: surfaces.faces.iter().map(|&(_, kind)| kind).collect(), faces, nearest, scale };
     let irregular_patches = measured.kinds.iter().filter(|kind| **kind != PatchKind::Regular).count();
     let mut number = 0..;
-    let mut of_scheme = |plan: &PatchPlan| {
+    let mut of_scheme = |surface: &CpuSurface| {
         let number = number.next().unwrap_or(0);
         let irregular = (irregular_patches > 0).then(|| measured.errors(number, true));
-        SchemeError { all: measured.errors(number, false), irregular, fallen_back: plan.fallen_back().count() }
+        let fallen_back = surface.plan().fallen_back().count();
+        SchemeError { all: measured.errors(number, false), irregular, fallen_back }
     };
-    let schemes = plans.iter().map(|(s, plan)| (*s, plan.as_ref().map(&mut of_scheme).map_err(Clone::clone))).collect();
+    let errors =
+        |(scheme, surface): &SchemeSurface| (*scheme, surface.as_ref().map(&mut of_scheme).map_err(Clone::clone));
+    let schemes = of_schemes.iter().map(errors).collect();
     let (area, patches) = (areas.iter().sum(), measured.kinds.len());
     Ok(ErrorReport { diagonal, area, patches, irregular_patches, nearest_floor: measured.nearest_floor(), schemes })
+}
+
+/// A scheme and its surface, or why there is none.
+type SchemeSurface = (Scheme, Result<CpuSurface, Undefined>);
+
+/// The surfaces of schemes, all of the same faces.
+fn of_schemes(
+    mesh: &ControlMesh,
+    schemes: &[Scheme],
+    options: &ErrorOptions,
+) -> Result<Vec<SchemeSurface>, TableError> {
+    let &ErrorOptions { fallback, refine, adaptive, .. } = options;
+    if adaptive.is_some() {
+        let surface = |&scheme: &Scheme| {
+            let options = TableOptions { scheme, refine, adaptive, ..TableOptions::default() };
+            Ok((scheme, Ok(CpuSurface::with_options(mesh, &options)?)))
+        };
+        return schemes.iter().map(surface).collect();
+    }
+    let prepared = prepare(mesh, refine)?;
+    let planned = |&scheme: &Scheme| {
+        let plan = prepared.plan(scheme, fallback);
+        (scheme, plan.map(|plan| CpuSurface::planned(prepared.clone(), plan)))
+    };
+    Ok(schemes.iter().map(planned).collect())
 }
 
 /// The sums of every patch.

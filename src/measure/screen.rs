@@ -5,7 +5,7 @@ use crate::capture::{CaptureDraw, Captured, CapturedVertex};
 use crate::limit::LimitSurface;
 use crate::mesh::ControlMesh;
 use crate::renderer::{Error, View, is_size};
-use crate::table::{Patch, prepare};
+use crate::table::{CpuSurface, Patch};
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec3};
 use rayon::prelude::*;
 
@@ -67,22 +67,17 @@ pub struct ScreenError {
 /// its tangent plane between the two points, and nothing is off where it has none. On triangles and pentagons "the same
 /// parameters" are a convention, that of [`surface_errors`](super::surface_errors), which the shift depends on.
 ///
-/// `mesh` and `refine` are those of the model that is captured, which is not displaced.
+/// `mesh` is that of the model that is captured, which is not displaced.
 ///
 /// # Errors
 /// [`Error::NoScreen`] without [`View::viewport`]; coordinates beyond those of [`LimitSurface::new`]; as
 /// [`Captured::triangles`].
-pub fn screen_error(
-    captured: &Captured,
-    mesh: &ControlMesh,
-    refine: u32,
-    draw: &CaptureDraw,
-) -> Result<ScreenError, Error> {
+pub fn screen_error(captured: &Captured, mesh: &ControlMesh, draw: &CaptureDraw) -> Result<ScreenError, Error> {
     let screen = Screen::new(&draw.view)?;
     let both_sides = mesh.boundary_edge_count() > 0 || !mesh.data().holes.is_empty();
-    let prepared = prepare(mesh, refine)?;
-    let (mesh, topology) = (prepared.mesh(), prepared.topology());
-    let plan = captured.tables().plan();
+    let tables = captured.tables();
+    let smooth = CpuSurface::with_options(mesh, &tables.options())?;
+    let (topology, vertices) = (smooth.prepared().topology(), smooth.vertices(|p| p));
     let (mut triangles, mut shift, mut shape, mut facets) = (0, Spread::new(), Spread::new(), Spread::new());
     captured.triangles(draw, |captured| {
         triangles += captured.len() as u64;
@@ -92,9 +87,9 @@ pub fn screen_error(
         for chunk in of_patches.chunks(CHUNK) {
             let limit = LimitSurface::over(topology)?;
             let measure = |triangles: &&[[CapturedVertex; 3]]| {
-                let patch = plan.patches()[triangles[0][0].patch as usize];
-                let points = patch.control_points(topology, plan.fallback_rings(), |v| mesh.position(v));
-                let surface = Surface { limit: &limit, both_sides, patch, points };
+                let patch = tables.plan().patches()[triangles[0][0].patch as usize];
+                let points = smooth.points_of(patch, &vertices);
+                let surface = Surface { limit: &limit, smooth: &smooth, both_sides, patch, points };
                 triangles.iter().flat_map(|triangle| screen.measure(&surface, triangle)).collect()
             };
             let seen: Vec<Vec<Seen>> = chunk.par_iter().map(measure).collect();
@@ -129,6 +124,7 @@ struct Seen {
 /// What a patch and the triangles over it approximate.
 struct Surface<'s> {
     limit: &'s LimitSurface,
+    smooth: &'s CpuSurface,
     /// Whether what faces away is seen.
     both_sides: bool,
     patch: Patch,
@@ -164,7 +160,7 @@ impl Screen {
 
     /// The samples of a triangle that are seen.
     fn measure(&self, surface: &Surface, triangle: &[CapturedVertex; 3]) -> impl Iterator<Item = Seen> {
-        let Surface { limit, both_sides, patch, ref points } = *surface;
+        let Surface { limit, smooth, both_sides, patch, ref points } = *surface;
         let positions = triangle.map(|vertex| Vec3::from(vertex.position).as_dvec3());
         let coordinates = triangle.map(|vertex| Vec3::from(vertex.coordinate).as_dvec3());
         let area = match positions.map(|position| self.project(position)) {
@@ -181,7 +177,7 @@ impl Screen {
             if !both_sides && truth.normal.dot(self.eye - truth.position) <= 0.0 {
                 return None;
             }
-            let smooth = patch.scheme.evaluate(patch.kind, points, place[0], place[1]).position;
+            let smooth = smooth.evaluate(patch, points, place[0], place[1]).position;
             let off = truth.position + (drawn - truth.position).dot(truth.normal) * truth.normal;
             let [truth, off, smooth] = [truth.position, off, smooth].map(|point| self.project(point));
             let (truth, off, smooth) = (truth?.0, off?.0, smooth?.0);

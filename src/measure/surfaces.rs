@@ -3,7 +3,7 @@
 use crate::limit::{LimitSample, LimitSurface};
 use crate::mesh::MeshError;
 use crate::patch::Sample;
-use crate::table::{Patch, PatchPlan};
+use crate::table::{CpuSurface, Patch};
 use crate::topology::{PatchKind, Topology, draws_face};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -20,16 +20,18 @@ pub(super) fn drawn_faces(topology: &Topology) -> Vec<(u32, PatchKind)> {
 
 /// The patches of a scheme.
 pub(super) struct SchemePatches<'p> {
-    plan: &'p PatchPlan,
+    surface: &'p CpuSurface,
+    /// What control points are made of.
+    vertices: Vec<DVec3>,
     /// Patches in the order of their faces.
     patches: Vec<Patch>,
 }
 
 impl<'p> SchemePatches<'p> {
-    pub(super) fn new(plan: &'p PatchPlan) -> Self {
-        let mut patches = plan.patches().to_vec();
+    pub(super) fn new(surface: &'p CpuSurface) -> Self {
+        let mut patches = surface.plan().patches().to_vec();
         patches.sort_unstable_by_key(|patch| patch.face);
-        Self { plan, patches }
+        Self { surface, vertices: surface.vertices(|p| p), patches }
     }
 }
 
@@ -58,16 +60,15 @@ impl Surfaces<'_> {
 
     /// Control points of one of the schemes over one of the faces.
     pub(super) fn control_points(&self, scheme: usize, face: usize) -> Vec<DVec3> {
-        let SchemePatches { plan, patches } = &self.schemes[scheme];
-        patches[face]
-            .control_points(self.topology, plan.fallback_rings(), |vertex| self.topology.mesh().position(vertex))
+        let SchemePatches { surface, vertices, patches } = &self.schemes[scheme];
+        surface.points_of(patches[face], vertices)
     }
 
     /// The patch at parameters of a part of the limit surface.
     pub(super) fn evaluate(&self, scheme: usize, face: usize, points: &[DVec3], at: Parameters) -> Sample<DVec3> {
-        let Patch { kind, scheme, .. } = self.schemes[scheme].patches[face];
+        let SchemePatches { surface, patches, .. } = &self.schemes[scheme];
         let [u, v] = at.of_patch();
-        scheme.evaluate(kind, points, u, v)
+        surface.evaluate(patches[face], points, u, v)
     }
 
     pub(super) fn limit(&self, limit: &LimitSurface, face: usize, at: Parameters) -> LimitSample {

@@ -71,6 +71,12 @@ impl Scheme {
         self == Self::Pm
     }
 
+    /// Whether the scheme has patches that end adaptive subdivision around what is irregular:
+    /// [`adaptive`](crate::adaptive).
+    pub fn has_caps(self) -> bool {
+        matches!(self, Self::Gregory | Self::GregoryFitted)
+    }
+
     /// How many control points each corner of a patch owns.
     pub fn owned(self, kind: PatchKind) -> usize {
         match (kind, self) {

@@ -1,9 +1,10 @@
 //! The CPU twin: every patch of a mesh, constructed and evaluated on the host.
 
-use super::{FaceOrigin, Notice, PatchPlan, Prepared, TableError, prepare_patches};
-use crate::blend::{Blend, Point, Sample, scalar};
+use super::{FaceOrigin, Notice, Patch, PatchPlan, Prepared, TableError, TableOptions, prepare_for};
+use crate::adaptive;
+use crate::blend::{Blend, Point, Sample, scalar, unit_normal};
 use crate::mesh::ControlMesh;
-use crate::patch::{Fallback, Scheme};
+use crate::patch::Scheme;
 use crate::topology::PatchKind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -23,29 +24,40 @@ use rayon::prelude::*;
 pub struct CpuSurface {
     prepared: Prepared,
     plan: PatchPlan,
+    leaves: Option<Leaves>,
+}
+
+/// The leaves of faces that are refined.
+#[derive(Debug, Clone)]
+struct Leaves {
+    plan: adaptive::Plan,
+    /// The place of each leaf's first control point among those of its face.
+    starts: Vec<u32>,
 }
 
 impl CpuSurface {
-    /// Prepares `mesh` as [`prepare_patches`] does, with at least `refine` steps of refinement.
+    /// The patches of a scheme, which has some for all faces, after `refine` steps of refinement or more.
     ///
     /// # Errors
-    /// A refined mesh that cannot be addressed; faces that the scheme has no patch for.
+    /// As [`CpuSurface::with_options`].
     pub fn new(mesh: &ControlMesh, scheme: Scheme, refine: u32) -> Result<Self, TableError> {
-        Self::with_fallback(mesh, scheme, Fallback::Refuse, refine)
+        Self::with_options(mesh, &TableOptions { scheme, refine, ..TableOptions::default() })
     }
 
-    /// As [`CpuSurface::new`], but for what becomes of faces that the scheme has no patch for.
+    /// The patches that a model with these options has.
     ///
     /// # Errors
-    /// As [`CpuSurface::new`].
-    pub fn with_fallback(
-        mesh: &ControlMesh,
-        scheme: Scheme,
-        fallback: Fallback,
-        refine: u32,
-    ) -> Result<Self, TableError> {
-        let (prepared, plan) = prepare_patches(mesh, scheme, fallback, refine)?;
-        Ok(Self { prepared, plan })
+    /// A refined mesh that cannot be addressed; faces that the scheme has no patch for; those of [`adaptive::Plan::new`], and
+    /// [`TableError::NotAdaptive`].
+    pub fn with_options(mesh: &ControlMesh, options: &TableOptions) -> Result<Self, TableError> {
+        let (prepared, plan, adaptive) = prepare_for(mesh, options)?;
+        Ok(Self { prepared, plan, leaves: adaptive.map(Leaves::new) })
+    }
+
+    /// Patches that are planned.
+    #[cfg(feature = "measure")]
+    pub(crate) fn planned(prepared: Prepared, plan: PatchPlan) -> Self {
+        Self { prepared, plan, leaves: None }
     }
 
     /// The patches, in the order of the tables.
@@ -58,6 +70,11 @@ impl CpuSurface {
         &self.prepared
     }
 
+    /// The plan of adaptive subdivision, with [`TableOptions::adaptive`].
+    pub fn adaptive(&self) -> Option<&adaptive::Plan> {
+        self.leaves.as_ref().map(|leaves| &leaves.plan)
+    }
+
     /// What a user will want to know about how the mesh is drawn.
     pub fn notices(&self) -> Vec<Notice> {
         self.prepared.notices(&self.plan)
@@ -68,13 +85,58 @@ impl CpuSurface {
         self.plan.origins()
     }
 
-    /// The control points of every patch, combined from `value` of each position.
-    pub fn control_points<T: Blend + Send>(&self, value: impl Fn(DVec3) -> T + Sync) -> Vec<Vec<T>> {
-        let (mesh, topology) = (self.prepared.mesh(), self.prepared.topology());
-        let of_patch = |patch: &super::Patch| {
-            patch.control_points(topology, self.plan.fallback_rings(), |vertex| value(mesh.position(vertex)))
+    /// The control points of every patch, combined from `value` of each position: [`CpuSurface::points_of`].
+    pub fn control_points<T: Blend + Send + Sync>(&self, value: impl Fn(DVec3) -> T) -> Vec<Vec<T>> {
+        let vertices = self.vertices(value);
+        self.plan.patches().par_iter().map(|&patch| self.points_of(patch, &vertices)).collect()
+    }
+
+    /// What control points are made of: `value` of each position of the prepared mesh, then the vertices of
+    /// [`adaptive::Plan`].
+    pub fn vertices<T: Blend + Send + Sync>(&self, value: impl Fn(DVec3) -> T) -> Vec<T> {
+        let mesh = self.prepared.mesh();
+        let vertices: Vec<T> = (0..mesh.vertex_count() as u32).map(|vertex| value(mesh.position(vertex))).collect();
+        match &self.leaves {
+            Some(leaves) => leaves.plan.points(&vertices),
+            None => vertices,
+        }
+    }
+
+    /// The control points of a patch, with [`CpuSurface::vertices`]: those of its scheme; of a face that is refined those of its
+    /// leaves, one leaf after the other in the order of its quadtree.
+    pub fn points_of<T: Blend>(&self, patch: Patch, vertices: &[T]) -> Vec<T> {
+        let Some(leaves) = self.leaves_of(patch) else {
+            let vertex = |vertex: u32| vertices[vertex as usize].clone();
+            return patch.control_points(self.prepared.topology(), self.plan.fallback_rings(), vertex);
         };
-        self.plan.patches().par_iter().map(of_patch).collect()
+        let plan = &leaves.plan;
+        let of_leaf = |leaf: u32| plan.control_points(&plan.leaves[leaf as usize], vertices);
+        plan.leaves_of(plan.face_roots[patch.face as usize]).into_iter().flat_map(of_leaf).collect()
+    }
+
+    /// A patch with these control points at the parameters (u, v), by which a refined face finds its leaf. GLSL twin:
+    /// `evaluate_face` in `glsl/lib/evaluate/leaves.glsl`.
+    ///
+    /// On its edges, too, the face asks its own leaves, where shaders ask those of the edge's owner. The two differ by rounding, but
+    /// for positions next to an end cap that does not have the crease of finite sharpness beside it, and for normals where several
+    /// faces meet whose caps have different ones.
+    ///
+    /// # Panics
+    /// If `points` are not those of [`CpuSurface::points_of`].
+    pub fn evaluate<P: Point>(&self, patch: Patch, points: &[P], u: f64, v: f64) -> Sample<P> {
+        let Some(Leaves { plan, starts }) = self.leaves_of(patch) else {
+            return patch.scheme.evaluate(patch.kind, points, scalar::<P>(u), scalar::<P>(v));
+        };
+        let (leaf, u, v) = plan.locate(plan.face_roots[patch.face as usize], u, v);
+        let kind = plan.leaves[leaf as usize].kind;
+        let points = &points[starts[leaf as usize] as usize..][..kind.points()];
+        let [position, du, dv] = kind.evaluate(points, u, v);
+        Sample { position, normal: unit_normal(du, dv, P::default()) }
+    }
+
+    /// The leaves, if the patch is a face that is refined.
+    fn leaves_of(&self, patch: Patch) -> Option<&Leaves> {
+        self.leaves.as_ref().filter(|_| patch.kind == PatchKind::IrregularQuad)
     }
 
     /// Every patch at the parameters of [`grid_parameters`].
@@ -85,12 +147,25 @@ impl CpuSurface {
         assert_eq!(points.len(), self.plan.patches().len(), "control points of every patch");
         let grids = PatchKind::ALL.map(|kind| grid_parameters(kind, n));
         let patches = self.plan.patches().par_iter().zip(points);
-        let scalar = scalar::<P>;
-        let sample = |(patch, points): (&super::Patch, &Vec<P>)| {
+        let sample = |(&patch, points): (&Patch, &Vec<P>)| {
             let parameters = grids[patch.kind as usize].iter();
-            parameters.map(|&[u, v]| patch.scheme.evaluate(patch.kind, points, scalar(u), scalar(v))).collect()
+            parameters.map(|&[u, v]| self.evaluate(patch, points, u, v)).collect()
         };
         patches.map(sample).collect()
+    }
+}
+
+impl Leaves {
+    fn new(plan: adaptive::Plan) -> Self {
+        let mut starts = vec![0; plan.leaves.len()];
+        for root in 0..plan.roots.len() as u32 {
+            let mut start = 0;
+            for leaf in plan.leaves_of(root) {
+                starts[leaf as usize] = start;
+                start += plan.leaves[leaf as usize].kind.points() as u32;
+            }
+        }
+        Self { plan, starts }
     }
 }
 

@@ -1,7 +1,7 @@
 //! What shaders read of faces that are refined: quadtrees, leaves, and who owns edges and corners.
 
 use super::plan::PatchPlan;
-use crate::adaptive::{self, LEAF, LeafKind};
+use crate::adaptive::{self, LEAF, LeafKind, LevelCounts};
 use crate::constants::{
     FACE_WORDS, LEAF_BIT, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, MAX_DEPTH, NORMAL_OWNERS, OWNER_NONE,
     OWNER_SHIFT,
@@ -49,6 +49,11 @@ impl LeafTable {
         let faces = faces.collect();
         let leaves = plan.leaves.par_iter().map(|leaf| leaf_words(&plan, leaf, |vertex| patches.vertex(vertex)));
         Self { faces, leaves: leaves.collect(), plan, first_patch: range.start as u32 }
+    }
+
+    /// The leaves and refined cells of each level: [`adaptive::Plan::counts`].
+    pub fn counts(&self) -> Vec<LevelCounts> {
+        self.plan.counts()
     }
 
     /// The quadtrees: [`adaptive::Plan::nodes`].

@@ -203,7 +203,7 @@ pub(crate) fn prepare_for(
     match (options.adaptive, evaluation) {
         (Some(_), Evaluation::Subdivision) => Err(TableError::NotAdaptive { evaluation }),
         (Some(adaptive), _) => {
-            let (prepared, patches, plan) = prepare_adaptive(mesh, &AdaptiveOptions { scheme, ..adaptive }, refine)?;
+            let (prepared, patches, plan) = prepare_adaptive(mesh, scheme, &adaptive, refine)?;
             Ok((prepared, patches, Some(plan)))
         }
         (None, Evaluation::Subdivision) => prepare_quads(mesh, refine).map(|(prepared, plan)| (prepared, plan, None)),
@@ -217,15 +217,16 @@ pub(crate) fn prepare_for(
 /// A refined mesh that cannot be addressed; those of [`adaptive::Plan::new`].
 fn prepare_adaptive(
     mesh: &ControlMesh,
+    scheme: Scheme,
     options: &AdaptiveOptions,
     levels: u32,
 ) -> Result<(Prepared, PatchPlan, adaptive::Plan), TableError> {
     let notice = |faces, first| Notice::RefinedToQuads { faces, first };
     let prepared = Prepared { rounds_sharpness: false, ..refine_faces(mesh, levels, |size| size != 4, notice)? };
     let (topology, cells) = (&prepared.topology, &prepared.cells);
-    let plan = adaptive::Plan::new(topology, options)?;
+    let plan = adaptive::Plan::new(topology, scheme, options)?;
     let is_refined = |face| is_refined(&plan, face);
-    let patches = PatchPlan::new(topology, cells, options.scheme, Fallback::Refuse, is_refined)?;
+    let patches = PatchPlan::new(topology, cells, scheme, Fallback::Refuse, is_refined)?;
     Ok((prepared, patches, plan))
 }
 

@@ -1,6 +1,7 @@
 //! The program `subdiv`, run as a user runs it.
 #![cfg(feature = "cli")]
 
+mod adaptive;
 mod bench;
 #[path = "../common/mod.rs"]
 mod common;

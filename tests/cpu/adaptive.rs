@@ -20,14 +20,14 @@ pub(crate) fn positions(mesh: &ControlMesh) -> Vec<DVec3> {
 }
 
 impl Planned {
-    pub fn new(mesh: &ControlMesh, options: &AdaptiveOptions) -> Self {
-        let plan = Plan::new(&Topology::new(mesh), options).expect("a plan");
+    pub fn new(mesh: &ControlMesh, scheme: Scheme, options: &AdaptiveOptions) -> Self {
+        let plan = Plan::new(&Topology::new(mesh), scheme, options).expect("a plan");
         let points = plan.points(&positions(mesh));
         Self { mesh: mesh.clone(), plan, points }
     }
 
     pub fn at_depth(mesh: &ControlMesh, depth: u32) -> Self {
-        Self::new(mesh, &AdaptiveOptions { depth, ..AdaptiveOptions::default() })
+        Self::new(mesh, Scheme::Gregory, &AdaptiveOptions { depth, ..AdaptiveOptions::default() })
     }
 }
 
@@ -130,7 +130,7 @@ fn leaves_are_as_many_as_published() {
         let topology = Topology::new(&mesh);
         for (depth, total) in (0..).zip(totals) {
             let options = AdaptiveOptions { depth, ..AdaptiveOptions::default() };
-            let plan = Plan::new(&topology, &options).unwrap();
+            let plan = Plan::new(&topology, Scheme::Gregory, &options).unwrap();
             println!("{name} at depth {depth}: {} leaves", plan.leaves.len());
             assert_eq!(plan.leaves.len(), total, "{name} at depth {depth}");
         }
@@ -141,7 +141,7 @@ fn leaves_are_as_many_as_published() {
 fn trees_lead_to_every_leaf_once() {
     let mesh = shape("polygons").unwrap();
     for scheme in [Scheme::Gregory, Scheme::GregoryFitted] {
-        let planned = Planned::new(&mesh, &AdaptiveOptions { depth: 3, sharp_depth: None, scheme });
+        let planned = Planned::new(&mesh, scheme, &AdaptiveOptions { depth: 3, sharp_depth: None });
         let plan = &planned.plan;
         let leaves = plan.nodes.iter().filter(|&node| node & LEAF != 0);
         assert_eq!(leaves.count(), plan.leaves.len());

@@ -3,7 +3,6 @@
 use crate::adaptive::{Distance, Planned, distance, distance_at_samples, shared_mesh};
 use crate::common::limit::{mesh_and_limit, names};
 use ash_subdiv::ControlMesh;
-use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::limit::LimitSurface;
 
 /// The largest distance of a plan's samples from those of a reference, over the diagonal.
@@ -78,8 +77,7 @@ fn any_sharpness_comes_to_its_limit() {
             data.creases.iter_mut().for_each(|crease| crease.sharpness = sharpness);
             let mesh = ControlMesh::new(data).unwrap();
             let surface = LimitSurface::new(&mesh).unwrap();
-            let options = AdaptiveOptions { depth: 5, ..AdaptiveOptions::default() };
-            let planned = Planned::new(&mesh, &options);
+            let planned = Planned::at_depth(&mesh, 5);
             let Distance { exact, slope, .. } = distance(&planned, &surface);
             let samples = distance_at_samples(&planned, &surface);
             println!("{name:28} {sharpness}: {exact:8.1e} {slope:8.1e} samples {samples:8.1e}");

@@ -275,7 +275,7 @@ fn polygons_of_many_corners_cost_what_their_corners_do() {
 fn at_depth_0_caps_are_the_schemes_own_patches() {
     for scheme in [Scheme::Gregory, Scheme::GregoryFitted] {
         let mesh = shape("creature-mixed").unwrap();
-        let planned = Planned::new(&mesh, &AdaptiveOptions { scheme, ..AdaptiveOptions::default() });
+        let planned = Planned::new(&mesh, scheme, &AdaptiveOptions::default());
         let topology = Topology::new(&mesh);
         let caps = planned.plan.leaves.iter().filter(|leaf| leaf.kind == LeafKind::Cap && leaf.level == 0);
         assert!(caps.clone().count() > 100);
@@ -292,15 +292,15 @@ fn at_depth_0_caps_are_the_schemes_own_patches() {
 fn sharp_features_may_go_deeper() {
     let mesh = sharp_mesh(11);
     let deepest = |depth, sharp_depth| {
-        let options = AdaptiveOptions { depth, sharp_depth, ..AdaptiveOptions::default() };
-        let plan = Plan::new(&Topology::new(&mesh), &options).unwrap();
+        let options = AdaptiveOptions { depth, sharp_depth };
+        let plan = Plan::new(&Topology::new(&mesh), Scheme::Gregory, &options).unwrap();
         plan.leaves.iter().map(|leaf| leaf.level).max()
     };
     assert_eq!([deepest(1, None), deepest(1, Some(4)), deepest(4, Some(1))], [Some(1), Some(4), Some(4)]);
     let smooth = shape("creature").unwrap();
     let plan = |sharp_depth| {
-        let options = AdaptiveOptions { depth: 2, sharp_depth, ..AdaptiveOptions::default() };
-        Plan::new(&Topology::new(&smooth), &options).unwrap().leaves
+        let options = AdaptiveOptions { depth: 2, sharp_depth };
+        Plan::new(&Topology::new(&smooth), Scheme::Gregory, &options).unwrap().leaves
     };
     assert_eq!(plan(Some(9)), plan(None));
 }
@@ -308,12 +308,12 @@ fn sharp_features_may_go_deeper() {
 #[test]
 fn bad_options_are_refused() {
     let topology = Topology::new(&shape("cube").unwrap());
-    let error = |options| Plan::new(&topology, &options).unwrap_err();
-    let deep = error(AdaptiveOptions { depth: 11, ..AdaptiveOptions::default() });
+    let error = |scheme, options| Plan::new(&topology, scheme, &options).unwrap_err();
+    let deep = error(Scheme::Gregory, AdaptiveOptions { depth: 11, ..AdaptiveOptions::default() });
     assert_eq!(deep.to_string(), "depth 11: adaptive subdivision goes 10 levels deep at most");
-    let deep = error(AdaptiveOptions { sharp_depth: Some(40), ..AdaptiveOptions::default() });
+    let deep = error(Scheme::Gregory, AdaptiveOptions { sharp_depth: Some(40), ..AdaptiveOptions::default() });
     assert_eq!(deep.to_string(), "depth of sharp features 40: adaptive subdivision goes 10 levels deep at most");
-    let scheme = error(AdaptiveOptions { scheme: Scheme::Pm, ..AdaptiveOptions::default() });
+    let scheme = error(Scheme::Pm, AdaptiveOptions::default());
     assert_eq!(scheme, AdaptiveError::NoCaps { scheme: Scheme::Pm });
     assert_eq!(scheme.to_string(), "scheme pm: end caps are patches of gregory or gregory-fitted");
     // A mesh has no other sharpness than numbers from 0 up.

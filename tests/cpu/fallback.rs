@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::edges::{SharedEdge, edge_parameters, shared_edges};
 use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::patch::{Row, Sample};
-use ash_subdiv::table::{CpuSurface, Notice, Patch};
+use ash_subdiv::table::{CpuSurface, Notice, Patch, TableOptions};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, Fallback, Scheme, shape, shapes};
 use glam::DVec3;
@@ -28,7 +28,11 @@ struct Mixed {
 
 impl Mixed {
     fn new(mesh: &ControlMesh, scheme: Scheme) -> Self {
-        let surface = CpuSurface::with_fallback(mesh, scheme, Fallback::Gregory, 0).expect("small");
+        let surface = CpuSurface::with_options(
+            mesh,
+            &TableOptions { scheme, fallback: Fallback::Gregory, ..TableOptions::default() },
+        )
+        .expect("small");
         let mut of_face = vec![None; surface.prepared().mesh().face_count()];
         surface.plan().patches().iter().enumerate().for_each(|(i, patch)| of_face[patch.face as usize] = Some(i));
         Self { points: surface.control_points(|p| p), of_face, surface }

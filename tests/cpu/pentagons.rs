@@ -3,7 +3,7 @@
 use crate::common::edges::{edge_parameters, shared_edges};
 use crate::common::{pentagon_vector, pentagons};
 use ash_subdiv::patch::Row;
-use ash_subdiv::table::{CpuSurface, Notice};
+use ash_subdiv::table::{CpuSurface, Notice, TableOptions};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{ControlMesh, Fallback, MeshData, Scheme, shape};
 use glam::DVec3;
@@ -221,7 +221,11 @@ fn pentagons_are_refined_only_where_they_must_be() {
     assert!(error.starts_with("face 2: the scheme pm has no patches for irregular faces at a boundary"), "{error}");
     let hexagons = shape("polygons").expect("built in");
     for mesh in [open, hexagons] {
-        let mixed = CpuSurface::with_fallback(&mesh, Scheme::Pm, Fallback::Gregory, 0).expect("refined");
+        let mixed = CpuSurface::with_options(
+            &mesh,
+            &TableOptions { scheme: Scheme::Pm, fallback: Fallback::Gregory, ..TableOptions::default() },
+        )
+        .expect("refined");
         assert!(matches!(mixed.notices()[0], Notice::RefinedPolygons { .. }));
         assert_eq!(mixed.plan().patches().len(), mesh.corner_count());
         assert_eq!(mixed.plan().count(PatchKind::Pentagon), 0);

@@ -13,7 +13,7 @@ fn measure(headless: &Headless, mesh: &ControlMesh, view: View, factors: &[Facto
     let captured = Captured::new(headless, mesh, &ModelOptions::default()).expect("a model");
     let error = |&factor: &Factor| {
         let draw = CaptureDraw { view, cull, ..CaptureDraw::new(factor) };
-        screen_error(&captured, mesh, 0, &draw).expect("a measurement")
+        screen_error(&captured, mesh, &draw).expect("a measurement")
     };
     factors.iter().map(error).collect()
 }
@@ -113,7 +113,7 @@ fn the_screen_has_a_size() {
     let mesh = shape("cube").expect("built in");
     let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
     let view = View { viewport: [0.0; 2], ..view(&mesh) };
-    let error = screen_error(&captured, &mesh, 0, &CaptureDraw { view, ..CaptureDraw::new(1.0) });
+    let error = screen_error(&captured, &mesh, &CaptureDraw { view, ..CaptureDraw::new(1.0) });
     let message = error.expect_err("an error").to_string();
     assert_eq!(message, "deviations on the screen need its size in pixels: set View::viewport");
     headless.finish_silent();

@@ -3,7 +3,7 @@
 use crate::common;
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
-use ash_subdiv::table::{CpuSurface, Patch, PatchId};
+use ash_subdiv::table::{CpuSurface, Patch, PatchId, TableOptions};
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Spacing, shape};
 use ash_subdiv::{Fallback, Scheme};
 use glam::{DVec3, Vec3};
@@ -46,7 +46,9 @@ const FALLBACK: Fallback = Fallback::Gregory;
 
 /// The control points of the twin by face and part, since each construction sorts patches in its own way.
 fn reference(mesh: &ControlMesh, scheme: Scheme) -> HashMap<PatchId, (Patch, Vec<DVec3>)> {
-    let surface = CpuSurface::with_fallback(mesh, scheme, FALLBACK, 0).expect("small");
+    let surface =
+        CpuSurface::with_options(mesh, &TableOptions { scheme, fallback: FALLBACK, ..TableOptions::default() })
+            .expect("small");
     // The GPU starts from f32 positions.
     let points = surface.control_points(|position| position.as_vec3().as_dvec3());
     surface.plan().patches().iter().zip(points).map(|(patch, points)| (patch.id, (*patch, points))).collect()
