@@ -78,6 +78,8 @@
 //!   but for rounding: that of `f64` in [`patch`], that of `f32` on the GPU. Creases and corners of finite sharpness
 //!   are excepted: see [`topology::SHARP_FROM`]. So is [`Scheme::Pm`], whose irregular patches have the limit position
 //!   among quads only, and tangent planes of their own.
+//! * Adaptive surfaces ([`ModelOptions::adaptive`]) are the limit surface but for rounding outside of end caps, and have the
+//!   sharpness that was authored: see [`adaptive`].
 //! * Irregular patches lie off the limit surface between their corners. On the two character meshes of Loop et al.
 //!   2009, an independent implementation of the same patches in `f64` measures, as root mean squares over all faces,
 //!   2e-5 to 4e-5 of the diagonal (nearest distance) and half a degree (normal).
@@ -96,6 +98,10 @@
 //! * Loop, Schaefer, *Approximating Catmull-Clark Subdivision Surfaces with Bicubic Patches*, 2008: [`Scheme::Acc`].
 //! * Myles, Ni, Peters, *Fast Parallel Construction of Smooth Surfaces from Meshes with Tri/Quad/Pent Facets*, 2008, and
 //!   Ni, Yeo, Myles, Goel, Peters, *GPU smoothing of quad meshes*, 2008: [`Scheme::Pm`] and [`Scheme::CPatch`].
+//! * Niessner, Loop, Meyer, DeRose, *Feature-adaptive GPU rendering of Catmull-Clark subdivision surfaces*, 2012, Niessner, Loop,
+//!   Greiner, *Efficient evaluation of semi-smooth creases in Catmull-Clark subdivision surfaces*, 2012, and Brainerd, Foley,
+//!   Kraemer, Moreton, Niessner, *Efficient GPU rendering of subdivision surfaces using adaptive quadtrees*, 2016:
+//!   [`adaptive`] surfaces.
 //! * Antal, Szécsi, Premecz, Csonka, *Catmull-Clark subdivision for geometry shaders*, 2007: subdivision of single faces on the
 //!   GPU ([`Evaluation::Subdivision`](renderer::Evaluation::Subdivision)).
 //! * Catmull, Clark, *Recursively generated B-spline surfaces on arbitrary topological meshes*, 1978: the surface.

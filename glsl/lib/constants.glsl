@@ -19,6 +19,19 @@
 #define ID_HAS_TEXCOORDS 13u
 #define ID_ADAPTIVE 14u
 
+// Bindings of set 1: storage buffers, where tables start, the displacement map; texel buffers, of tables from BINDING_TABLE_TEXELS on.
+#define BINDING_POSITIONS 0u
+#define BINDING_TABLES 1u
+#define BINDING_FRAMES 2u
+#define BINDING_EDGE_FACTORS 3u
+#define BINDING_CONTROL_POINTS 4u
+#define BINDING_TABLE_STARTS 5u
+#define BINDING_DISPLACEMENT_MAP 6u
+#define BINDING_POSITION_TEXELS 7u
+#define BINDING_TABLE_TEXELS 8u
+#define BINDING_FRAME_TEXELS 14u
+#define BINDING_CONTROL_POINT_TEXELS 15u
+
 // Constructions, by their numbers.
 #define TWO_STAGE 0u
 #define STENCIL 1u
@@ -40,6 +53,10 @@
 #define COUNTER_CLOCKWISE_FLAG 2u
 #define KIND_SHIFT 2u
 #define KIND_MASK 3u
+
+// What corners share: words, and the bit of a plus edge whose faces have normals of their own.
+#define SHARED_WORDS 5u
+#define SHARP_EDGE_BIT 0x40000000u
 
 // Rings and their entries.
 #define TRIANGLE_BIT 0x80000000u

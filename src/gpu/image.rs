@@ -28,30 +28,10 @@ impl<'a> ImageDesc<'a> {
     pub fn new(name: &'a str, extent: vk::Extent2D, format: vk::Format, usage: vk::ImageUsageFlags) -> Self {
         Self { name, extent, format, usage, samples: vk::SampleCountFlags::TYPE_1, mip_levels: 1 }
     }
-}
 
-/// An image with its memory and a view of all of it; they go when it is dropped.
-#[derive(Debug)]
-pub struct Image {
-    name: String,
-    extent: vk::Extent2D,
-    format: vk::Format,
-    samples: vk::SampleCountFlags,
-    mip_levels: u32,
-    context: Arc<DeviceContext>,
-    // Dropped in this order: the view, the image, the memory.
-    view: Option<Owned<vk::ImageView>>,
-    raw: ManuallyDrop<Owned<vk::Image>>,
-    allocation: ManuallyDrop<Allocation>,
-}
-
-impl Image {
-    /// A new image, with memory, in the layout `UNDEFINED`.
-    ///
-    /// # Errors
-    /// No memory; a size, sample count, number of mip levels, format or use the device does not have.
-    pub fn new(context: &Arc<DeviceContext>, desc: &ImageDesc<'_>) -> Result<Self, GpuError> {
-        let ImageDesc { name, extent, format, usage, samples, mip_levels } = *desc;
+    /// Checks that the device has such images.
+    fn check(&self, context: &DeviceContext) -> Result<(), GpuError> {
+        let ImageDesc { name, extent, format, usage, samples, mip_levels } = *self;
         let properties = context.properties();
         let unsupported = |why: String| Err(GpuError::Unsupported { object: name.to_owned(), why });
         let (width, height, max) = (extent.width, extent.height, properties.max_image_size);
@@ -82,18 +62,6 @@ impl Image {
             let (asked, known) = (samples.as_raw(), properties.sample_counts());
             return unsupported(format!("{asked} samples a pixel: {} has {known:?}", properties.name));
         }
-
-        let device = context.device();
-        let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
-            .format(format)
-            .extent(extent.into())
-            .mip_levels(mip_levels)
-            .array_layers(1)
-            .samples(samples)
-            .tiling(vk::ImageTiling::OPTIMAL)
-            .usage(usage)
-            .initial_layout(vk::ImageLayout::UNDEFINED);
         let fits = |known: vk::ImageFormatProperties| {
             known.max_mip_levels >= mip_levels
                 && known.sample_counts.contains(samples)
@@ -106,6 +74,44 @@ impl Image {
                 "{name} has no such images of the format {format:?} for {usage:?}: {width} x {height} pixels, {count} samples, {mip_levels} mip levels"
             ));
         }
+        Ok(())
+    }
+}
+
+/// An image with its memory and a view of all of it; they go when it is dropped.
+#[derive(Debug)]
+pub struct Image {
+    name: String,
+    extent: vk::Extent2D,
+    format: vk::Format,
+    samples: vk::SampleCountFlags,
+    mip_levels: u32,
+    context: Arc<DeviceContext>,
+    // Dropped in this order: the view, the image, the memory.
+    view: Option<Owned<vk::ImageView>>,
+    raw: ManuallyDrop<Owned<vk::Image>>,
+    allocation: ManuallyDrop<Allocation>,
+}
+
+impl Image {
+    /// A new image, with memory, in the layout `UNDEFINED`.
+    ///
+    /// # Errors
+    /// No memory; a size, sample count, number of mip levels, format or use the device does not have.
+    pub fn new(context: &Arc<DeviceContext>, desc: &ImageDesc<'_>) -> Result<Self, GpuError> {
+        desc.check(context)?;
+        let ImageDesc { name, extent, format, usage, samples, mip_levels } = *desc;
+        let device = context.device();
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(extent.into())
+            .mip_levels(mip_levels)
+            .array_layers(1)
+            .samples(samples)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(usage)
+            .initial_layout(vk::ImageLayout::UNDEFINED);
         // SAFETY: the device has such images, and the image is taken over by `Owned`.
         let raw = unsafe {
             let raw = device.create_image(&info, None).of("vkCreateImage", name)?;
@@ -142,17 +148,22 @@ impl Image {
         // SAFETY: an allocation meets the requirements of its request (contract of `Allocator`).
         unsafe { device.bind_image_memory(image.raw(), image.allocation.memory, image.allocation.offset) }
             .of("vkBindImageMemory", name)?;
-        let info = vk::ImageViewCreateInfo::default()
-            .image(image.raw())
-            .view_type(vk::ImageViewType::TYPE_2D)
-            .format(format)
-            .subresource_range(image.whole());
-        // SAFETY: the image has memory, and the view is taken over by `Owned`.
-        image.view = Some(unsafe {
-            let view = device.create_image_view(&info, None).of("vkCreateImageView", name)?;
-            Owned::new(context, view, name)
-        });
+        image.view = Some(image.whole_view()?);
         Ok(image)
+    }
+
+    /// A view of all mip levels.
+    fn whole_view(&self) -> Result<Owned<vk::ImageView>, GpuError> {
+        let info = vk::ImageViewCreateInfo::default()
+            .image(self.raw())
+            .view_type(vk::ImageViewType::TYPE_2D)
+            .format(self.format)
+            .subresource_range(self.whole());
+        // SAFETY: the image has memory, and the view is taken over by `Owned`.
+        unsafe {
+            let view = self.context.device().create_image_view(&info, None).of("vkCreateImageView", &self.name)?;
+            Ok(Owned::new(&self.context, view, &self.name))
+        }
     }
 
     /// The Vulkan handle.

@@ -144,6 +144,38 @@ impl<'a> GraphicsPipelineDesc<'a> {
         }
     }
 
+    fn rasterization(&self) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+        let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
+            .rasterizer_discard_enable(self.rasterizer_discard)
+            .polygon_mode(self.polygon_mode)
+            .cull_mode(self.cull_mode)
+            .front_face(self.front_face)
+            .line_width(self.line_width);
+        match self.depth_bias {
+            None => rasterization,
+            Some(bias) => rasterization
+                .depth_bias_enable(true)
+                .depth_bias_constant_factor(bias.constant)
+                .depth_bias_slope_factor(bias.slope),
+        }
+    }
+
+    fn depth_stencil(&self) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+        let none = vk::PipelineDepthStencilStateCreateInfo::default();
+        self.depth.map_or(none, |state| {
+            none.depth_test_enable(true).depth_write_enable(state.write).depth_compare_op(state.compare)
+        })
+    }
+
+    fn attachments(&self) -> Vec<vk::PipelineColorBlendAttachmentState> {
+        let mut attachments = vec![self.blend.attachment(); self.target.color_attachments()];
+        if self.first_color_only {
+            // Nothing is written by default.
+            attachments.iter_mut().skip(1).for_each(|other| *other = vk::PipelineColorBlendAttachmentState::default());
+        }
+        attachments
+    }
+
     /// Makes the pipeline.
     ///
     /// # Safety
@@ -168,28 +200,9 @@ impl<'a> GraphicsPipelineDesc<'a> {
         let tessellation =
             vk::PipelineTessellationStateCreateInfo::default().patch_control_points(self.patch_control_points);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let mut rasterization = vk::PipelineRasterizationStateCreateInfo::default()
-            .rasterizer_discard_enable(self.rasterizer_discard)
-            .polygon_mode(self.polygon_mode)
-            .cull_mode(self.cull_mode)
-            .front_face(self.front_face)
-            .line_width(self.line_width);
-        if let Some(bias) = self.depth_bias {
-            rasterization = rasterization
-                .depth_bias_enable(true)
-                .depth_bias_constant_factor(bias.constant)
-                .depth_bias_slope_factor(bias.slope);
-        }
+        let rasterization = self.rasterization();
         let multisample = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(self.samples);
-        let mut depth = vk::PipelineDepthStencilStateCreateInfo::default();
-        if let Some(state) = self.depth {
-            depth = depth.depth_test_enable(true).depth_write_enable(state.write).depth_compare_op(state.compare);
-        }
-        let mut attachments = vec![self.blend.attachment(); self.target.color_attachments()];
-        if self.first_color_only {
-            // Nothing is written by default.
-            attachments.iter_mut().skip(1).for_each(|other| *other = vk::PipelineColorBlendAttachmentState::default());
-        }
+        let (depth, attachments) = (self.depth_stencil(), self.attachments());
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let dynamic_states = [&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR], self.dynamic_states].concat();
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);

@@ -39,7 +39,7 @@ pub use plan::{Patch, PatchGroup, PatchPlan};
 pub(crate) use prepare::prepare_for;
 pub use prepare::{Notice, Prepared, prepare, prepare_patches, prepare_quads};
 pub use rings::RingTable;
-pub(crate) use shared::{SHARED_WORDS, SHARP_EDGE_BIT};
+pub(crate) use shared::SHARED_WORDS;
 pub use shared::{SharedTable, SharedTexcoord};
 pub(crate) use sharing::Sharing;
 pub use stencils::StencilTable;

@@ -2,14 +2,12 @@
 
 use super::edges::EdgeTable;
 use super::plan::PatchPlan;
+use crate::constants::{self, SHARP_EDGE_BIT};
 use crate::topology::Topology;
 use rayon::prelude::*;
 
-/// Bit of a plus edge in [`SharedTable::corners`]: the faces at it are lit with normals of their own.
-pub const SHARP_EDGE_BIT: u32 = 1 << 30;
-
-/// Words of [`SharedTable::corners`] a patch corner. GLSL twin: `SHARED_WORDS` in `glsl/lib/edges/shared_bits.glsl`.
-pub const SHARED_WORDS: usize = 5;
+/// Words of [`SharedTable::corners`] a patch corner.
+pub const SHARED_WORDS: usize = constants::SHARED_WORDS as usize;
 
 /// Texture coordinates of a patch corner on what it shares: where displacement is looked up there, so that both sides of a
 /// seam find the same texel. The patch's own are used inside. GLSL twin: `glsl/lib/edges/shared_texcoords.glsl`.

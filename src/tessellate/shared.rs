@@ -1,8 +1,9 @@
 //! What a patch corner shares with other patches.
 
 use super::draw::{exact_cross, unit};
+use crate::constants::SHARP_EDGE_BIT;
 use crate::patch::{Frame, RingValues, Scheme, unit_normal};
-use crate::table::{SHARED_WORDS, SHARP_EDGE_BIT};
+use crate::table::SHARED_WORDS;
 use glam::Vec3;
 
 /// A ring with its limit point and tangent frame. GLSL twin: `FramedRing` in `glsl/lib/construct/framed_ring.glsl`.

@@ -12,7 +12,7 @@ layout(constant_id = ID_STRIDE) const uint STRIDE = 8u;
 
 // `corner` counts through all patches.
 #ifdef MAKES_POINTS
-layout(set = 1, binding = 4, std430) writeonly buffer ControlPoints { float control_points[]; };
+layout(set = 1, binding = BINDING_CONTROL_POINTS, std430) writeonly buffer ControlPoints { float control_points[]; };
 
 void keep_number(uint corner, uint i, float x) {
     control_points[4u * STRIDE * corner + i] = x;
@@ -37,8 +37,8 @@ void keep_vector(uint corner, uint i, vec3 x) {
 #endif
 #define KEPT_TEXELS PACKED_ROWS(KEPT)
 
-layout(set = 1, binding = 4, std430) readonly buffer ControlPoints { vec4 control_points[]; };
-layout(set = 1, binding = 15) uniform samplerBuffer control_point_texels;
+layout(set = 1, binding = BINDING_CONTROL_POINTS, std430) readonly buffer ControlPoints { vec4 control_points[]; };
+layout(set = 1, binding = BINDING_CONTROL_POINT_TEXELS) uniform samplerBuffer control_point_texels;
 
 vec4 kept_texel(uint corner, uint i) {
     uint at = STRIDE * corner + i;

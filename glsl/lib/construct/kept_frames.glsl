@@ -3,6 +3,7 @@
 #ifndef KEPT_FRAMES_GLSL
 #define KEPT_FRAMES_GLSL
 
+#include "constants.glsl"
 #include "draw/positions.glsl"
 
 struct KeptFrame {
@@ -10,7 +11,7 @@ struct KeptFrame {
 };
 
 #ifdef MAKES_FRAMES
-layout(set = 1, binding = 2, std430) writeonly buffer Frames { vec4 frames[]; };
+layout(set = 1, binding = BINDING_FRAMES, std430) writeonly buffer Frames { vec4 frames[]; };
 
 void keep_frame(uint ring, KeptFrame frame) {
     frames[3u * ring] = vec4(frame.p, frame.normal.x);
@@ -18,8 +19,8 @@ void keep_frame(uint ring, KeptFrame frame) {
     frames[3u * ring + 2u] = vec4(frame.b, frame.normal.z);
 }
 #else
-layout(set = 1, binding = 2, std430) readonly buffer Frames { vec4 frames[]; };
-layout(set = 1, binding = 14) uniform samplerBuffer frame_texels;
+layout(set = 1, binding = BINDING_FRAMES, std430) readonly buffer Frames { vec4 frames[]; };
+layout(set = 1, binding = BINDING_FRAME_TEXELS) uniform samplerBuffer frame_texels;
 
 vec4 frame_vector(uint i) {
     return READS_TEXELS ? texelFetch(frame_texels, int(i)) : frames[i];

@@ -6,10 +6,10 @@
 #include "draw/positions.glsl"
 #include "draw/tables.glsl"
 
-layout(set = 1, binding = 8) uniform usamplerBuffer ring_header_texels;
-layout(set = 1, binding = 9) uniform usamplerBuffer ring_entry_texels;
-layout(set = 1, binding = 10) uniform samplerBuffer ring_type_texels;
-layout(set = 1, binding = 11) uniform usamplerBuffer patch_corner_texels;
+layout(set = 1, binding = BINDING_TABLE_TEXELS) uniform usamplerBuffer ring_header_texels;
+layout(set = 1, binding = BINDING_TABLE_TEXELS + 1) uniform usamplerBuffer ring_entry_texels;
+layout(set = 1, binding = BINDING_TABLE_TEXELS + 2) uniform samplerBuffer ring_type_texels;
+layout(set = 1, binding = BINDING_TABLE_TEXELS + 3) uniform usamplerBuffer patch_corner_texels;
 
 
 // What no ring of the scheme has need not be looked for. Rust twin: `PatchStages::specialization` in

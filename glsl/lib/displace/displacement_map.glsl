@@ -2,8 +2,10 @@
 #ifndef DISPLACEMENT_MAP_GLSL
 #define DISPLACEMENT_MAP_GLSL
 
+#include "constants.glsl"
+
 // Heights in red, or vectors in object space.
-layout(set = 1, binding = 6) uniform sampler2D displacement_map;
+layout(set = 1, binding = BINDING_DISPLACEMENT_MAP) uniform sampler2D displacement_map;
 
 // Texels along its longer side.
 float displacement_texels() {

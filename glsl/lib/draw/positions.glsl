@@ -8,9 +8,9 @@
 // Rust twin: `DeviceProperties::reads_texels` in src/gpu/device.rs.
 layout(constant_id = ID_READS_TEXELS) const bool READS_TEXELS = false;
 
-layout(set = 1, binding = 0, std430) readonly buffer Positions { vec4 positions[]; };
+layout(set = 1, binding = BINDING_POSITIONS, std430) readonly buffer Positions { vec4 positions[]; };
 #ifndef POSITION_TEXELS
-#define POSITION_TEXELS 7
+#define POSITION_TEXELS BINDING_POSITION_TEXELS
 #endif
 layout(set = 1, binding = POSITION_TEXELS) uniform samplerBuffer position_texels;
 

@@ -3,12 +3,14 @@
 #ifndef TABLES_GLSL
 #define TABLES_GLSL
 
-layout(set = 1, binding = 1, std430) readonly buffer TableWords { uint table_words[]; };
-layout(set = 1, binding = 1, std430) readonly buffer TablePairs { uvec2 table_pairs[]; };
-layout(set = 1, binding = 1, std430) readonly buffer TableFours { uvec4 table_fours[]; };
+#include "constants.glsl"
+
+layout(set = 1, binding = BINDING_TABLES, std430) readonly buffer TableWords { uint table_words[]; };
+layout(set = 1, binding = BINDING_TABLES, std430) readonly buffer TablePairs { uvec2 table_pairs[]; };
+layout(set = 1, binding = BINDING_TABLES, std430) readonly buffer TableFours { uvec4 table_fours[]; };
 
 // The word where each table starts, a multiple of four. Of a model whose faces are subdivided, fans are in the place of rings.
-layout(set = 1, binding = 5, std140) uniform Tables {
+layout(set = 1, binding = BINDING_TABLE_STARTS, std140) uniform Tables {
     uint ring_headers;
     uint ring_entries;
     uint ring_types;

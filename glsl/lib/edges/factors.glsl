@@ -12,7 +12,7 @@
 
 layout(constant_id = ID_MAX_FACTOR) const float MAX_FACTOR = 64.0;
 
-layout(set = 1, binding = 3, std430) readonly buffer CornerFactors { float corner_factors[]; };
+layout(set = 1, binding = BINDING_EDGE_FACTORS, std430) readonly buffer CornerFactors { float corner_factors[]; };
 
 // How factors are found and which patches are left out: what a draw does not ask for is not in its pipeline. Rust twin:
 // `Cut` in src/renderer/shader/cut.rs.

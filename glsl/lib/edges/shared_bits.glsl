@@ -2,9 +2,8 @@
 #ifndef SHARED_BITS_GLSL
 #define SHARED_BITS_GLSL
 
+#include "constants.glsl"
 #include "draw/tables.glsl"
-
-const uint SHARP_EDGE_BIT = 1u << 30;    // the faces at it are lit with normals of their own
 
 // Across the plus edge and its transversal, across the minus edge and its transversal, the normal at the corner, and where
 // the surface is displaced the direction at the corner.
@@ -14,7 +13,6 @@ const uint SHARP_EDGE_BIT = 1u << 30;    // the faces at it are lit with normals
 #define SHARED_VECTORS 5
 #endif
 
-const uint SHARED_WORDS = 5u;
 const uint EDGE_MASK = ~SHARP_EDGE_BIT;
 
 // Word i of a corner by its number among all.

@@ -27,7 +27,7 @@ float along_side(uint i, uint segments) {
 
 // Whether edges have factors of their own.
 layout(constant_id = ID_HAS_EDGE_FACTORS) const bool HAS_EDGE_FACTORS = false;
-layout(set = 1, binding = 3, std430) readonly buffer CornerFactors { float corner_factors[]; };
+layout(set = 1, binding = BINDING_EDGE_FACTORS, std430) readonly buffer CornerFactors { float corner_factors[]; };
 
 // The parameter of vertex i along the plus edge of a corner, which may have fewer segments than the lattice: then the vertex
 // goes to the nearest of the edge's own, and so both its patches have those and no others.

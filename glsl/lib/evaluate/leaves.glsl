@@ -12,8 +12,8 @@
 // Whether irregular quads are refined.
 layout(constant_id = ID_ADAPTIVE) const bool ADAPTIVE = false;
 
-layout(set = 1, binding = 12) uniform usamplerBuffer quadtree_texels;
-layout(set = 1, binding = 13) uniform usamplerBuffer leaf_texels;
+layout(set = 1, binding = BINDING_TABLE_TEXELS + 4) uniform usamplerBuffer quadtree_texels;
+layout(set = 1, binding = BINDING_TABLE_TEXELS + 5) uniform usamplerBuffer leaf_texels;
 
 uint quadtree_node(uint i) {
     return READS_TEXELS ? texelFetch(quadtree_texels, int(i)).x : table_words[tables.quadtrees + i];

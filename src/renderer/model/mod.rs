@@ -13,7 +13,7 @@ pub(crate) use displacements::Displacements;
 use pipelines::MadeCut;
 pub(crate) use pipelines::ModelPipelines;
 
-use crate::gpu::{Buffer, DeviceContext};
+use crate::gpu::{Buffer, DeviceContext, DeviceProperties, GpuError};
 use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, path};
 use crate::renderer::options::{
     DisplacementId, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options,
@@ -66,6 +66,76 @@ pub(crate) struct ControlIndices {
     pub faces: u32,
 }
 
+impl ControlIndices {
+    /// Room for the indices of the control mesh, and the staging buffer with them.
+    fn new(context: &Arc<DeviceContext>, name: &str, tables: &ModelTables) -> Result<(Self, Buffer), GpuError> {
+        let indices = [&tables.control_edges[..], &tables.control_faces[..]].concat();
+        let bytes = 4 * indices.len() as u64;
+        let mut staged = Buffer::upload(context, &format!("{name}: control mesh to copy"), bytes)?;
+        staged.write(0, &indices)?;
+        let usage = vk::BufferUsageFlags::INDEX_BUFFER;
+        let buffer = Buffer::device_local(context, &format!("{name}: control mesh"), bytes, usage)?;
+        let [edges, faces] = [&tables.control_edges, &tables.control_faces].map(|indices| indices.len() as u32);
+        Ok((Self { buffer, edges, faces }, staged))
+    }
+}
+
+/// Checks that shaders can see a buffer whole: as a storage buffer, and as a texel buffer where the device reads those.
+fn check_size(id: ModelId, properties: &DeviceProperties, table: &'static str, bytes: u64) -> Result<(), Error> {
+    let texels = properties.max_texel_buffer_elements * VECTOR_TEXEL.1;
+    let max = properties.max_storage_buffer_range.min(if properties.reads_texels { texels } else { u64::MAX });
+    if bytes > max { Err(Error::TableTooLarge { id, table, bytes, max }) } else { Ok(()) }
+}
+
+/// Room for the tables of a model, and the staging buffer with them. Where texture coordinates are needed, they are zero for a mesh
+/// without.
+fn table_buffer(
+    context: &Arc<DeviceContext>,
+    (id, name): (ModelId, &str),
+    tables: &ModelTables,
+    texcoords: bool,
+) -> Result<(Tables, Buffer), Error> {
+    let zeros;
+    let needed = texcoords || tables.sharing() == Sharing::Displacement;
+    let texcoords: &[[f32; 2]] = match (&tables.texcoords, needed) {
+        (_, false) => &[],
+        (Some(texcoords), true) => texcoords,
+        (None, true) => {
+            zeros = vec![[0.0; 2]; tables.plan.corner_count()];
+            &zeros
+        }
+    };
+    let arrays = tables.bindings().map(|(name, array)| match name {
+        "texcoords" => (name, bytemuck::cast_slice(texcoords)),
+        _ => (name, array),
+    });
+    let first_refined = tables.leaves().map_or(0, |leaves| leaves.first_patch);
+    Tables::new(context, (id, name), tables.options().evaluation, &arrays, first_refined)
+}
+
+/// How each group of patches is drawn, in the order of the plan.
+fn stages(tables: &ModelTables, options: &ModelOptions, pipelines: &ModelPipelines) -> Vec<PatchStages> {
+    let &ModelOptions { construction, evaluation, spacing, .. } = options;
+    let of_group = |group: &PatchGroup| {
+        let stages = PatchStages {
+            scheme: group.scheme,
+            kind: group.kind,
+            construction,
+            evaluation,
+            spacing,
+            sharing: tables.sharing(),
+            has_speakers: tables.has_speakers(),
+            // The control shader knows by its flags.
+            edge_factors: tables.edges().is_some() && evaluation != Evaluation::Tessellation,
+            stride: tables.kept_texels(),
+            attributes: false,
+            adaptive: tables.leaves().is_some() && group.kind == PatchKind::IrregularQuad,
+        };
+        PatchStages { attributes: path(evaluation).has_attributes(&pipelines.draws, stages), ..stages }
+    };
+    tables.plan.groups().iter().map(of_group).collect()
+}
+
 /// What a model needs of its renderer.
 #[derive(Clone, Copy)]
 pub(crate) struct Surroundings<'r> {
@@ -85,61 +155,27 @@ impl Model {
     ) -> Result<Self, Error> {
         check_evaluation(id, model_options, &tables, context.features())?;
         let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
-        let zeros;
-        let needed = options.texcoords || tables.sharing() == Sharing::Displacement;
-        let texcoords: &[[f32; 2]] = match (&tables.texcoords, needed) {
-            (_, false) => &[],
-            (Some(texcoords), true) => texcoords,
-            (None, true) => {
-                zeros = vec![[0.0; 2]; tables.plan.corner_count()];
-                &zeros
-            }
-        };
-        let arrays = tables.bindings().map(|(name, array)| match name {
-            "texcoords" => (name, bytemuck::cast_slice(texcoords)),
-            _ => (name, array),
-        });
+        let (table_buffer, staged_tables) = table_buffer(context, (id, name), &tables, options.texcoords)?;
+        let mut uploads = vec![(staged_tables, table_buffer.buffer.raw())];
 
-        let first_refined = tables.leaves().map_or(0, |leaves| leaves.first_patch);
-        let (table_buffer, staged_tables) =
-            Tables::new(context, (id, name), model_options.evaluation, &arrays, first_refined)?;
-
-        // What shaders see whole, as storage buffers and as texel buffers.
         let properties = context.properties();
-        let check = |table: &'static str, bytes: u64| {
-            let texels = properties.max_texel_buffer_elements * VECTOR_TEXEL.1;
-            let max = properties.max_storage_buffer_range.min(if properties.reads_texels { texels } else { u64::MAX });
-            if bytes > max { Err(Error::TableTooLarge { id, table, bytes, max }) } else { Ok(()) }
-        };
-        check("positions", TEXEL_BYTES * tables.stored_vertices() as u64)?;
-        let in_flight = options.frames_in_flight;
+        check_size(id, properties, "positions", TEXEL_BYTES * tables.stored_vertices() as u64)?;
         let kept = |what: &'static str, bytes: u64| -> Result<_, Error> {
-            check(what, bytes)?;
+            check_size(id, properties, what, bytes)?;
             use vk::BufferUsageFlags as Usage;
             let usage = Usage::STORAGE_BUFFER | Usage::UNIFORM_TEXEL_BUFFER | Usage::VERTEX_BUFFER;
-            Ok((bytes > 0)
-                .then(|| Buffer::device_local(context, &format!("{name}: {what}"), bytes, usage))
-                .transpose()?)
+            let make = || Buffer::device_local(context, &format!("{name}: {what}"), bytes, usage);
+            Ok((bytes > 0).then(make).transpose()?)
         };
         let [point_bytes, frame_bytes] = tables.kept_bytes();
         let (control_points, frames) = (kept("control points", point_bytes)?, kept("frames", frame_bytes)?);
+        let in_flight = options.frames_in_flight;
         let positions = Positions::new(context, name, &tables, control, in_flight)?;
         let edge_factors = tables.edges().map(|edges| EdgeFactors::new(context, name, edges, in_flight)).transpose()?;
-
-        let mut uploads = vec![(staged_tables, table_buffer.buffer.raw())];
-        let control = if options.styles.iter().any(|s| s.geometry != Geometry::Surface) {
-            let indices = [&tables.control_edges[..], &tables.control_faces[..]].concat();
-            let bytes = 4 * indices.len() as u64;
-            let mut staged = Buffer::upload(context, &format!("{name}: control mesh to copy"), bytes)?;
-            staged.write(0, &indices)?;
-            let usage = vk::BufferUsageFlags::INDEX_BUFFER;
-            let buffer = Buffer::device_local(context, &format!("{name}: control mesh"), bytes, usage)?;
-            uploads.push((staged, buffer.raw()));
-            Some(ControlIndices {
-                buffer,
-                edges: tables.control_edges.len() as u32,
-                faces: tables.control_faces.len() as u32,
-            })
+        let control = if options.styles.iter().any(|style| style.geometry != Geometry::Surface) {
+            let (indices, staged) = ControlIndices::new(context, name, &tables)?;
+            uploads.push((staged, indices.buffer.raw()));
+            Some(indices)
         } else {
             None
         };
@@ -154,31 +190,9 @@ impl Model {
         };
         // SAFETY: the buffers live as long as the model, and the map longer.
         let set = unsafe { ModelSet::new(context, &pipelines.sets, name, &buffers)? };
-        let ModelOptions { construction, evaluation, spacing, .. } = *model_options;
-        let (sharing, stride, has_speakers) = (tables.sharing(), tables.kept_texels(), tables.has_speakers());
-        // The control shader knows by its flags.
-        let lattice_edges = edge_factors.is_some() && evaluation != Evaluation::Tessellation;
-        let stages = |group: &PatchGroup| {
-            let PatchGroup { scheme, kind, .. } = *group;
-            let attributes = false;
-            let stages = PatchStages {
-                scheme,
-                kind,
-                construction,
-                evaluation,
-                spacing,
-                sharing,
-                has_speakers,
-                edge_factors: lattice_edges,
-                stride,
-                attributes,
-                adaptive: tables.leaves().is_some() && kind == PatchKind::IrregularQuad,
-            };
-            PatchStages { attributes: path(evaluation).has_attributes(&pipelines.draws, stages), ..stages }
-        };
         Ok(Self {
             id,
-            stages: tables.plan.groups().iter().map(stages).collect(),
+            stages: stages(&tables, model_options, pipelines),
             made: Vec::new(),
             tables,
             set,
@@ -187,7 +201,7 @@ impl Model {
             edge_factors,
             control_points,
             frames,
-            evaluation,
+            evaluation: model_options.evaluation,
             lattice: None,
             stale_points: false,
             stale_vertices: false,

@@ -64,6 +64,18 @@ pub(crate) const TABLE_TEXELS: [(vk::Format, u64); 6] = [
 /// Texel buffers of a model.
 pub(crate) const MODEL_TEXELS: usize = 3 + TABLE_TEXELS.len();
 
+// The bindings are in this order.
+const _: () = {
+    use crate::constants as glsl;
+    assert!(glsl::BINDING_CONTROL_POINTS as usize == MODEL_BUFFERS - 1);
+    assert!(glsl::BINDING_TABLE_STARTS as usize == MODEL_BUFFERS);
+    assert!(glsl::BINDING_DISPLACEMENT_MAP as usize == MODEL_BUFFERS + 1);
+    assert!(glsl::BINDING_POSITION_TEXELS as usize == MODEL_BUFFERS + 2);
+    assert!(glsl::BINDING_TABLE_TEXELS as usize == MODEL_BUFFERS + 3);
+    assert!(glsl::BINDING_FRAME_TEXELS as usize == MODEL_BUFFERS + 3 + TABLE_TEXELS.len());
+    assert!(glsl::BINDING_CONTROL_POINT_TEXELS as usize == MODEL_BUFFERS + MODEL_TEXELS + 1);
+};
+
 /// What set 0 has, by binding.
 const VIEW_BINDINGS: [vk::DescriptorType; 3] = [
     vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC,

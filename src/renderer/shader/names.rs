@@ -19,8 +19,7 @@ pub(crate) fn patches(stages: PatchStages, cut: Cut) -> String {
     let more = [
         match spacing {
             Spacing::Equal => "",
-            Spacing::FractionalOdd => "fractional odd",
-            Spacing::FractionalEven => "fractional even",
+            fractional => fractional.name(),
         },
         match sharing {
             Sharing::Positions => "",
@@ -67,7 +66,7 @@ mod tests {
                 PatchStages { spacing: Spacing::FractionalOdd, sharing: Sharing::Normals, ..stages },
                 Cut::new(Factor::Pixels(4.0), Cull::ALL)
             ),
-            "gregory irregular quads, cached, tessellation, fractional odd, shared normals, pixels, cull frustum, cull back, \
+            "gregory irregular quads, cached, tessellation, odd, shared normals, pixels, cull frustum, cull back, \
              cull small"
         );
         assert!(patches(stages, Cut::listed(Factor::Uniform(4.0))).ends_with("tessellation, listed"));
