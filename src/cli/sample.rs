@@ -147,19 +147,31 @@ fn normals<L: Lattice, S: Serializer>(samples: &&[L], serializer: S) -> Result<S
     serializer.collect_seq(samples.iter().map(L::normal))
 }
 
+impl SampleArgs {
+    /// What is given that the limit surface cannot have.
+    fn not_of_limit(&self) -> Option<&'static str> {
+        let SampleArgs { mesh, cpu, .. } = self;
+        let wrong = [
+            (!cpu, "the limit surface is evaluated on the CPU: add --cpu"),
+            (mesh.refine > 0, "refinement does not change the limit surface: leave out --refine"),
+            (
+                mesh.adaptive().is_some(),
+                "adaptive surfaces come to the limit surface, which has no depth: leave out --adaptive",
+            ),
+            (
+                mesh.fallback() != Fallback::Refuse,
+                "the limit surface has no faces without patches: leave out --fallback",
+            ),
+        ];
+        wrong.into_iter().find_map(|(is_wrong, message)| is_wrong.then_some(message))
+    }
+}
+
 pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
-    if args.scheme == Surface::Limit {
-        if !args.cpu {
-            return Err(CliError::Usage("--scheme limit: the limit surface is evaluated on the CPU: add --cpu".into()));
-        }
-        if args.mesh.refine > 0 {
-            let message = "--scheme limit: refinement does not change the limit surface: leave out --refine";
-            return Err(CliError::Usage(message.into()));
-        }
-        if args.mesh.fallback() != Fallback::Refuse {
-            let message = "--scheme limit: the limit surface has no faces without patches: leave out --fallback";
-            return Err(CliError::Usage(message.into()));
-        }
+    if args.scheme == Surface::Limit
+        && let Some(message) = args.not_of_limit()
+    {
+        return Err(CliError::Usage(format!("--scheme limit: {message}")));
     }
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;

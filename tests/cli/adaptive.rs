@@ -137,6 +137,11 @@ fn what_cannot_be_refined_is_said() {
         fails(&format!("{command} --shape cube --scheme acc"), 1, caps);
     }
     fails("error --shape cube --depths 11", 2, "invalid value '11' for '--depths <DEPTH>': 11 is not in 0..=10");
+    let message =
+        "--scheme limit: adaptive surfaces come to the limit surface, which has no depth: leave out --adaptive";
+    fails("sample --shape cube --scheme limit --cpu --adaptive 2", 2, message);
+    let message = "evaluation by subdivision has no patches: it cannot be adaptive";
+    fails("render --shape cube -o x.png --level 1 --adaptive 2", 1, message);
     let message = "the following required arguments were not provided: --adaptive <DEPTH>";
     fails("info --shape cube --sharp-depth 2", 2, message);
 }
