@@ -37,6 +37,7 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
         assert_eq!(
             keys(row),
             [
+                "adaptive",
                 "bytes",
                 "compute_invocations",
                 "construction",
