@@ -17,7 +17,7 @@ void main() {
         return;
     }
     for (uint k = 0u; k < CORNERS; ++k) {
-        uint number = invocations.first_corner + index * CORNERS + k;
+        uint number = invocations.first + index * CORNERS + k;
         Corner corner = corner_of_patch(number);
         keep_vector(number, 0u, corner.limit.xyz);
         keep_vector(number, 1u, corner.inner[3]);

@@ -16,7 +16,7 @@ void main() {
     if (index >= invocations.count) {
         return;
     }
-    uint first = invocations.first_corner + index * CORNERS;
+    uint first = invocations.first + index * CORNERS;
     for (uint k = 0u; k < CORNERS; ++k) {
         corners[k] = corner_of_patch(first + k);
 #ifdef SHARED

@@ -39,7 +39,7 @@ impl Row {
             adaptive,
             error: *error,
             patches: tables.plan().patches().len(),
-            leaves: tables.leaves().map(|table| table.counts().iter().map(LevelCounts::leaves).sum()),
+            leaves: tables.leaves().map(|table| table.counts.iter().map(LevelCounts::leaves).sum()),
             table_bytes: tables.bytes().iter().map(|(_, bytes)| bytes).sum(),
         })
     }

@@ -219,10 +219,7 @@ impl Info {
             bounds: mesh.bounds().map(Into::into),
             refine: options.refine,
             patches: Patches::of(tables),
-            adaptive: options
-                .adaptive
-                .zip(tables.leaves())
-                .map(|(options, table)| Leaves::new(options, &table.counts())),
+            adaptive: options.adaptive.zip(tables.leaves()).map(|(options, table)| Leaves::new(options, &table.counts)),
             construction: options.construction.name(),
             connectivity_types: tables.type_count(),
             bytes,

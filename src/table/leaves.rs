@@ -8,8 +8,8 @@ use crate::constants::{
 };
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::{PatchKind, Topology};
-use glam::DVec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 const _: () = assert!(MAX_DEPTH == adaptive::MAX_DEPTH && LEAF_BIT == LEAF);
 
@@ -23,10 +23,45 @@ pub struct LeafTable {
     /// For each leaf, its kind; a crease's sharpness or the first of the four face points f- of an end cap; two words that are not
     /// used; then 16 control points, row by row along v.
     pub leaves: Vec<[u32; 4 * LEAF_FOURS as usize]>,
-    /// The plan. Control points of end caps are a grid of 16, with face points f+ inside, and four face points f-.
-    pub(super) plan: adaptive::Plan,
+    /// The quadtrees: [`adaptive::Plan::nodes`].
+    pub quadtrees: Vec<u32>,
+    /// The leaves and refined cells of each level: [`adaptive::Plan::counts`].
+    pub counts: Vec<LevelCounts>,
     /// The number of the first irregular quad among all patches.
     pub first_patch: u32,
+    /// How the vertices that are not those of the mesh are made.
+    pub refinement: Refinement,
+}
+
+/// The vertices of adaptive subdivision as weighted sums, in rows. GLSL twin: `glsl/compute/refine.comp`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement {
+    /// The vertex that the first row makes: the last that are read.
+    pub first_vertex: u32,
+    /// Rows that can be made all at once, in the order in which they read each other.
+    pub steps: Vec<Range<u32>>,
+    /// Where the terms of each row start, and after the last row their number.
+    pub starts: Vec<u32>,
+    /// Vertex and, as the bits of an `f32`, weight of each term.
+    pub terms: Vec<[u32; 2]>,
+}
+
+impl Refinement {
+    fn new(plan: &adaptive::Plan, vertex: impl Fn(u32) -> u32) -> Self {
+        let row = |vertex: u32| vertex - plan.control_vertices;
+        let terms = plan.rows.indices.iter().zip(&plan.rows.weights);
+        Self {
+            first_vertex: vertex(plan.control_vertices),
+            steps: plan.steps().map(|step| row(step.start)..row(step.end)).collect(),
+            starts: plan.rows.offsets.clone(),
+            terms: terms.map(|(&index, &weight)| [vertex(index), (weight as f32).to_bits()]).collect(),
+        }
+    }
+
+    /// Number of vertices that are made.
+    pub fn vertices(&self) -> usize {
+        self.starts.len() - 1
+    }
 }
 
 impl LeafTable {
@@ -47,28 +82,17 @@ impl LeafTable {
             words
         });
         let faces = faces.collect();
-        let leaves = plan.leaves.par_iter().map(|leaf| leaf_words(&plan, leaf, |vertex| patches.vertex(vertex)));
-        Self { faces, leaves: leaves.collect(), plan, first_patch: range.start as u32 }
-    }
-
-    /// The leaves and refined cells of each level: [`adaptive::Plan::counts`].
-    pub fn counts(&self) -> Vec<LevelCounts> {
-        self.plan.counts()
-    }
-
-    /// The quadtrees: [`adaptive::Plan::nodes`].
-    pub fn quadtrees(&self) -> &[u32] {
-        &self.plan.nodes
-    }
-
-    /// Number of vertices that shaders read besides those of the mesh.
-    pub(super) fn added_vertices(&self) -> usize {
-        self.plan.rows.len()
-    }
-
-    /// Those vertices, where the vertices of the mesh are at `positions`.
-    pub(super) fn added_points(&self, positions: &[DVec3]) -> Vec<DVec3> {
-        self.plan.points(positions).split_off(positions.len())
+        let leaves =
+            plan.leaves.par_iter().map(|leaf| leaf_words(&plan, leaf, |vertex| patches.vertex(vertex))).collect();
+        let refinement = Refinement::new(&plan, |vertex| patches.vertex(vertex));
+        Self {
+            faces,
+            leaves,
+            first_patch: range.start as u32,
+            refinement,
+            counts: plan.counts(),
+            quadtrees: plan.nodes,
+        }
     }
 }
 

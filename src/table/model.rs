@@ -2,8 +2,8 @@
 
 use super::shared::SHARED_WORDS;
 use super::{
-    Construction, EdgeTable, Evaluation, FaceOrigin, LeafTable, Notice, PatchPlan, RingTable, SharedTable, Sharing,
-    StencilTable, SubdivisionTable, TableError, TableOptions, bytes, prepare_for,
+    Construction, EdgeTable, Evaluation, FaceOrigin, LeafTable, Notice, PatchPlan, Refinement, RingTable, SharedTable,
+    Sharing, StencilTable, SubdivisionTable, TableError, TableOptions, bytes, prepare_for,
 };
 use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
@@ -120,30 +120,31 @@ impl ModelTables {
         self.plan.origins()
     }
 
-    /// Vertices that the shaders read: the control vertices, followed by those of the refined mesh if it was refined.
+    /// Vertices that the shaders read: the control vertices, followed by those of the refined mesh if it was refined, and by those of
+    /// adaptive subdivision.
     pub(crate) fn stored_vertices(&self) -> usize {
         let control = if self.steps.is_empty() { 0 } else { self.control_vertices };
-        control + self.patch_vertices + self.leaves.as_ref().map_or(0, LeafTable::added_vertices)
+        control + self.patch_vertices + self.refinement().map_or(0, Refinement::vertices)
     }
 
-    /// Puts the stored vertices for these positions of the control vertices in the place of what is in `stored`: with a fourth
+    /// Puts the stored vertices but those of adaptive subdivision, for these positions of the control vertices in the place of what is in `stored`: with a fourth
     /// number each, as texel buffers have them.
     pub(crate) fn store_positions(&self, control: &[[f32; 3]], stored: &mut Vec<[f32; 4]>) {
         let wide = |&[x, y, z]: &[f32; 3]| [x, y, z, 0.0];
         stored.clear();
         stored.extend(control.iter().map(wide));
-        if self.steps.is_empty() && self.leaves.is_none() {
+        if self.steps.is_empty() {
             return;
         }
         let wide = |p: DVec3| p.as_vec3().extend(0.0).to_array();
         let positions: Vec<DVec3> = control.iter().map(|&p| Vec3::from(p).as_dvec3()).collect();
         let refined = self.steps.iter().fold(positions, |refined, step| step.apply(&refined));
-        if !self.steps.is_empty() {
-            stored.extend(refined.iter().copied().map(wide));
-        }
-        if let Some(leaves) = &self.leaves {
-            stored.extend(leaves.added_points(&refined).into_iter().map(wide));
-        }
+        stored.extend(refined.into_iter().map(wide));
+    }
+
+    /// How the device refines the vertices of adaptive subdivision.
+    pub(crate) fn refinement(&self) -> Option<&Refinement> {
+        self.leaves.as_ref().map(|leaves| &leaves.refinement)
     }
 
     /// The leaves of faces that are refined, with [`TableOptions::adaptive`].
@@ -212,7 +213,7 @@ impl ModelTables {
 
     /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need
     /// are empty.
-    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 13] {
+    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 15] {
         fn array<'t, T, E: bytemuck::NoUninit>(table: &'t Option<T>, array: impl Fn(&'t T) -> &'t [E]) -> &'t [u8] {
             table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
         }
@@ -238,7 +239,7 @@ impl ModelTables {
             entries,
             types,
             corners,
-            ("quadtrees", array(&self.leaves, |t| t.quadtrees())),
+            ("quadtrees", array(&self.leaves, |t| &t.quadtrees)),
             ("leaves", array(&self.leaves, |t| t.leaves.as_flattened())),
             ("stencil_patches", array(stencils, |t| &t.patches)),
             ("stencil_vertices", array(stencils, |t| &t.vertices)),
@@ -246,6 +247,8 @@ impl ModelTables {
             ("texcoords", array(&self.texcoords, |t| t.as_slice())),
             ("shared_corners", array(&self.shared, |t| t.corners.as_flattened())),
             ("shared_texcoords", array(&self.shared, |t| &t.texcoords)),
+            ("row_starts", array(&self.leaves, |t| &t.refinement.starts)),
+            ("row_terms", array(&self.leaves, |t| t.refinement.terms.as_flattened())),
             ("faces", array(&self.leaves, |t| t.faces.as_flattened())),
         ]
     }

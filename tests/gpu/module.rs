@@ -2,9 +2,10 @@
 //! what it says when it is used wrongly.
 
 use ash::vk;
+use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::headless::{Headless, HeadlessOptions, Offscreen, OffscreenDesc};
 use ash_subdiv::mesh::FaceVarying;
-use ash_subdiv::renderer::{ColorEncoding, Fragment, Geometry};
+use ash_subdiv::renderer::{ColorEncoding, Evaluation, Fragment, Geometry};
 use ash_subdiv::{
     Construction, ControlMesh, DrawItem, Error, ModelOptions, Options, Renderer, Style, Target, View, shape,
 };
@@ -147,6 +148,42 @@ fn refined_models_move_too() {
         let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0).color(WHITE)]).unwrap();
         assert_eq!((picture.at(0.0, 0.5), picture.at(0.0, 0.0)), ([255; 4], [0, 0, 0, 255]));
         assert_eq!(picture.covered(), 16 * 16);
+    }
+    drop(renderer);
+    stage.finish();
+}
+
+/// The device refines them anew in each frame in which they moved.
+#[test]
+fn adaptive_models_move_too() {
+    let stage = Stage::new();
+    let mut renderer = stage.renderer(&Options::default());
+    let mut data = shape("cube").expect("built in").into_data();
+    data.positions.iter_mut().for_each(|p| *p = p.map(|x| 0.6 * x));
+    let mesh = ControlMesh::new(data.clone()).unwrap();
+    data.positions.iter_mut().for_each(|p| *p = [0.5 * p[0] + 0.3, p[1] - 0.4 * p[0], 1.5 * p[2]]);
+    let moved = ControlMesh::new(data).unwrap();
+    let adaptive = Some(AdaptiveOptions { depth: 3, ..AdaptiveOptions::default() });
+    let ways = Construction::ALL.map(|construction| (Evaluation::Tessellation, construction));
+    for (evaluation, construction) in ways.into_iter().chain([(Evaluation::Compute, Construction::Cached)]) {
+        let options = ModelOptions { adaptive, construction, evaluation, ..ModelOptions::default() };
+        let [model, other] = [&mesh, &moved].map(|mesh| renderer.add_model(mesh, &options).unwrap());
+        if evaluation.needs_segments() {
+            for model in [model, other] {
+                renderer.set_segments(model, 6).unwrap();
+            }
+        }
+        let draw = |renderer: &mut Renderer, frame, model| {
+            stage.prepare(renderer, frame);
+            stage.draw(renderer, frame, &[DrawItem::new(model, 6.0)]).unwrap().0
+        };
+        let before = draw(&mut renderer, 0, model);
+        renderer.set_positions(model, 1, &moved.positions_f32()).unwrap();
+        let after = draw(&mut renderer, 1, model);
+        assert!(after != before && after == draw(&mut renderer, 0, other), "{evaluation:?} {construction:?}");
+        assert!(after == draw(&mut renderer, 0, model), "they stay");
+        renderer.set_positions(model, 1, &mesh.positions_f32()).unwrap();
+        assert!(before == draw(&mut renderer, 1, model), "{evaluation:?} {construction:?}");
     }
     drop(renderer);
     stage.finish();

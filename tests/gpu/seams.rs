@@ -116,11 +116,11 @@ fn adaptive_surfaces_are_watertight() {
     let mut samples = 0;
     let built_in = ["creature-mixed", "machine-part", "valences", "cloth", "cube", "fan"];
     let built_in = built_in.map(|name| (name.to_owned(), shape(name).expect("built in")));
-    let random = (0..4).map(|seed| ("random".to_owned(), random_creased_mesh(seed)));
+    let random = (0..3).map(|seed| ("random".to_owned(), random_creased_mesh(seed)));
     for ((name, mesh), i) in built_in.into_iter().chain(random).zip(0..) {
         let mesh = with_texcoords(mesh);
         let construction = Construction::ALL[i % 3];
-        for (depth, displaced) in [(0, true), (1, false), (3, false), (3, true)] {
+        for (depth, displaced) in [(0, true), (1, false), (3, true)] {
             let adaptive = Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });
             let options =
                 ModelOptions { construction, spacing: SPACINGS[i / 3 % 3], adaptive, ..ModelOptions::default() };

@@ -9,7 +9,8 @@ layout(local_size_x = GROUP_INVOCATIONS) in;
 // Rust twin: `Invocations` in src/renderer/construct/cached.rs.
 layout(push_constant, std430) uniform Invocations {
     uint count;
-    uint first_corner;  // of the patches
+    uint first;         // of the corners of the patches, or of the rows
+    uint first_vertex;  // that the first of all rows makes
 } invocations;
 
 // Of those below `count`; groups are laid out in rows, as there are no more than 65 535 along an axis.

@@ -5,23 +5,27 @@ use crate::gpu::{DeviceContext, GpuError, MAX_WORKGROUPS};
 use crate::renderer::pipelines::ComputePipelines;
 use crate::renderer::shader::{Cut, PatchStages, ShaderCode};
 use crate::renderer::shader::{ShaderKey, Source};
-use crate::table::PatchPlan;
+use crate::table::{PatchPlan, Refinement};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
 
 /// Push constants. GLSL twin: `glsl/lib/draw/invocation.glsl`.
 #[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
 struct Invocations {
     count: u32,
-    /// Of the patches.
-    first_corner: u32,
+    /// Of the corners of the patches, or of the rows.
+    first: u32,
+    /// The vertex that the first of all rows makes.
+    first_vertex: u32,
 }
 
 /// What pipelines are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Step {
+    /// Vertices of adaptive subdivision.
+    Refine,
     Frames {
         /// Whether rings may have pentagons.
         pentagons: bool,
@@ -57,6 +61,36 @@ impl CachedPipelines {
         self.0.make(Step::Points(stages), stages.control_points(), code, &constants)
     }
 
+    /// Makes what adaptive surfaces need.
+    pub(crate) fn make_refinement(&mut self, code: &ShaderCode) -> Result<(), GpuError> {
+        self.0.make(Step::Refine, ShaderKey::of(Source::RefineComp), code, &[])
+    }
+
+    /// Records the dispatches that make the vertices of adaptive subdivision, step by step; `set` is the model's.
+    ///
+    /// # Safety
+    /// As [`CachedPipelines::cmd_frames`]; the control vertices are there.
+    pub(crate) unsafe fn cmd_refine(&self, cmd: vk::CommandBuffer, set: vk::DescriptorSet, refinement: &Refinement) {
+        let device = self.0.context().device();
+        let made = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE)];
+        let (stage, none) = (vk::PipelineStageFlags::COMPUTE_SHADER, vk::DependencyFlags::empty());
+        // SAFETY: as the caller promises.
+        unsafe {
+            self.0.cmd_bind(cmd, 1, &[set], &[]);
+            for step in refinement.steps.iter().filter(|step| !step.is_empty()) {
+                let (count, first) = (step.len() as u32, step.start);
+                self.cmd_dispatch(
+                    cmd,
+                    Step::Refine,
+                    Invocations { count, first, first_vertex: refinement.first_vertex },
+                );
+                device.cmd_pipeline_barrier(cmd, stage, stage, none, &made, &[], &[]);
+            }
+        }
+    }
+
     /// Records the dispatch for so many rings of a model, whose set this is.
     ///
     /// # Safety
@@ -72,7 +106,7 @@ impl CachedPipelines {
         // SAFETY: as the caller promises.
         unsafe {
             self.0.cmd_bind(cmd, 1, &[set], &[]);
-            self.cmd_dispatch(cmd, Step::frames(stages), Invocations { count: rings, first_corner: 0 });
+            self.cmd_dispatch(cmd, Step::frames(stages), Invocations { count: rings, ..Invocations::default() });
         }
     }
 
@@ -90,11 +124,13 @@ impl CachedPipelines {
         // SAFETY: as the caller promises.
         unsafe { self.0.cmd_bind(cmd, 1, &[set], &[]) };
         for (&stages, group) in stages.iter().zip(plan.groups()) {
-            let (count, first_corner) = (group.patches.len() as u32, group.first_corner as u32);
-            // SAFETY: as the caller promises.
-            unsafe {
-                self.cmd_dispatch(cmd, Step::Points(stages.for_control_points()), Invocations { count, first_corner })
+            let invocations = Invocations {
+                count: group.patches.len() as u32,
+                first: group.first_corner as u32,
+                ..Invocations::default()
             };
+            // SAFETY: as the caller promises.
+            unsafe { self.cmd_dispatch(cmd, Step::Points(stages.for_control_points()), invocations) };
         }
     }
 

@@ -22,7 +22,7 @@ impl Renderer {
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
-    /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or, with
+    /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or [adaptive](crate::renderer::ModelOptions::adaptive), or, with
     /// [`Options::visible_lists`](crate::renderer::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). The
     /// device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue, and every one is: uploads
     /// and changes are recorded once, and later frames count on them. A frame that turns out to have nothing to draw into, such
@@ -90,6 +90,9 @@ impl Renderer {
         let device = context.device();
         // SAFETY: as the caller promises; every pipeline of a model's kinds was made when it was added.
         unsafe {
+            for model in models.values() {
+                model.cmd_refine(pipelines, cmd);
+            }
             for model in models.values().filter(|model| model.has_stale_points()) {
                 model.cmd_frames(pipelines, cmd);
             }

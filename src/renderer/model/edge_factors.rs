@@ -26,7 +26,7 @@ impl EdgeFactors {
     ) -> Result<Self, GpuError> {
         let ones = vec![1.0f32; edges.of_corners.len()];
         Ok(Self {
-            of_corners: Streamed::new(context, &format!("{name}: factors of edges"), &ones, frames)?,
+            of_corners: Streamed::new(context, &format!("{name}: factors of edges"), &ones, 0, frames)?,
             largest_written: vec![1.0; frames as usize],
             largest: 1.0,
         })

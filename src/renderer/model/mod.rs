@@ -49,6 +49,8 @@ pub(crate) struct Model {
     pub lattice: Option<Lattice>,
     /// Whether control points are out of date.
     stale_points: bool,
+    /// Whether the vertices of adaptive subdivision are.
+    stale_refinement: bool,
     /// Whether vertices that compute evaluates are.
     stale_vertices: bool,
     /// Edges, then faces of the control mesh, if a style draws them.
@@ -204,6 +206,7 @@ impl Model {
             evaluation: model_options.evaluation,
             lattice: None,
             stale_points: false,
+            stale_refinement: false,
             stale_vertices: false,
             control,
             uploads,
@@ -246,7 +249,8 @@ impl Model {
 
     /// Whether compute shaders make something of it.
     pub(crate) fn computes(&self) -> bool {
-        self.control_points.is_some() && self.evaluation != Evaluation::GeometryTwoPass
+        self.tables.refinement().is_some()
+            || self.control_points.is_some() && self.evaluation != Evaluation::GeometryTwoPass
     }
 
     /// Has the control points computed anew in the next frame, even though nothing moved.
@@ -262,8 +266,10 @@ impl Model {
 
     /// Has what follows from the copies of this frame computed after them; before they are recorded.
     pub(crate) fn mark_stale(&mut self, frame: u32) {
+        let moved = !self.prepared || self.positions.is_due(frame);
+        self.stale_refinement |= moved && self.tables.refinement().is_some();
         if self.control_points.is_some() {
-            self.stale_points |= !self.prepared || self.positions.is_due(frame);
+            self.stale_points |= moved;
             // They depend on the lattice and on the factors of edges, too.
             self.stale_vertices = self.stale_points || self.needs_copies(frame);
         }
@@ -276,7 +282,7 @@ impl Model {
 
     /// Whether anything is.
     pub(crate) fn is_stale(&self) -> bool {
-        self.stale_points || self.stale_vertices
+        self.stale_points || self.stale_vertices || self.stale_refinement
     }
 
     /// Records the evaluation of the lattice, if there is one, which is the last of what was out of date.
@@ -284,10 +290,21 @@ impl Model {
     /// # Safety
     /// As [`Lattice::cmd_evaluate`].
     pub(crate) unsafe fn cmd_evaluate(&mut self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
-        (self.stale_points, self.stale_vertices) = (false, false);
+        (self.stale_points, self.stale_vertices, self.stale_refinement) = (false, false, false);
         if let Some(lattice) = &self.lattice {
             // SAFETY: as the caller promises.
             unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set.raw, &self.stages, &self.tables.plan) };
+        }
+    }
+
+    /// Records what makes the vertices of adaptive subdivision, if they are out of date.
+    ///
+    /// # Safety
+    /// As [`Model::cmd_frames`].
+    pub(crate) unsafe fn cmd_refine(&self, pipelines: &ModelPipelines, cmd: vk::CommandBuffer) {
+        if let Some(refinement) = self.tables.refinement().filter(|_| self.stale_refinement) {
+            // SAFETY: as the caller promises.
+            unsafe { pipelines.cached.cmd_refine(cmd, self.set.raw, refinement) };
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::streamed::Streamed;
 use crate::gpu::{Buffer, DeviceContext, GpuError};
-use crate::table::ModelTables;
+use crate::table::{ModelTables, TEXEL_BYTES};
 use ash::vk;
 use std::sync::Arc;
 
@@ -25,7 +25,8 @@ impl Positions {
     ) -> Result<Self, GpuError> {
         let mut stored = Vec::new();
         tables.store_positions(control, &mut stored);
-        let streamed = Streamed::new(context, &format!("{name}: positions"), &stored, frames)?;
+        let refined = TEXEL_BYTES * (tables.stored_vertices() - stored.len()) as u64;
+        let streamed = Streamed::new(context, &format!("{name}: positions"), &stored, refined, frames)?;
         Ok(Self { streamed, stored })
     }
 

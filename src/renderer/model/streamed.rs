@@ -17,11 +17,12 @@ pub(crate) struct Streamed {
 }
 
 impl Streamed {
-    /// With these contents in all frames.
+    /// With these contents in all frames, and room for `more` bytes on the device, which the device fills.
     pub(crate) fn new<T: NoUninit>(
         context: &Arc<DeviceContext>,
         name: &str,
         contents: &[T],
+        more: u64,
         frames: u32,
     ) -> Result<Self, GpuError> {
         // A buffer of no bytes is no buffer, and one of no texels no texel buffer.
@@ -30,7 +31,7 @@ impl Streamed {
             context,
             &BufferDesc {
                 name,
-                size,
+                size: size + more,
                 usage: vk::BufferUsageFlags::STORAGE_BUFFER
                     | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER
                     | vk::BufferUsageFlags::TRANSFER_DST,

@@ -36,7 +36,8 @@ pub struct ModelOptions {
     /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
     pub refine: u32,
     /// Refine irregular faces where they have to be, and draw the limit surface itself but for end caps at this depth: see
-    /// [`adaptive`](crate::adaptive). Still one patch a face. A mesh with faces that are no quads is refined once before.
+    /// [`adaptive`](crate::adaptive). Still one patch a face. A mesh with faces that are no quads is refined once before. Needs a queue
+    /// that computes.
     pub adaptive: Option<AdaptiveOptions>,
 }
 

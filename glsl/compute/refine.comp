@@ -1,0 +1,26 @@
+// Vertices of adaptive subdivision, once a frame in which the control vertices moved: each a weighted sum of vertices before it. One
+// invocation for each. Rust twin: `Plan::points` in src/adaptive/rows.rs.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "constants.glsl"
+#include "draw/invocation.glsl"
+#include "draw/tables.glsl"
+
+layout(set = 1, binding = BINDING_POSITIONS, std430) buffer Positions { vec4 positions[]; };
+
+void main() {
+    uint index = invocation_number();
+    if (index >= invocations.count) {
+        return;
+    }
+    uint row = invocations.first + index;
+    uint start = table_words[tables.row_starts + row], end = table_words[tables.row_starts + row + 1u];
+    // As seen from the first of them, for sums to keep the bits of small cells: weights add up to one.
+    vec3 origin = positions[table_words[tables.row_terms + 2u * start]].xyz;
+    vec3 sum = vec3(0.0);
+    for (uint i = start; i < end; ++i) {
+        uvec2 term = table_pairs[tables.row_terms / 2u + i];
+        sum += uintBitsToFloat(term.y) * (positions[term.x].xyz - origin);
+    }
+    positions[invocations.first_vertex + row] = vec4(origin + sum, 0.0);
+}
