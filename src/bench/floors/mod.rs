@@ -193,7 +193,7 @@ impl Kit {
     }
 }
 
-/// A buffer with room for so many records.
+/// A buffer with room for the records of `items` items.
 fn item_buffer(context: &Arc<DeviceContext>, items: usize) -> Result<Buffer, GpuError> {
     let (size, usage) = (ItemRecord::STRIDE * items as u64, vk::BufferUsageFlags::UNIFORM_BUFFER);
     Buffer::new(context, &BufferDesc { name: "bench floor items", size, usage, location: MemoryLocation::Upload })

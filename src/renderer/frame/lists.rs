@@ -27,8 +27,8 @@ fn grown(needed: u64, capacity: u64, max: u64) -> Option<u64> {
     (needed <= max).then(|| needed.max(2 * capacity).next_power_of_two().min(max))
 }
 
-/// How large a list is, and what is in it: places of patches, then the indirect draws, then copies. Workgroups list the patches of
-/// a region each, and write its draws.
+/// Layout of a list: places of patches, then the indirect draws, then copies. Each workgroup lists the patches of a region, and
+/// writes its draws.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ListLayout {
     /// Bytes of the commands of a region.
@@ -50,12 +50,12 @@ impl ListLayout {
         ((MAX_BYTES - TEXEL_BYTES) / of_region) as u32 * REGION
     }
 
-    /// How many regions so many patches are.
+    /// Regions of `patches` patches.
     pub(crate) fn regions(patches: u32) -> u32 {
         patches.div_ceil(REGION)
     }
 
-    /// Bytes of a list of so many patches before the draws.
+    /// Bytes before the draws, in a list of `patches` patches.
     pub(crate) fn commands_start(patches: u32) -> u64 {
         PLACE_BYTES * u64::from(patches)
     }
@@ -66,7 +66,7 @@ impl ListLayout {
         (Self::commands_start(patches) + commands).next_multiple_of(TEXEL_BYTES)
     }
 
-    /// Bytes of a list of so many patches, up to the next.
+    /// Bytes from a list of `patches` patches to the next.
     pub(crate) fn bytes(self, patches: u32) -> u64 {
         (self.copies_start(patches) + self.copied * u64::from(patches)).next_multiple_of(MAX_OFFSET_ALIGNMENT)
     }
@@ -76,7 +76,7 @@ impl ListLayout {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct ListConstants {
-    /// As in draws, but for how many patches an instance has: 0 for indexed draws with an instance for each patch.
+    /// Constants of the draws; patches per instance are 0 for indexed draws, where each patch has an instance.
     pub of_draw: DrawConstants,
     /// Of the patches.
     pub count: u32,
@@ -102,7 +102,7 @@ pub(crate) struct FrameLists {
 }
 
 impl FrameLists {
-    /// With room for lists of so many bytes, and for some records.
+    /// Lists with room for `bytes` bytes, and `records` records.
     pub(crate) fn new(
         context: &Arc<DeviceContext>,
         layouts: &SetLayouts,
@@ -151,7 +151,7 @@ impl FrameLists {
         Ok((bytes, records as u32))
     }
 
-    /// Takes room of so many bytes for a list, which there must be: where it starts.
+    /// Takes room of `bytes` bytes for a list, which there must be: where it starts.
     pub(crate) fn take(&mut self, bytes: u64) -> u32 {
         let offset = self.used;
         self.used += bytes;
