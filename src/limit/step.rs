@@ -8,6 +8,7 @@ use crate::mesh::{BoundaryRule, Corner, Crease, MeshData, SHARPNESS_INFINITE, Tr
 use crate::topology::Topology;
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxBuildHasher;
 use std::collections::HashMap;
 
 /// The refined mesh without what it has by face corner, and without holes; its positions as sums of the coarse mesh's.
@@ -75,11 +76,11 @@ pub(super) struct Step<'t> {
     /// A half-edge of each edge.
     edge_half_edges: Vec<u32>,
     /// The sharp edge ends of the vertices that have any.
-    sharp_ends: HashMap<u32, Vec<(u32, SharpEnd)>>,
+    sharp_ends: HashMap<u32, Vec<(u32, SharpEnd)>, FxBuildHasher>,
     /// Sharpness of the manifold vertices that have any.
-    vertex_sharpness: HashMap<u32, f32>,
+    vertex_sharpness: HashMap<u32, f32, FxBuildHasher>,
     /// Faces whose point rows take as an unknown of its own.
-    pub(super) centres: HashMap<u32, u32>,
+    pub(super) centres: HashMap<u32, u32, FxBuildHasher>,
 }
 
 impl<'t> Step<'t> {
@@ -100,9 +101,9 @@ impl<'t> Step<'t> {
             topology,
             edges,
             edge_half_edges,
-            sharp_ends: HashMap::new(),
-            vertex_sharpness: HashMap::new(),
-            centres: HashMap::new(),
+            sharp_ends: HashMap::default(),
+            vertex_sharpness: HashMap::default(),
+            centres: HashMap::default(),
         };
         step.find_sharp_ends();
         step.find_sharp_vertices();
@@ -149,14 +150,19 @@ impl<'t> Step<'t> {
         self.edge_half_edges[edge as usize]
     }
 
-    /// The creases along the two edges of a face corner's child that start from there.
-    pub(super) fn creases_at(&self, h: u32) -> impl Iterator<Item = Crease> {
+    /// Whether there are any.
+    pub(super) fn has_sharp_edges(&self) -> bool {
+        !self.sharp_ends.is_empty()
+    }
+
+    /// The creases along the two edges of a face corner's child that meet there, with the half-edges' places in the child.
+    pub(super) fn creases_at(&self, h: u32) -> impl Iterator<Item = (usize, Crease)> {
         let vertex = self.topology.vertex(h);
-        [h, self.topology.prev(h)].into_iter().filter_map(move |edge| {
+        [(0, h), (3, self.topology.prev(h))].into_iter().filter_map(move |(corner, edge)| {
             // The map knows what is sharp; a boundary edge is sharp without a tag.
             let sharpness = self.child_sharpness(self.edges[edge as usize], vertex);
             let is_tag = sharpness > 0.0 && self.topology.twin(edge).is_some();
-            is_tag.then_some(Crease { vertices: [vertex, self.edge_vertex(edge)], sharpness })
+            is_tag.then_some((corner, Crease { vertices: [vertex, self.edge_vertex(edge)], sharpness }))
         })
     }
 
