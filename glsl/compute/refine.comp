@@ -17,10 +17,12 @@ void main() {
     uint start = table_words[tables.row_starts + row], end = table_words[tables.row_starts + row + 1u];
     // As seen from the first of them, for sums to keep the bits of small cells: weights add up to one.
     vec3 origin = positions[table_words[tables.row_terms + 2u * start]].xyz;
-    vec3 sum = vec3(0.0);
+    precise vec3 sum = vec3(0.0);
     for (uint i = start; i < end; ++i) {
         uvec2 term = table_pairs[tables.row_terms / 2u + i];
-        sum += uintBitsToFloat(term.y) * (positions[term.x].xyz - origin);
+        precise vec3 seen = positions[term.x].xyz - origin;
+        sum = sum + uintBitsToFloat(term.y) * seen;
     }
-    positions[invocations.first_vertex + row] = vec4(origin + sum, 0.0);
+    precise vec3 vertex = origin + sum;
+    positions[invocations.first_vertex + row] = vec4(vertex, 0.0);
 }

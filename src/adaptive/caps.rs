@@ -1,15 +1,20 @@
 //! The control points of end caps.
 
-use super::feature::{has_finite_sharpness, is_settled};
-use crate::blend::{Blend, Frame, PatchCorner, RingShape, RingValues, Row};
-use crate::limit::{Stencils, dart_edge, dart_frame, refine_part};
-use crate::mesh::{ControlMesh, Corner, Crease, CreaseMethod, MeshData, MeshError};
+use super::alone::Alone;
+use super::feature::Class;
+use super::few::{FEW, Few};
+use super::look::Seen;
+use crate::blend::{Blend, Frame, PatchCorner, RingValues, Row};
+use crate::limit::{RowsMut, Stencils};
+use crate::mesh::{CreaseMethod, MeshError};
 use crate::patch::Scheme;
 use crate::patch::gregory::gregory_points;
 use crate::topology::{Place, Topology};
+use rayon::prelude::*;
 use rustc_hash::FxBuildHasher;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::ops::Range;
 
 /// Control points of a cap.
 pub(super) const POINTS: u32 = 20;
@@ -18,23 +23,40 @@ pub(super) const POINTS: u32 = 20;
 pub(super) const FRAME: u32 = 1 << 30;
 
 /// Rings of more faces have their frames in rows of their own.
-const MANY: u32 = 16;
+pub(super) const MANY: u32 = 16;
 
-/// Makes the caps of a plan.
+/// Caps for one thread at least.
+const MIN_LEN: usize = 64;
+
+/// In the place of a pattern.
+const NONE: u32 = u32::MAX;
+
+/// The caps of a plan.
 pub(super) struct Caps {
     scheme: Scheme,
-    /// The points of caps with rings of the same shapes, as sums of the vertices in them.
-    patterns: HashMap<Pattern, Stencils, FxBuildHasher>,
+    patterns: Vec<Pattern>,
+    /// The patterns of caps with rings of the same shapes, by what is in [`Seen::keys`].
+    numbers: HashMap<Vec<u32>, u32, FxBuildHasher>,
+    caps: Vec<Cap>,
+    /// The vertices of the caps.
+    vertices: Vec<u32>,
     limits: HashMap<Alone, Row, FxBuildHasher>,
 }
 
-/// What the rows of a cap depend on, but for the vertices' numbers.
-#[derive(PartialEq, Eq, Hash)]
+/// The points of caps as sums of the vertices around each.
 struct Pattern {
-    /// The ring around each corner, and the edge in it.
-    rings: [(RingShape, usize); 4],
-    /// Each vertex of the rings: its number among those that differ.
-    vertices: Vec<u32>,
+    rows: Stencils,
+    /// The vertices that rows read, where others do not.
+    read: Vec<u32>,
+}
+
+/// A cap in the making.
+struct Cap {
+    pattern: u32,
+    /// Where its vertices start.
+    first: u32,
+    /// Number of vertices.
+    count: u32,
 }
 
 /// What is around a level's caps.
@@ -42,63 +64,147 @@ pub(super) struct Around<'t> {
     pub topology: &'t Topology,
     /// The number of the topology's vertex 0.
     pub first_vertex: u32,
+    /// What the vertices of the caps ask.
+    pub classes: &'t [Class],
     /// The vertices at the points of faces of many corners, by face.
     pub centres: &'t HashMap<u32, u32>,
 }
 
-/// What was found around the caps of a level.
-#[derive(Default)]
-pub(super) struct Known {
-    /// Whether masks tell the limit, by vertex.
-    settled: HashMap<u32, bool>,
-    /// Rings that are no part of a pattern, with their frames.
-    rings: HashMap<u32, (RingValues<Row>, Frame<Row>)>,
-}
+/// Rings of a level that are no part of a pattern, with their frames.
+type Known = HashMap<u32, (RingValues<Row>, Frame<Row>), FxBuildHasher>;
 
 impl Caps {
     pub(super) fn new(scheme: Scheme) -> Self {
-        Self { scheme, patterns: HashMap::default(), limits: HashMap::default() }
+        Self {
+            scheme,
+            patterns: Vec::new(),
+            numbers: HashMap::default(),
+            caps: Vec::new(),
+            vertices: Vec::new(),
+            limits: HashMap::default(),
+        }
     }
 
-    /// Appends the points of a quad with these half-edges. Other than in [`Scheme::control_points`], faces around it may have
-    /// any number of corners, and the patch goes through the limits of its corners at darts and where sharpness is finite, too
+    /// Number of caps.
+    pub(super) fn len(&self) -> usize {
+        self.caps.len()
+    }
+
+    /// Adds the caps of quads with these half-edges. Other than in [`Scheme::control_points`], faces around one may have any
+    /// number of corners, and the patch goes through the limits of its corners at darts and where sharpness is finite, too
     /// (but there not by Chaikin's method). `frames` takes in the points of frames that many caps share.
     ///
     /// # Errors
     /// Those of refining what is around a corner.
-    pub(super) fn push(
+    pub(super) fn add(&mut self, around: &Around, quads: &[[u32; 4]], frames: &mut Vec<Row>) -> Result<(), MeshError> {
+        let seen: Vec<Seen> = quads.par_chunks(MIN_LEN).map(|quads| Seen::new(around, quads)).collect();
+        let mut known = Known::default();
+        for (seen, quads) in seen.iter().zip(quads.chunks(MIN_LEN)) {
+            let mut numbers = vec![NONE; seen.keys.len()];
+            let mut start = 0;
+            for (look, &quad) in seen.caps.iter().zip(quads) {
+                let Some(key) = look.key else {
+                    self.add_alone(around, quad, &mut known, frames)?;
+                    continue;
+                };
+                let vertices = &seen.vertices[start..start + look.vertices];
+                start += look.vertices;
+                if numbers[key] == NONE {
+                    numbers[key] = self.pattern(around, &seen.keys[key], quad, vertices);
+                }
+                self.push(numbers[key], vertices);
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls `mark` for all vertices that are read.
+    pub(super) fn for_each_read(&self, mark: impl Fn(u32) + Sync) {
+        self.caps.par_iter().with_min_len(MIN_LEN).for_each(|cap| {
+            let vertices = self.vertices_of(cap);
+            self.patterns[cap.pattern as usize].read.iter().for_each(|&number| mark(vertices[number as usize]));
+        });
+    }
+
+    /// Number of terms of some caps' rows.
+    pub(super) fn terms(&self, caps: Range<usize>) -> usize {
+        self.caps[caps].iter().map(|cap| self.patterns[cap.pattern as usize].rows.indices.len()).sum()
+    }
+
+    /// Writes the rows of some caps, with `number(v)` in the place of vertex v.
+    pub(super) fn write(&self, caps: Range<usize>, number: impl Fn(u32) -> u32, rows: &mut RowsMut) {
+        let mut numbers = Vec::new();
+        for cap in &self.caps[caps] {
+            numbers.clear();
+            numbers.extend(self.vertices_of(cap).iter().map(|&vertex| number(vertex)));
+            let pattern = &self.patterns[cap.pattern as usize].rows;
+            rows.push(pattern, 0..pattern.len(), |index| numbers[index as usize]);
+        }
+    }
+
+    fn vertices_of(&self, cap: &Cap) -> &[u32] {
+        &self.vertices[cap.first as usize..(cap.first + cap.count) as usize]
+    }
+
+    fn push(&mut self, pattern: u32, vertices: &[u32]) {
+        self.caps.push(Cap { pattern, first: self.vertices.len() as u32, count: vertices.len() as u32 });
+        self.vertices.extend_from_slice(vertices);
+    }
+
+    fn push_pattern(&mut self, rows: Stencils, vertices: usize) -> u32 {
+        let mut is_read = vec![false; vertices];
+        rows.indices.iter().for_each(|&number| is_read[number as usize] = true);
+        let read = (0..vertices as u32).filter(|&number| is_read[number as usize]).collect();
+        self.patterns.push(Pattern { rows, read });
+        self.patterns.len() as u32 - 1
+    }
+
+    /// The pattern with a key, of which a quad and its vertices are an example.
+    fn pattern(&mut self, around: &Around, key: &[u32], quad: [u32; 4], vertices: &[u32]) -> u32 {
+        if let Some(&pattern) = self.numbers.get(key) {
+            return pattern;
+        }
+        let number = |h: u32| {
+            let vertex = around.vertex(h);
+            vertices.iter().position(|&v| v == vertex).expect("a vertex that was seen") as u32
+        };
+        let rows = match vertices.len() <= FEW {
+            true => few_rows(&self.points_of(around.topology, quad, |h| Few::unit(number(h)))),
+            false => Stencils::new(self.points_of(around.topology, quad, |h| Row::unit(number(h)))),
+        };
+        let pattern = self.push_pattern(rows, vertices.len());
+        self.numbers.insert(key.to_vec(), pattern);
+        pattern
+    }
+
+    /// Adds a cap that has its pattern for itself.
+    fn add_alone(
         &mut self,
         around: &Around,
-        half_edges: [u32; 4],
+        quad: [u32; 4],
         known: &mut Known,
         frames: &mut Vec<Row>,
-        rows: &mut Stencils,
     ) -> Result<(), MeshError> {
-        let topology = around.topology;
-        let is_plain = |h: u32, known: &mut Known| {
-            let ring = &topology.rings()[topology.place(h).ring as usize];
-            ring.faces <= MANY
-                && (ring.quads || topology.ring_half_edges(ring).all(|h| topology.face_size(h) <= 4))
-                && known.is_settled(topology, h)
-        };
-        let places = half_edges.map(|h| topology.place(h));
-        if half_edges.into_iter().all(|h| is_plain(h, known)) {
-            let vertex = |h: u32| around.first_vertex + topology.mesh_vertex(h);
-            let ring = |place: Place| {
-                let ring = &topology.rings()[place.ring as usize];
-                (RingValues::collect(topology, ring, vertex, vertex), place.index as usize)
-            };
-            self.push_pattern(places.map(ring), rows);
-            return Ok(());
-        }
-        for h in half_edges {
+        for h in quad {
             self.find_ring(around, h, known, frames)?;
         }
-        let corner = |place: Place| {
-            let (ring, frame) = &known.rings[&place.ring];
-            PatchCorner { ring, frame, index: place.index as usize }
+        let places = quad.map(|h| around.topology.place(h));
+        let rings = places.map(|place| &known[&place.ring]);
+        let mut vertices: Vec<u32> = rings.iter().flat_map(|(ring, frame)| terms(ring, frame)).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let number = |vertex: u32| vertices.partition_point(|&v| v < vertex) as u32;
+        let rows = if vertices.len() <= FEW {
+            let few = |row: &Row| Few::new(row.weights().iter().map(|&(vertex, weight)| (number(vertex), weight)));
+            let rings = rings.map(|(ring, frame)| (ring.map(few), frame.map(few)));
+            few_rows(&self.points_between(rings.each_ref().map(|(ring, frame)| (ring, frame)), places))
+        } else {
+            let mut rows = Stencils::new(self.points_between(rings.map(|(ring, frame)| (ring, frame)), places));
+            rows.indices.iter_mut().for_each(|vertex| *vertex = number(*vertex));
+            rows
         };
-        self.points(&places.map(corner)).iter().for_each(|row| rows.push(row.weights().iter().copied()));
+        let pattern = self.push_pattern(rows, vertices.len());
+        self.push(pattern, &vertices);
         Ok(())
     }
 
@@ -129,13 +235,13 @@ impl Caps {
     ) -> Result<(), MeshError> {
         let topology = around.topology;
         let number = topology.place(h).ring;
-        if known.rings.contains_key(&number) {
+        if known.contains_key(&number) {
             return Ok(());
         }
         let ring = &topology.rings()[number as usize];
         let values = RingValues::collect(topology, ring, |h| around.unit(h), |h| around.opposite(h));
         let mut frame = self.scheme.frame(&values);
-        if !known.is_settled(topology, h)
+        if !around.is_settled(h)
             && let Some(limit) = self.limit(around, h)?
         {
             frame.p = limit;
@@ -149,55 +255,53 @@ impl Caps {
             let seen = |row: &Row| Row::sum([(1.0, row), (-1.0, &p)]);
             frame = Frame { a: seen(&along), b: seen(&across), p };
         }
-        known.rings.insert(number, (values, frame));
+        known.insert(number, (values, frame));
         Ok(())
     }
 
-    /// Appends a cap whose rings have these vertices.
-    fn push_pattern(&mut self, rings: [(RingValues<u32>, usize); 4], rows: &mut Stencils) {
-        let (mut distinct, mut numbers) = (Vec::with_capacity(32), Vec::with_capacity(48));
-        for ring in rings.iter().map(|(ring, _)| ring) {
-            for vertex in std::iter::once(&ring.centre).chain(&ring.edges).chain(&ring.diagonals) {
-                let number = distinct.iter().position(|v| v == vertex).unwrap_or_else(|| {
-                    distinct.push(*vertex);
-                    distinct.len() - 1
-                });
-                numbers.push(number as u32);
-            }
-        }
-        let pattern = Pattern { rings: rings.map(|(ring, index)| (ring.shape, index)), vertices: numbers };
-        let made = match self.patterns.contains_key(&pattern) {
-            true => None,
-            false => Some(self.pattern_points(&pattern)),
-        };
-        let points = self.patterns.entry(pattern).or_insert_with(|| Stencils::new(made.unwrap_or_default()));
-        for row in 0..points.len() {
-            rows.push(points.row(row).map(|(number, weight)| (distinct[number as usize], weight)));
-        }
+    /// The points of a quad whose rings are as the topology has them, `value(h)` being that where a half-edge starts.
+    fn points_of<T: Blend>(&self, topology: &Topology, quad: [u32; 4], value: impl Fn(u32) -> T) -> Vec<T> {
+        let places = quad.map(|h| topology.place(h));
+        let rings =
+            places.map(|place| RingValues::collect(topology, &topology.rings()[place.ring as usize], &value, &value));
+        let frames = rings.each_ref().map(|ring| self.scheme.frame(ring));
+        self.points_between([0, 1, 2, 3].map(|k| (&rings[k], &frames[k])), places)
     }
 
-    fn points(&self, corners: &[PatchCorner<Row>; 4]) -> Vec<Row> {
-        gregory_points(corners, |corner, j| self.scheme.transversal(corner.ring, corner.frame, j))
-    }
-
-    fn pattern_points(&self, pattern: &Pattern) -> Vec<Row> {
-        let rings = pattern.values();
-        let frames = rings.each_ref().map(|(ring, _)| self.scheme.frame(ring));
-        self.points(&[0, 1, 2, 3].map(|k| PatchCorner { ring: &rings[k].0, frame: &frames[k], index: rings[k].1 }))
+    /// The points of a quad with these rings and frames.
+    fn points_between<T: Blend>(&self, rings: [(&RingValues<T>, &Frame<T>); 4], places: [Place; 4]) -> Vec<T> {
+        let corner = |k: usize| PatchCorner { ring: rings[k].0, frame: rings[k].1, index: places[k].index as usize };
+        let corners = [0, 1, 2, 3].map(corner);
+        gregory_points(&corners, |corner, j| self.scheme.transversal(corner.ring, corner.frame, j))
     }
 }
 
-impl Known {
-    fn is_settled(&mut self, topology: &Topology, h: u32) -> bool {
-        let data = topology.mesh().data();
-        let is_untagged = data.creases.is_empty() && data.corners.is_empty();
-        is_untagged || *self.settled.entry(topology.vertex(h)).or_insert_with(|| is_settled(topology, h))
-    }
+/// The vertices in a ring and its frame, some of them several times.
+fn terms<'r>(ring: &'r RingValues<Row>, frame: &'r Frame<Row>) -> impl Iterator<Item = u32> + 'r {
+    let of_frame = [&ring.centre, &frame.p, &frame.a, &frame.b].into_iter();
+    let rows = of_frame.chain(&ring.edges).chain(&ring.diagonals);
+    rows.flat_map(|row| row.weights()).map(|&(vertex, _)| vertex)
+}
+
+fn few_rows(points: &[Few]) -> Stencils {
+    let mut rows = Stencils::default();
+    points.iter().for_each(|point| rows.push(point.weights()));
+    rows
 }
 
 impl Around<'_> {
+    /// Whether masks tell the limit of the vertex from which a half-edge starts.
+    pub(super) fn is_settled(&self, h: u32) -> bool {
+        self.classes[self.topology.vertex(h) as usize].is_settled()
+    }
+
+    /// The vertex from which a half-edge starts.
+    pub(super) fn vertex(&self, h: u32) -> u32 {
+        self.first_vertex + self.topology.mesh_vertex(h)
+    }
+
     fn unit(&self, h: u32) -> Row {
-        Row::unit(self.first_vertex + self.topology.mesh_vertex(h))
+        Row::unit(self.vertex(h))
     }
 
     /// What stands for the diagonal of a ring's face, `h` being its half-edge two steps from the ring's vertex. Masks see faces
@@ -221,98 +325,5 @@ impl Around<'_> {
             row.add_scaled(-1.0, &self.unit(h));
         }
         row
-    }
-}
-
-impl Pattern {
-    /// The rings, with the numbers of their vertices as unknowns.
-    fn values(&self) -> [(RingValues<Row>, usize); 4] {
-        let mut numbers = self.vertices.iter();
-        self.rings.each_ref().map(|(shape, index)| {
-            let mut take = |count: usize| numbers.by_ref().take(count).map(|&number| Row::unit(number)).collect();
-            let centre: Vec<Row> = take(1);
-            let (edges, diagonals) = (take(shape.edges()), take(shape.faces()));
-            let ring = RingValues {
-                shape: shape.clone(),
-                centre: centre.into_iter().next().unwrap_or_default(),
-                edges,
-                diagonals,
-            };
-            (ring, *index)
-        })
-    }
-}
-
-/// The faces around a vertex as a mesh of their own, in which each begins there: all that the vertex's limit depends on, by
-/// the uniform method.
-#[derive(PartialEq, Eq, Hash)]
-struct Alone {
-    face_sizes: Vec<u32>,
-    face_vertices: Vec<u32>,
-    /// The bits of the sharpness of the vertex, and of each edge from it that has faces on both sides, with its other end.
-    vertex_sharpness: u32,
-    edges: Vec<(u32, u32)>,
-}
-
-impl Alone {
-    /// What is around the vertex from which a half-edge starts, and its vertices' numbers.
-    fn new(around: &Around, h: u32) -> (Self, Vec<u32>) {
-        let topology = around.topology;
-        let fan = topology.fan(h).0;
-        let (mut numbers, mut vertices) = (HashMap::new(), Vec::new());
-        let face_sizes: Vec<u32> = fan.iter().map(|&spoke| topology.face_size(spoke)).collect();
-        let mut face_vertices = Vec::new();
-        for (&spoke, &size) in fan.iter().zip(&face_sizes) {
-            for h in std::iter::successors(Some(spoke), |&h| Some(topology.next(h))).take(size as usize) {
-                let vertex = topology.mesh_vertex(h);
-                face_vertices.push(*numbers.entry(vertex).or_insert_with(|| {
-                    vertices.push(around.first_vertex + vertex);
-                    vertices.len() as u32 - 1
-                }));
-            }
-        }
-        let inner = fan.iter().filter(|&&spoke| topology.twin(spoke).is_some());
-        let edge = |&h: &u32| (numbers[&topology.mesh_vertex(topology.next(h))], topology.sharpness(h).to_bits());
-        let vertex_sharpness = topology.vertex_sharpness(topology.mesh_vertex(h)).to_bits();
-        (Self { face_sizes, face_vertices, vertex_sharpness, edges: inner.map(edge).collect() }, vertices)
-    }
-
-    /// The limit as a sum of the vertices here: refined until nothing at the vertex is of finite sharpness, masks tell it.
-    fn limit(&self, topology: &Topology) -> Result<Row, MeshError> {
-        let crease = |&(end, bits): &(u32, u32)| Crease { vertices: [0, end], sharpness: f32::from_bits(bits) };
-        let count = self.face_vertices.iter().max().map_or(0, |&last| last + 1);
-        let mut data = MeshData {
-            positions: vec![[0.0; 3]; count as usize],
-            face_sizes: self.face_sizes.clone(),
-            face_vertices: self.face_vertices.clone(),
-            creases: self.edges.iter().map(crease).collect(),
-            corners: vec![Corner { vertex: 0, sharpness: f32::from_bits(self.vertex_sharpness) }],
-            boundary: topology.mesh().data().boundary,
-            triangle_rule: topology.mesh().data().triangle_rule,
-            ..MeshData::default()
-        };
-        let mut rows: Vec<Row> = (0..count).map(Row::unit).collect();
-        let mut steps = 0;
-        loop {
-            let starts = data.face_sizes.iter().scan(0, |start, size| Some(std::mem::replace(start, *start + size)));
-            let starts: Vec<u32> = starts.collect();
-            let topology = Topology::new(&ControlMesh::new(data)?);
-            if steps > 0 && !has_finite_sharpness(&topology, 0) {
-                let ring = &topology.rings()[topology.place(0).ring as usize];
-                let values = RingValues::new(&topology, ring, |v| rows[v as usize].clone());
-                let dart = dart_edge(&topology, ring);
-                return Ok(dart.map_or_else(|| values.frame(), |sharp| dart_frame(&values, sharp)).p);
-            }
-            let part = refine_part(&topology, &starts);
-            let coarse = std::mem::take(&mut rows);
-            for row in 0..part.rows.len() {
-                // Centres, numbered after the coarse vertices, come first.
-                let value =
-                    |vertex: u32| coarse.get(vertex as usize).unwrap_or_else(|| &rows[vertex as usize - coarse.len()]);
-                rows.push(Row::sum(part.rows.row(row).map(|(vertex, weight)| (weight, value(vertex)))));
-            }
-            data = part.data;
-            steps += 1;
-        }
     }
 }

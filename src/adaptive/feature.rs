@@ -4,7 +4,7 @@ use super::options::AdaptiveOptions;
 use crate::limit::is_semi_sharp;
 use crate::mesh::{BoundaryRule, CreaseMethod, SHARPNESS_INFINITE};
 use crate::named::named;
-use crate::topology::Topology;
+use crate::topology::{RingKind, Topology};
 
 named! {
     /// Why a cell is refined.
@@ -49,6 +49,15 @@ impl Class {
         let Self::Feature(feature) = self else { return None };
         let lasting = feature.lasting.filter(|_| level < options.depth);
         lasting.or(feature.sharp.filter(|_| level < options.sharp_depth()))
+    }
+
+    /// Whether nothing at the vertex is of finite sharpness, and it is no dart.
+    pub(super) fn is_settled(&self) -> bool {
+        match self {
+            Self::Plain => true,
+            Self::Crease => false,
+            Self::Feature(feature) => feature.settled,
+        }
     }
 }
 
@@ -123,12 +132,8 @@ impl Fan {
 
 /// The class of the vertex from which a half-edge starts.
 pub(super) fn classify(topology: &Topology, half_edge: u32) -> Class {
-    let data = topology.mesh().data();
-    if data.creases.is_empty() && data.corners.is_empty() && !topology.touches(topology.mesh_vertex(half_edge)) {
-        // There is one ring around the vertex.
-        if topology.rings()[topology.place(half_edge).ring as usize].is_regular() {
-            return Class::Plain;
-        }
+    if is_plain(topology, half_edge) {
+        return Class::Plain;
     }
     let fan = Fan::new(topology, half_edge);
     if fan.is_crease(topology) {
@@ -155,12 +160,23 @@ pub(super) fn classify(topology: &Topology, half_edge: u32) -> Class {
     Class::Feature(Feature { lasting, sharp, settled })
 }
 
-/// Whether nothing at the vertex from which a half-edge starts is of finite sharpness, and it is no dart.
-pub(super) fn is_settled(topology: &Topology, half_edge: u32) -> bool {
-    Fan::new(topology, half_edge).is_settled()
+/// Whether a look at one ring tells that the vertex from which a half-edge starts is [`Class::Plain`].
+fn is_plain(topology: &Topology, half_edge: u32) -> bool {
+    let ring = &topology.rings()[topology.place(half_edge).ring as usize];
+    let vertex = topology.mesh_vertex(half_edge);
+    if !ring.is_regular() || topology.touches(vertex) {
+        return false;
+    }
+    let data = topology.mesh().data();
+    if data.creases.is_empty() && data.corners.is_empty() {
+        // There is one ring around the vertex.
+        return true;
+    }
+    let is_smooth = ring.kind == RingKind::Smooth && topology.vertex_sharpness(vertex) == 0.0;
+    is_smooth && topology.ring_half_edges(ring).all(|h| topology.sharpness(h) == 0.0)
 }
 
-/// Whether something there is of finite sharpness.
+/// Whether something at the vertex from which a half-edge starts is of finite sharpness.
 pub(super) fn has_finite_sharpness(topology: &Topology, half_edge: u32) -> bool {
     Fan::new(topology, half_edge).has_finite_sharpness()
 }

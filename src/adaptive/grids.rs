@@ -3,6 +3,9 @@
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::Topology;
 
+/// In the place of a vertex.
+pub(super) const NONE: u32 = u32::MAX;
+
 /// Number of a control point: index i along u, j along v.
 const fn at(i: usize, j: usize) -> usize {
     4 * i + j
@@ -23,24 +26,24 @@ pub(super) fn is_boundary(topology: &Topology, half_edge: u32) -> bool {
     topology.sharpness(half_edge) >= SHARPNESS_INFINITE
 }
 
-/// The vertices of the grid around a regular face with these half-edges, `None` beyond its boundaries.
-pub(super) fn grid(topology: &Topology, half_edges: [u32; 4]) -> [Option<u32>; 16] {
-    let mut grid = [None; 16];
+/// The vertices of the grid around a regular face with these half-edges, [`NONE`] beyond its boundaries.
+pub(super) fn grid(topology: &Topology, half_edges: [u32; 4]) -> [u32; 16] {
+    let mut grid = [NONE; 16];
     for (h, [corner, before_plus, before_minus, opposite]) in half_edges.into_iter().zip(AROUND) {
-        grid[corner] = Some(topology.mesh_vertex(h));
+        grid[corner] = topology.mesh_vertex(h);
         // The face on the other side of an edge is part of the grid unless the surface ends there.
         let across = |h: u32| if is_boundary(topology, h) { None } else { topology.twin(h) };
         let (beyond_plus, beyond_minus) = (across(h), across(topology.prev(h)));
         if let Some(twin) = beyond_plus {
-            grid[before_minus] = Some(topology.mesh_vertex(topology.next(topology.next(twin))));
+            grid[before_minus] = topology.mesh_vertex(topology.next(topology.next(twin)));
         }
         if let Some(twin) = beyond_minus {
             // `twin` starts from the corner.
             let spoke = topology.prev(twin);
-            grid[before_plus] = Some(topology.mesh_vertex(spoke));
+            grid[before_plus] = topology.mesh_vertex(spoke);
             if beyond_plus.is_some() {
                 let far = topology.twin(spoke).map(|spoke| topology.next(topology.next(spoke)));
-                grid[opposite] = far.map(|h| topology.mesh_vertex(h));
+                grid[opposite] = far.map_or(NONE, |h| topology.mesh_vertex(h));
             }
         }
     }
@@ -49,7 +52,7 @@ pub(super) fn grid(topology: &Topology, half_edges: [u32; 4]) -> [Option<u32>; 1
 
 /// Fills a grid beyond its boundaries (a bit each, as in [`Leaf::boundary`](super::Leaf::boundary)): `ghost(b, i)` is the
 /// point `2 b - i`.
-pub(super) fn fill(grid: &mut [Option<u32>; 16], boundary: u32, mut ghost: impl FnMut(u32, u32) -> u32) {
+pub(super) fn fill(grid: &mut [u32], boundary: u32, mut ghost: impl FnMut(u32, u32) -> u32) {
     let line = |edge: u32, across: usize, along: usize| match edge {
         0 => at(along, across),
         1 => at(3 - across, along),
@@ -60,8 +63,8 @@ pub(super) fn fill(grid: &mut [Option<u32>; 16], boundary: u32, mut ghost: impl 
     for edge in (0..8).map(|i| i % 4).filter(|edge| boundary >> edge & 1 == 1) {
         for along in 0..4 {
             let [outer, on, inner] = [0, 1, 2].map(|across| line(edge, across, along));
-            if let (None, Some(b), Some(i)) = (grid[outer], grid[on], grid[inner]) {
-                grid[outer] = Some(ghost(b, i));
+            if grid[outer] == NONE && grid[on] != NONE && grid[inner] != NONE {
+                grid[outer] = ghost(grid[on], grid[inner]);
             }
         }
     }

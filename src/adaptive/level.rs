@@ -3,7 +3,7 @@
 use super::feature::{Class, Reason, Shape, classify, is_constant, shape};
 use super::options::AdaptiveOptions;
 use crate::limit::{Part, Stencils, refine_part};
-use crate::mesh::{ControlMesh, CreaseMethod, MeshError};
+use crate::mesh::{CreaseMethod, MeshError};
 use crate::topology::Topology;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -12,7 +12,7 @@ use std::borrow::Cow;
 const NONE: u32 = u32::MAX;
 
 /// Vertices, or faces, for one thread at least.
-const MIN_LEN: usize = 1024;
+pub(super) const MIN_LEN: usize = 1024;
 
 /// Where a face of a level lies.
 #[derive(Debug, Clone, Copy)]
@@ -49,8 +49,8 @@ pub(super) enum Fate {
 }
 
 impl Level<'_> {
-    /// What becomes of each face.
-    pub(super) fn fates(&self, options: &AdaptiveOptions) -> Vec<Fate> {
+    /// What the vertices of the plan's own faces ask, and what becomes of each face.
+    pub(super) fn fates(&self, options: &AdaptiveOptions) -> (Vec<Class>, Vec<Fate>) {
         let topology = &*self.topology;
         // A half-edge from each vertex of the plan's own faces.
         let mut starts = vec![NONE; topology.vertex_count()];
@@ -64,7 +64,8 @@ impl Level<'_> {
             true => self.fate(face as u32, class, options),
             false => Fate::Support,
         };
-        self.cells.par_iter().enumerate().with_min_len(MIN_LEN).map(fate).collect()
+        let fates = self.cells.par_iter().enumerate().with_min_len(MIN_LEN).map(fate).collect();
+        (classes, fates)
     }
 
     fn fate(&self, face: u32, class: impl Fn(u32) -> Class, options: &AdaptiveOptions) -> Fate {
@@ -101,28 +102,27 @@ impl Level<'_> {
         [0, 1, 2, 3].map(|corner| start + (corner + 4 - first) % 4)
     }
 
-    /// The next level: the children of the refined faces and all faces around them; its vertices as sums; and the faces of five
-    /// and more corners whose points are its first vertices. `child` tells the cell of a face's child around its corner.
+    /// The next level: the children of the refined faces and all faces around them; its vertices as sums, in pieces; and the
+    /// faces of five and more corners whose points are its first vertices. `child` tells the cell of a face's child around its
+    /// corner.
     pub(super) fn refine(
         &self,
         fates: &[Fate],
         first_vertex: u32,
-        child: impl Fn(u32, u32) -> Cell,
-    ) -> Result<(Level<'static>, Stencils, Vec<u32>), MeshError> {
+        child: impl Fn(u32, u32) -> Cell + Sync,
+    ) -> Result<(Level<'static>, Vec<Stencils>, Vec<u32>), MeshError> {
         let topology = &*self.topology;
         let half_edges = self.half_edges_with_children(fates);
-        let Part { data, mut rows, centres } = refine_part(topology, &half_edges);
         let own = topology.mesh().vertex_count() as u32;
-        for vertex in &mut rows.indices {
-            *vertex = if *vertex < own { self.first_vertex + *vertex } else { first_vertex + (*vertex - own) };
-        }
+        let number = |vertex| if vertex < own { self.first_vertex + vertex } else { first_vertex + (vertex - own) };
+        let Part { mesh, rows, centres } = refine_part(topology, &half_edges, number)?;
         let cell = |&h: &u32| {
             let face = topology.face(h);
             let cell = child(face, h - topology.mesh().face_corners(face).start as u32);
             Cell { own: matches!(fates[face as usize], Fate::Refined(_)), ..cell }
         };
-        let cells = half_edges.iter().map(cell).collect();
-        let topology = Cow::Owned(Topology::new(&ControlMesh::new(data)?));
+        let cells = half_edges.par_iter().with_min_len(MIN_LEN).map(cell).collect();
+        let topology = Cow::Owned(Topology::new(&mesh));
         Ok((Level { number: self.number + 1, topology, first_vertex, cells }, rows, centres))
     }
 

@@ -20,6 +20,7 @@
 //! Exceptions: faces other than quads are refined at depth 0 too, so their leaves of level 1 meet end caps of level 0; with two
 //! depths, caps at the lesser one meet cells up to the greater.
 
+mod alone;
 mod build;
 mod caps;
 mod counts;
@@ -27,8 +28,12 @@ mod crease;
 mod error;
 mod evaluate;
 mod feature;
+mod few;
+mod finish;
 mod grids;
+mod leaves;
 mod level;
+mod look;
 mod options;
 mod plan;
 mod rows;

@@ -127,6 +127,25 @@ impl<T> RingValues<T> {
     }
 }
 
+impl<T> RingValues<T> {
+    /// The ring with other values.
+    pub(crate) fn map<U>(&self, value: impl Fn(&T) -> U) -> RingValues<U> {
+        RingValues {
+            shape: self.shape.clone(),
+            centre: value(&self.centre),
+            edges: self.edges.iter().map(&value).collect(),
+            diagonals: self.diagonals.iter().map(&value).collect(),
+        }
+    }
+}
+
+impl<T> Frame<T> {
+    /// The frame with other values.
+    pub(crate) fn map<U>(&self, value: impl Fn(&T) -> U) -> Frame<U> {
+        Frame { p: value(&self.p), a: value(&self.a), b: value(&self.b) }
+    }
+}
+
 impl<T: Blend> RingValues<T> {
     /// The ring with the value of `vertex(v)` at mesh vertex `v`.
     pub fn new(topology: &Topology, ring: &Ring, vertex: impl Fn(u32) -> T) -> Self {

@@ -19,5 +19,6 @@ pub(crate) use part::{Part, refine_part};
 pub use refine::{Refined, refine};
 pub use sample::LimitSample;
 pub(crate) use sharpness::{EdgeProfile, LEVELS, is_semi_sharp};
+pub(crate) use stencils::RowsMut;
 pub use stencils::Stencils;
 pub use surface::LimitSurface;

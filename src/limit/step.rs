@@ -8,6 +8,7 @@ use crate::mesh::{BoundaryRule, Corner, Crease, MeshData, SHARPNESS_INFINITE, Tr
 use crate::topology::Topology;
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxBuildHasher;
 use std::collections::HashMap;
 
 /// The refined mesh without what it has by face corner, and without holes; its positions as sums of the coarse mesh's.
@@ -74,12 +75,14 @@ pub(super) struct Step<'t> {
     edges: Vec<u32>,
     /// A half-edge of each edge.
     edge_half_edges: Vec<u32>,
-    /// The sharp edge ends of the vertices that have any.
-    sharp_ends: HashMap<u32, Vec<(u32, SharpEnd)>>,
-    /// Sharpness of the manifold vertices that have any.
-    vertex_sharpness: HashMap<u32, f32>,
+    /// The sharp edge ends, by manifold vertex, each with its edge.
+    sharp_ends: Vec<(u32, SharpEnd)>,
+    /// Where those of each manifold vertex start, and after the last vertex their number.
+    sharp_starts: Vec<u32>,
+    /// Sharpness of the manifold vertices.
+    vertex_sharpness: Vec<f32>,
     /// Faces whose point rows take as an unknown of its own.
-    pub(super) centres: HashMap<u32, u32>,
+    pub(super) centres: HashMap<u32, u32, FxBuildHasher>,
 }
 
 impl<'t> Step<'t> {
@@ -100,9 +103,10 @@ impl<'t> Step<'t> {
             topology,
             edges,
             edge_half_edges,
-            sharp_ends: HashMap::new(),
-            vertex_sharpness: HashMap::new(),
-            centres: HashMap::new(),
+            sharp_ends: Vec::new(),
+            sharp_starts: vec![0; topology.vertex_count() + 1],
+            vertex_sharpness: vec![0.0; topology.vertex_count()],
+            centres: HashMap::default(),
         };
         step.find_sharp_ends();
         step.find_sharp_vertices();
@@ -141,7 +145,7 @@ impl<'t> Step<'t> {
 
     /// Whether nothing at a manifold vertex is sharp.
     pub(super) fn is_smooth(&self, vertex: u32) -> bool {
-        !self.sharp_ends.contains_key(&vertex) && !self.vertex_sharpness.contains_key(&vertex)
+        self.ends_at(vertex).is_empty() && self.vertex_sharpness[vertex as usize] == 0.0
     }
 
     /// A half-edge of an edge.
@@ -149,14 +153,19 @@ impl<'t> Step<'t> {
         self.edge_half_edges[edge as usize]
     }
 
-    /// The creases along the two edges of a face corner's child that start from there.
-    pub(super) fn creases_at(&self, h: u32) -> impl Iterator<Item = Crease> {
+    /// Whether there are any.
+    pub(super) fn has_sharp_edges(&self) -> bool {
+        !self.sharp_ends.is_empty()
+    }
+
+    /// The creases along the two edges of a face corner's child that meet there, with the half-edges' places in the child.
+    pub(super) fn creases_at(&self, h: u32) -> impl Iterator<Item = (usize, Crease)> {
         let vertex = self.topology.vertex(h);
-        [h, self.topology.prev(h)].into_iter().filter_map(move |edge| {
-            // The map knows what is sharp; a boundary edge is sharp without a tag.
+        [(0, h), (3, self.topology.prev(h))].into_iter().filter_map(move |(corner, edge)| {
+            // A boundary edge is sharp without a tag.
             let sharpness = self.child_sharpness(self.edges[edge as usize], vertex);
             let is_tag = sharpness > 0.0 && self.topology.twin(edge).is_some();
-            is_tag.then_some(Crease { vertices: [vertex, self.edge_vertex(edge)], sharpness })
+            is_tag.then_some((corner, Crease { vertices: [vertex, self.edge_vertex(edge)], sharpness }))
         })
     }
 
@@ -174,23 +183,36 @@ impl<'t> Step<'t> {
         [self.topology.vertex(h), self.topology.vertex(self.topology.next(h))]
     }
 
+    /// The sharp ends of edges at a manifold vertex.
+    fn ends_at(&self, vertex: u32) -> &[(u32, SharpEnd)] {
+        let vertex = vertex as usize;
+        &self.sharp_ends[self.sharp_starts[vertex] as usize..self.sharp_starts[vertex + 1] as usize]
+    }
+
     fn find_sharp_ends(&mut self) {
         let topology = self.topology;
+        let mut found = Vec::new();
         for (edge, &h) in (0..).zip(&self.edge_half_edges) {
             let sharpness = topology.sharpness(h);
             if sharpness > 0.0 {
                 let [a, b] = self.ends(edge);
                 for (near, far) in [(a, b), (b, a)] {
-                    let end = SharpEnd { far: topology.source(far), sharpness, child: 0.0 };
-                    self.sharp_ends.entry(near).or_default().push((edge, end));
+                    found.push((near, (edge, SharpEnd { far: topology.source(far), sharpness, child: 0.0 })));
+                    self.sharp_starts[near as usize + 1] += 1;
                 }
             }
         }
-        for ends in self.sharp_ends.values_mut() {
-            let sharpness: Vec<f32> = ends.iter().map(|(_, end)| end.sharpness).collect();
-            let children = children(topology.mesh().data().crease_method, &sharpness);
-            ends.iter_mut().zip(children).for_each(|((_, end), child)| end.child = child);
+        // Edges at a vertex keep their order.
+        found.sort_by_key(|&(near, _)| near);
+        for vertex in 1..self.sharp_starts.len() {
+            self.sharp_starts[vertex] += self.sharp_starts[vertex - 1];
         }
+        for ends in found.chunk_by_mut(|a, b| a.0 == b.0) {
+            let sharpness: Vec<f32> = ends.iter().map(|(_, (_, end))| end.sharpness).collect();
+            let children = children(topology.mesh().data().crease_method, &sharpness);
+            ends.iter_mut().zip(children).for_each(|((_, (_, end)), child)| end.child = child);
+        }
+        self.sharp_ends = found.into_iter().map(|(_, end)| end).collect();
     }
 
     fn find_sharp_vertices(&mut self) {
@@ -203,7 +225,7 @@ impl<'t> Step<'t> {
                 false => topology.vertex_sharpness(topology.mesh_vertex(h)),
             };
             if sharpness > 0.0 {
-                self.vertex_sharpness.insert(topology.vertex(h), sharpness);
+                self.vertex_sharpness[topology.vertex(h) as usize] = sharpness;
             }
         }
     }
@@ -273,15 +295,13 @@ impl<'t> Step<'t> {
     }
 
     fn child_sharpness(&self, edge: u32, vertex: u32) -> f32 {
-        let ends = self.sharp_ends.get(&vertex).map_or(&[][..], Vec::as_slice);
-        ends.iter().find(|(e, _)| *e == edge).map_or(0.0, |(_, end)| end.child)
+        self.ends_at(vertex).iter().find(|(e, _)| *e == edge).map_or(0.0, |(_, end)| end.child)
     }
 
     fn vertex_row(&self, half_edge: u32) -> Row {
         let vertex = self.topology.vertex(half_edge);
-        let none = Vec::new();
-        let ends = self.sharp_ends.get(&vertex).unwrap_or(&none);
-        let sharpness = self.vertex_sharpness.get(&vertex).copied().unwrap_or(0.0);
+        let ends = self.ends_at(vertex);
+        let sharpness = self.vertex_sharpness[vertex as usize];
         let rule = |sharpness: f32, of: fn(&SharpEnd) -> f32| {
             let sharp: Vec<u32> = ends.iter().filter(|(_, e)| of(e) > 0.0).map(|(_, e)| e.far).collect();
             match *sharp {

@@ -169,6 +169,20 @@ impl ControlMesh {
         Ok(Self { checked: Arc::new(Checked { data, face_offsets, twins, edge_sharpness, vertex_sharpness }) })
     }
 
+    /// A mesh of quads, with what is known about it: twins, and the sharpness of half-edges, empty where there are no creases.
+    /// Face sizes need not be given.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`]; the rest is not checked.
+    pub(crate) fn of_quads(mut data: MeshData, twins: Vec<u32>, edge_sharpness: Vec<f32>) -> Result<Self, MeshError> {
+        check_size(&data)?;
+        let corners = data.face_vertices.len() as u32;
+        data.face_sizes = vec![4; corners as usize / 4];
+        let face_offsets = (0..=corners).step_by(4).collect();
+        let vertex_sharpness = vertex_sharpness(&data);
+        Ok(Self { checked: Arc::new(Checked { data, face_offsets, twins, edge_sharpness, vertex_sharpness }) })
+    }
+
     /// The parts, as given (holes sorted).
     pub fn data(&self) -> &MeshData {
         &self.checked.data
@@ -287,12 +301,7 @@ fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     if data.face_sizes.is_empty() {
         return Err(MeshError::Empty { what: "faces" });
     }
-    let max = MAX_CORNERS;
-    for (what, count) in [("vertices", count), ("face corners", data.face_vertices.len())] {
-        if count > max {
-            return Err(MeshError::TooLarge { what, count, max });
-        }
-    }
+    check_size(data)?;
     let mut face_offsets = Vec::with_capacity(data.face_sizes.len() + 1);
     let mut corners = 0usize;
     face_offsets.push(0);
@@ -327,6 +336,16 @@ fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     check_face_varying("texture coordinate", data.texcoords.as_ref(), corners)?;
     check_face_varying("normal", data.normals.as_ref(), corners)?;
     Ok(face_offsets)
+}
+
+fn check_size(data: &MeshData) -> Result<(), MeshError> {
+    let max = MAX_CORNERS;
+    for (what, count) in [("vertices", data.positions.len()), ("face corners", data.face_vertices.len())] {
+        if count > max {
+            return Err(MeshError::TooLarge { what, count, max });
+        }
+    }
+    Ok(())
 }
 
 fn check_face_varying<const N: usize>(

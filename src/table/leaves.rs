@@ -6,6 +6,7 @@ use crate::constants::{
     FACE_WORDS, LEAF_BIT, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, MAX_DEPTH, NORMAL_OWNERS, OWNER_NONE,
     OWNER_SHIFT,
 };
+use crate::limit::Stencils;
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::{PatchKind, Topology};
 use rayon::prelude::*;
@@ -130,12 +131,27 @@ const CAP_ORDER: [usize; 20] = [0, 5, 10, 3, 4, 12, 18, 11, 7, 14, 16, 8, 1, 6, 
 
 /// Has the control points of end caps in [`CAP_ORDER`].
 fn order_caps(plan: &mut adaptive::Plan) {
+    let Stencils { offsets, indices, weights } = &mut plan.rows;
     let first = (plan.cap_points.start - plan.control_vertices) as usize;
-    let caps = first..plan.rows.len();
-    let points: Vec<usize> = caps.step_by(CAP_ORDER.len()).flat_map(|cap| CAP_ORDER.map(|point| cap + point)).collect();
-    let rows: Vec<Vec<(u32, f64)>> = points.into_iter().map(|point| plan.rows.row(point).collect()).collect();
-    plan.rows.truncate(first);
-    rows.into_iter().for_each(|row| plan.rows.push(row));
+    let (mut old_indices, mut old_weights) = (Vec::new(), Vec::new());
+    for cap in (first..offsets.len() - 1).step_by(CAP_ORDER.len()) {
+        let old: [u32; CAP_ORDER.len() + 1] = std::array::from_fn(|point| offsets[cap + point]);
+        let start = old[0] as usize;
+        let end = old[CAP_ORDER.len()] as usize;
+        old_indices.clear();
+        old_weights.clear();
+        old_indices.extend_from_slice(&indices[start..end]);
+        old_weights.extend_from_slice(&weights[start..end]);
+        let mut at = start;
+        for (i, point) in CAP_ORDER.into_iter().enumerate() {
+            let terms = old[point] as usize - start..old[point + 1] as usize - start;
+            let place = at..at + terms.len();
+            indices[place.clone()].copy_from_slice(&old_indices[terms.clone()]);
+            weights[place.clone()].copy_from_slice(&old_weights[terms]);
+            at = place.end;
+            offsets[cap + i + 1] = at as u32;
+        }
+    }
 }
 
 /// Who makes what patches share.

@@ -18,11 +18,13 @@ pub const SHARP_FROM: f32 = 1.0;
 /// of a vertex between sharp edges: around most vertices there is just one.
 ///
 /// # Panics
-/// Methods that take the number of a half-edge, a face or a vertex panic if there is none with that number.
+/// Methods that take the number of a half-edge, a face or a vertex may panic if there is none with that number.
 #[derive(Debug, Clone)]
 pub struct Topology {
     pub(super) mesh: ControlMesh,
-    /// The face of each half-edge.
+    /// Whether all faces are quads: half-edge h is then corner h % 4 of face h / 4.
+    pub(super) quads: bool,
+    /// The face of each half-edge; empty where all faces are quads.
     pub(super) faces: Vec<u32>,
     /// The manifold vertex of each half-edge; empty where nothing had to be split.
     pub(super) vertices: Vec<u32>,
@@ -69,16 +71,25 @@ impl Topology {
 
     /// The face on the left of a half-edge.
     pub fn face(&self, half_edge: u32) -> u32 {
+        if self.quads {
+            return half_edge / 4;
+        }
         self.faces[half_edge as usize]
     }
 
     /// The number of corners of the face on the left of a half-edge.
     pub fn face_size(&self, half_edge: u32) -> u32 {
+        if self.quads {
+            return 4;
+        }
         self.mesh.data().face_sizes[self.face(half_edge) as usize]
     }
 
     /// The next half-edge around the face, counter-clockwise.
     pub fn next(&self, half_edge: u32) -> u32 {
+        if self.quads {
+            return half_edge & !3 | (half_edge + 1) & 3;
+        }
         let offsets = self.mesh.face_offsets();
         let face = self.face(half_edge) as usize;
         if half_edge + 1 == offsets[face + 1] { offsets[face] } else { half_edge + 1 }
@@ -86,6 +97,9 @@ impl Topology {
 
     /// The previous half-edge around the face.
     pub fn prev(&self, half_edge: u32) -> u32 {
+        if self.quads {
+            return half_edge & !3 | (half_edge + 3) & 3;
+        }
         let offsets = self.mesh.face_offsets();
         let face = self.face(half_edge) as usize;
         if half_edge == offsets[face] { offsets[face + 1] - 1 } else { half_edge - 1 }
@@ -157,19 +171,24 @@ impl Topology {
 
     /// Puts the half-edges of [`Topology::fan`] in the place of what is in `fan`.
     pub(super) fn walk(&self, half_edge: u32, fan: &mut Vec<u32>) -> bool {
-        let mut start = half_edge;
-        let open = loop {
-            match self.twin(start) {
-                None => break true,
-                Some(twin) => start = self.next(twin),
-            }
-            if start == half_edge {
-                break false;
-            }
-        };
-        let next = |&h: &u32| self.twin(self.prev(h)).filter(|&h| h != start);
         fan.clear();
-        fan.extend(std::iter::successors(Some(start), next));
-        open
+        let mut at = half_edge;
+        loop {
+            fan.push(at);
+            match self.twin(self.prev(at)) {
+                Some(next) if next == half_edge => return false,
+                Some(next) => at = next,
+                None => break,
+            }
+        }
+        let ahead = fan.len();
+        at = half_edge;
+        while let Some(twin) = self.twin(at) {
+            at = self.next(twin);
+            fan.push(at);
+        }
+        fan[ahead..].reverse();
+        fan.rotate_left(ahead);
+        true
     }
 }

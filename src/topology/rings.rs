@@ -7,15 +7,15 @@ use crate::mesh::{BoundaryRule, ControlMesh};
 impl Topology {
     /// Walks the mesh once: linear in the number of face corners.
     pub fn new(mesh: &ControlMesh) -> Self {
-        let faces: Vec<u32> = mesh
-            .data()
-            .face_sizes
-            .iter()
-            .enumerate()
-            .flat_map(|(face, &size)| std::iter::repeat_n(face as u32, size as usize))
-            .collect();
+        let sizes = &mesh.data().face_sizes;
+        let quads = sizes.iter().all(|&size| size == 4);
+        let faces = match quads {
+            true => Vec::new(),
+            false => (0..).zip(sizes).flat_map(|(face, &size)| std::iter::repeat_n(face, size as usize)).collect(),
+        };
         let mut topology = Self {
             mesh: mesh.clone(),
+            quads,
             faces,
             vertices: Vec::new(),
             split_sources: Vec::new(),
