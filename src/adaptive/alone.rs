@@ -1,4 +1,4 @@
-//! The limit of a vertex that masks do not tell.
+//! Limit positions at vertices that no mask covers: of finite sharpness, and darts.
 
 use super::caps::Around;
 use super::feature::has_finite_sharpness;

@@ -126,8 +126,8 @@ impl Level<'_> {
         Ok((Level { number: self.number + 1, topology, first_vertex, cells }, rows, centres))
     }
 
-    /// The face corners whose children are refined faces' or touch one; by Chaikin's method, which looks further, one ring
-    /// more.
+    /// Half-edges whose children the next level needs: those of refined faces and of the ring around them; by Chaikin's method, of one
+    /// ring more.
     fn half_edges_with_children(&self, fates: &[Fate]) -> Vec<u32> {
         let topology = &*self.topology;
         let all = 0..topology.mesh().corner_count() as u32;

@@ -15,7 +15,7 @@ pub(super) struct Seen {
 
 /// What was seen around a cap.
 pub(super) struct SeenCap {
-    /// Its pattern's, if it is one of a pattern.
+    /// The pattern; none if the cap has rows of its own.
     pub key: Option<usize>,
     /// Number of its vertices.
     pub vertices: usize,

@@ -15,8 +15,10 @@
 //! it draws sharpness as the scheme does ([`SHARP_FROM`](crate::topology::SHARP_FROM)).
 //!
 //! **Neighbours.** Across an edge two leaves differ by at most one level while both depths of [`AdaptiveOptions`] are the same.
-//! Two rules see to that, which refine more than the surface needs: all faces around a feature are refined, those too which an
-//! infinitely sharp crease parts from it; and by Chaikin's method a single crease has to be constant one edge further.
+//! Two rules see to that, and refine more than the surface needs:
+//! * all faces around a feature are refined, also those beyond an infinitely sharp crease;
+//! * by Chaikin's method, a single crease has to be constant one edge further.
+//!
 //! Exceptions: faces other than quads are refined at depth 0 too, so their leaves of level 1 meet end caps of level 0; with two
 //! depths, caps at the lesser one meet cells up to the greater.
 

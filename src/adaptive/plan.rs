@@ -18,8 +18,13 @@ pub struct Plan {
     /// Number of control vertices, which are the first vertices of the plan.
     pub control_vertices: u32,
     /// The vertices after the control vertices as sums: row i makes vertex `control_vertices + i`, of vertices with lower
-    /// numbers. A refined vertex sums those of the level before, or centres; ghost vertices and frames those of any level; a cap's
-    /// control points those of any level, or frames.
+    /// numbers:
+    ///
+    /// | vertex | sums |
+    /// |---|---|
+    /// | refined | vertices of the level before, centres |
+    /// | ghost, frame | vertices of any level |
+    /// | control point of a cap | vertices of any level, centres, frames |
     pub rows: Stencils,
     /// The refined vertices of levels 1, 2, ..: their numbers. Each level follows on the one before.
     pub levels: Vec<Range<u32>>,

@@ -10,7 +10,7 @@ use std::ops::Range;
 const MIN_LEN: usize = 256;
 
 impl Plan {
-    /// Number of vertices: control vertices, refined vertices, ghost vertices, control points of end caps.
+    /// Number of vertices: control vertices, refined vertices, ghost vertices, frames, control points of end caps.
     pub fn vertex_count(&self) -> usize {
         self.control_vertices as usize + self.rows.len()
     }

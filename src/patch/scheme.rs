@@ -1,8 +1,8 @@
 //! The schemes, each a way to approximate the Catmull-Clark surface by patches, one a face.
 //!
 //! A scheme is three things: a file beside this one with its construction and evaluation, a folder `glsl/schemes/NAME` with the same
-//! as shaders, and its registration: its arms in this file, and its patches in `renderer/shader/axes.rs`. Regular faces are
-//! bicubic patches in every scheme.
+//! as shaders, and its registration: its arms in this file, its patches in `renderer/shader/axes.rs`, and in
+//! `renderer/shader/key.rs` which of them each kind of face has. Regular faces are bicubic patches in every scheme.
 
 use super::fitted::Fit;
 use super::{FallbackRings, acc, fitted, gregory, pm};

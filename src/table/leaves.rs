@@ -97,7 +97,7 @@ impl LeafTable {
     }
 }
 
-/// Whether a face is no leaf itself, which a bicubic patch draws.
+/// Whether a face is refined: it is not, if one regular leaf covers it.
 pub(super) fn is_refined(plan: &adaptive::Plan, face: u32) -> bool {
     let roots = plan.face_roots[face as usize]..plan.face_roots[face as usize + 1];
     let whole = |root: u32| match plan.nodes[root as usize] {

@@ -26,7 +26,7 @@ uvec4 leaf_four(uint i) {
 // The patch that is evaluated, among all of the model.
 uint evaluated_patch;
 
-// A uniform cubic B-spline: what its points count at t, and for half of the derivative.
+// Weights of the control points of a curve: of the value, and of something in the direction of the derivative.
 struct Spline {
     vec4 value, slope;
 };
@@ -122,7 +122,7 @@ Surface evaluate_leaf(uint leaf, vec2 at) {
         }
     }
     if (is_cap) {
-        // The other inner point of each corner, and between which of both the patch has it.
+        // The face points f+ and f- of each corner, blended by (u, v).
         precise float s = 1.0 - at.x, t = 1.0 - at.y;
 #define INNER(i, j, k, a, b) \
     { \
@@ -175,7 +175,7 @@ uint normal_owner_of(uint edge_or_corner) {
     return table_words[tables.faces + FACE_WORDS * evaluated_patch + NORMAL_OWNERS + edge_or_corner];
 }
 
-// Where a point of an edge or a corner is on the side of the owner: on an edge, `back` from the end of the patch's own.
+// (u, v) of an edge's point, or of a corner, in the owner's face; `back` is its distance from the end of this patch's edge.
 vec2 place_of(uint owner, uint edge_or_corner, vec2 at, float back) {
     uint k = owner & 3u;
     bool is_own = owner >> OWNER_SHIFT == evaluated_patch && k == (edge_or_corner & 3u);

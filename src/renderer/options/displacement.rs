@@ -31,8 +31,8 @@ impl From<&crate::headless::Texture> for DisplacementMap {
     }
 }
 
-/// Names a displacement map of a [`Renderer`](crate::renderer::Renderer) by how many it was told of before. That of another renderer is not
-/// told apart.
+/// Index of a displacement map of a [`Renderer`](crate::renderer::Renderer), in the order in which they were added. It is not checked
+/// against another renderer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct DisplacementId(pub(crate) usize);
 

@@ -18,8 +18,8 @@ pub struct View {
     /// Whether it shows a mirror image, as of a lake: then triangles wind the other way in the picture than in space, which
     /// [`Cull::back`](crate::renderer::Cull::back) has to know.
     pub mirrored: bool,
-    /// What factors and culling go by, if not by this view itself: such as the main view for its shadows, so that both are of
-    /// the same triangles (and then without culling), or a view that another one is to look at.
+    /// The view that factors and culling go by, if not this one: such as the main view for its shadows, so that both have the same
+    /// triangles (and then without culling), or a view that is looked at from outside.
     pub measured_from: Option<MeasuredFrom>,
 }
 
