@@ -194,7 +194,8 @@ fn bench_records_crowds() {
     assert!(page.contains("What the host takes to record a frame"));
     assert!(!page.contains("Plots") && !page.contains("<h2>Rows"));
     let csv = fs::read_to_string(report.join("results.csv")).unwrap();
-    assert!(csv.starts_with("mesh,scheme,construction,path,normals,cull,crowd,models,") && csv.lines().count() == 7);
+    let columns = "mesh,scheme,construction,path,normals,adaptive,cull,crowd,models,";
+    assert!(csv.starts_with(columns) && csv.lines().count() == 7, "{csv}");
     fails("bench --recording 0", 2, "invalid value '0' for '--recording <MODELS>': 0 is not in 1..=100000");
 }
 
