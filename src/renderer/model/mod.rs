@@ -244,7 +244,7 @@ impl Model {
 
     /// Whether nothing has to be copied or computed in this frame.
     pub(crate) fn is_at_rest(&self, frame: u32) -> bool {
-        !self.needs_copies(frame) && !self.stale_points
+        !self.needs_copies(frame) && !self.stale_points && !self.stale_refinement
     }
 
     /// Whether compute shaders make something of it.
@@ -253,10 +253,11 @@ impl Model {
             || self.control_points.is_some() && self.evaluation != Evaluation::GeometryTwoPass
     }
 
-    /// Has the control points computed anew in the next frame, even though nothing moved.
+    /// Has control points and refined vertices computed anew in the next frame, even though nothing moved.
     #[cfg(all(feature = "measure", feature = "headless"))]
     pub(crate) fn forget_points(&mut self) {
         self.stale_points = self.control_points.is_some();
+        self.stale_refinement = self.tables.refinement().is_some();
     }
 
     /// Takes a lattice in place of another, to be evaluated in the next frame.
