@@ -109,7 +109,8 @@ fn samples_are_those_of_reference_surfaces() {
         println!("{name:28} {worst:8.1e}");
         assert!(worst < 1e-5, "{name}: {worst:e}");
     }
-    assert!(compared > 2000, "{compared} samples");
+    let least = if cfg!(shared) { 20_000 } else { 800 };
+    assert!(compared > least, "{compared} samples");
     headless.finish_silent();
 }
 
