@@ -16,3 +16,18 @@ pub enum AdaptiveError {
     #[error("level {level}: {error}")]
     Level { level: u32, error: MeshError },
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_that_cannot_be_addressed_say_what_to_do() {
+        let error = AdaptiveError::TooLarge { depth: 9, what: "vertices", count: 5_000_000_000, max: 2_147_483_647 };
+        let expected =
+            "depth 9: the plan has 5000000000 vertices, of which 2147483647 can be addressed: choose a lesser depth";
+        assert_eq!(error.to_string(), expected);
+        let vertex = MeshError::UnknownShape { name: "cub".into(), known: "cube".into() };
+        assert_eq!(AdaptiveError::Level { level: 3, error: vertex.clone() }.to_string(), format!("level 3: {vertex}"));
+    }
+}

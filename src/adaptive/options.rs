@@ -3,7 +3,7 @@
 use super::error::AdaptiveError;
 
 /// The greatest depth.
-pub const MAX_DEPTH: u32 = 10;
+pub const MAX_DEPTH: u32 = crate::constants::MAX_DEPTH;
 
 /// Depths to which faces are refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -6,14 +6,14 @@ use crate::limit::Stencils;
 use std::ops::Range;
 
 /// The bit of a node that says that it is a leaf.
-pub const LEAF: u32 = 1 << 31;
+pub const LEAF: u32 = crate::constants::LEAF_BIT;
 
 /// Which cells of which faces are leaves, and the sums that make the leaves' control points.
 ///
 /// Nothing in it depends on positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What was asked for.
+    /// Depths that were asked for.
     pub options: AdaptiveOptions,
     /// Number of control vertices, which are the first vertices of the plan.
     pub control_vertices: u32,

@@ -3,16 +3,13 @@
 use super::plan::PatchPlan;
 use crate::adaptive::{self, LEAF, LeafKind, LevelCounts};
 use crate::constants::{
-    FACE_WORDS, LEAF_BIT, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, MAX_DEPTH, NORMAL_OWNERS, OWNER_NONE,
-    OWNER_SHIFT,
+    FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE, OWNER_SHIFT,
 };
 use crate::limit::Stencils;
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::{PatchKind, Topology};
 use rayon::prelude::*;
 use std::ops::Range;
-
-const _: () = assert!(MAX_DEPTH == adaptive::MAX_DEPTH && LEAF_BIT == LEAF);
 
 /// The faces of a plan of adaptive subdivision, as shaders read them. GLSL twin: `glsl/lib/evaluate/leaves.glsl`.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +27,7 @@ pub struct LeafTable {
     pub counts: Vec<LevelCounts>,
     /// The number of the first irregular quad among all patches.
     pub first_patch: u32,
-    /// How the vertices that are not those of the mesh are made.
+    /// Sums that make the vertices which are not the mesh's.
     pub refinement: Refinement,
 }
 

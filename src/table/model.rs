@@ -142,7 +142,7 @@ impl ModelTables {
         stored.extend(refined.into_iter().map(wide));
     }
 
-    /// How the device refines the vertices of adaptive subdivision.
+    /// Sums by which the device makes the vertices of adaptive subdivision.
     pub(crate) fn refinement(&self) -> Option<&Refinement> {
         self.leaves.as_ref().map(|leaves| &leaves.refinement)
     }

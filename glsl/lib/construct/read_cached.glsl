@@ -12,6 +12,7 @@
 // Of a patch whose first corner this is, for a lattice of so many segments.
 void read_cached(uint first_corner, uint segments) {
 #ifdef MAY_BE_ADAPTIVE
+    // Patches of four corners come first in a model.
     evaluated_patch = first_corner / CORNERS;
 #endif
     for (int k = 0; k < CORNERS; ++k) {

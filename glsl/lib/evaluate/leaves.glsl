@@ -82,14 +82,8 @@ Spline creased_spline(float t, float sharpness, bool turned) {
 Spline bezier(float t) {
     precise float s = 1.0 - t;
     precise float tt = t * t, ss = s * s;
-    precise vec4 value = vec4(ss * s, 3.0 * ss * t, 3.0 * tt * s, tt * t);
     precise vec4 slope = vec4(-ss, ss - 2.0 * s * t, 2.0 * s * t - tt, tt);
-    return Spline(value, slope);
-}
-
-vec3 weighted(vec4 weights, vec3 x0, vec3 x1, vec3 x2, vec3 x3) {
-    precise vec3 sum = (weights.x * x0 + weights.y * x1) + (weights.z * x2 + weights.w * x3);
-    return sum;
+    return Spline(cubic_basis(t), slope);
 }
 
 // A leaf at its own parameters. Rust twin: `Plan::evaluate_leaf`.
@@ -137,12 +131,12 @@ Surface evaluate_leaf(uint leaf, vec2 at) {
     }
     vec3 of_u[4], slopes[4];
     for (int i = 0; i < 4; ++i) {
-        of_u[i] = weighted(in_v.value, points[i][0], points[i][1], points[i][2], points[i][3]);
-        slopes[i] = weighted(in_v.slope, points[i][0], points[i][1], points[i][2], points[i][3]);
+        of_u[i] = symmetric_sum(in_v.value, points[i][0], points[i][1], points[i][2], points[i][3]);
+        slopes[i] = symmetric_sum(in_v.slope, points[i][0], points[i][1], points[i][2], points[i][3]);
     }
-    precise vec3 position = origin + weighted(in_u.value, of_u[0], of_u[1], of_u[2], of_u[3]);
-    vec3 du = weighted(in_u.slope, of_u[0], of_u[1], of_u[2], of_u[3]);
-    vec3 dv = weighted(in_u.value, slopes[0], slopes[1], slopes[2], slopes[3]);
+    precise vec3 position = origin + symmetric_sum(in_u.value, of_u[0], of_u[1], of_u[2], of_u[3]);
+    vec3 du = symmetric_sum(in_u.slope, of_u[0], of_u[1], of_u[2], of_u[3]);
+    vec3 dv = symmetric_sum(in_u.value, slopes[0], slopes[1], slopes[2], slopes[3]);
     return Surface(position, du, dv, vec3(0.0));
 }
 

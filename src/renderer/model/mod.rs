@@ -115,7 +115,7 @@ fn table_buffer(
     Tables::new(context, (id, name), tables.options().evaluation, &arrays, first_refined)
 }
 
-/// How each group of patches is drawn, in the order of the plan.
+/// Stages of each group of patches, in the order of the plan.
 fn stages(tables: &ModelTables, options: &ModelOptions, pipelines: &ModelPipelines) -> Vec<PatchStages> {
     let &ModelOptions { construction, evaluation, spacing, .. } = options;
     let of_group = |group: &PatchGroup| {
