@@ -1,6 +1,6 @@
 //! Levels of leaves in colours, and reflection lines.
 
-use crate::common::golden;
+use crate::common::{golden, shared};
 use crate::{fails, folder, json};
 use ash_subdiv::adaptive::{AdaptiveOptions, LeafKind};
 use ash_subdiv::headless::{Headless, HeadlessOptions};
@@ -214,6 +214,23 @@ fn pictures_of_shadings_are_as_they_were() {
             let (golden, writes) = (format!("cli/{name}"), construction == "two-stage");
             wrong.extend(goldens.check(&golden, construction, [256; 2], pixels.into_raw(), writes).err());
         }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Creases of sharpness 6 on a model that was made by hand.
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn pictures_of_the_car_are_as_they_were() {
+    let headless = Headless::new(&HeadlessOptions::default()).expect("a Vulkan device");
+    let Some(goldens) = golden::of(&headless) else { return };
+    let folder = folder("car-goldens");
+    let car = shared().join("meshes/car.obj");
+    let mut wrong = Vec::new();
+    for (name, more) in [("car", "--shading lit --yaw 35 --zoom 1.6"), ("car-levels", "--shading levels --yaw -40")] {
+        let arguments = format!("{} --adaptive 6 --factor 16 --size 256x256 --samples 1 {more}", car.display());
+        let pixels = picture(&folder.join("x.png"), &arguments);
+        wrong.extend(goldens.check(&format!("cli/{name}"), "", [256; 2], pixels.into_raw(), true).err());
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
