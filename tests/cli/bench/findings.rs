@@ -220,8 +220,15 @@ fn presets_set_published_figures_beside() {
     // This is none of the sword, the head and the frog, and so beside each.
     assert_eq!((lines.len(), &lines[0]["construction"], &lines[0]["figure"]), (3, &json!("cached"), &json!(965.0)));
     assert_eq!(lines[0]["ms"], converted["rows"][0]["gpu_ms"]["median"]);
-    let none = json(&format!("bench {SMALL} --shape cube --preset ni2008-table5 --factors 1 --paths tessellation"));
-    assert_eq!((&none["options"]["instances"], none.get("published")), (&json!(9), None));
+    let one_pass = json(&format!("bench {SMALL} --shape cube --preset ni2008-table5 --paths geometry --factors 1,7"));
+    let lines = one_pass["published"].as_array().unwrap();
+    let figures: Vec<_> = lines.iter().map(|line| line["figure"].as_f64().unwrap()).collect();
+    assert_eq!((figures, &lines[0]["construction"]), (vec![389.0, 43.0, 108.0, 15.0, 44.0, 4.0], &json!("stencil")));
+    assert!((lines[1]["published_ratio"].as_f64().unwrap() - 389.0 / 43.0).abs() < 1e-12);
+    let nine = json(&format!("bench {SMALL} --shape cube --preset ni2008-nine --paths geometry-two-pass"));
+    assert_eq!((&nine["options"]["instances"], &nine["published"][0]["figure"]), (&json!(9), &json!(50.0)));
+    let none = json(&format!("bench {SMALL} --shape cube --preset ni2008-nine --paths tessellation"));
+    assert_eq!((none.get("published"), none["preset"]["note"].as_str().unwrap().contains("of 9 models")), (None, true));
 
     // Ratios are to the first figure that there is a row for; without any, a user is told.
     let few = format!("bench {SMALL} --shape cube --preset loop2009-table1 --paths tessellation");

@@ -295,7 +295,7 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --preset x",
         2,
-        "invalid value 'x' for '--preset <NAME>' [possible values: loop2009-table1, loop2009-table2, ni2008-table4, ni2008-table5, antal2007]",
+        "invalid value 'x' for '--preset <NAME>' [possible values: loop2009-table1, loop2009-table2, ni2008-table4, ni2008-table5, ni2008-nine, antal2007]",
     );
     fails(
         "bench --paths magic",
