@@ -1,6 +1,6 @@
 //! Drawables: what the race needs of every path.
 
-use super::{BenchError, Contestant, Motion, Normals, Subject};
+use super::{BenchError, Contestant, Creases, Motion, Normals, Subject};
 use crate::adaptive::AdaptiveOptions;
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
@@ -146,8 +146,16 @@ impl Contestant {
             spacing: lane.spacing,
             shared_normals: self.normals == Normals::Shared,
             refine: lane.subject.refine,
-            adaptive: self.depth.map(|depth| AdaptiveOptions { depth, ..AdaptiveOptions::default() }),
+            adaptive: self.depth.map(|depth| self.adaptive(depth, lane.subject)),
             ..ModelOptions::default()
+        }
+    }
+
+    fn adaptive(self, depth: u32, subject: &Subject) -> AdaptiveOptions {
+        AdaptiveOptions {
+            depth,
+            sharp_depth: (self.creases != Creases::Direct).then(|| depth.max(subject.levels_of_creases())),
+            refine_creases: self.creases == Creases::Refined,
         }
     }
 }

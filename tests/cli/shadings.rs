@@ -49,7 +49,7 @@ fn legend_colour(pixels: &RgbaImage, kinds: &[Vec<usize>], level: usize, kind: u
 
 /// One leaf of each level and kind: the point in its middle, and the normal there.
 fn leaves(mesh: &ControlMesh, depth: u32) -> BTreeMap<[usize; 2], [DVec3; 2]> {
-    let adaptive = Some(AdaptiveOptions { depth, sharp_depth: None });
+    let adaptive = Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });
     let surface = CpuSurface::with_options(mesh, &TableOptions { adaptive, ..TableOptions::default() }).unwrap();
     let limit = LimitSurface::new(mesh).unwrap();
     let mut leaves = BTreeMap::new();

@@ -30,7 +30,7 @@ fn sharpened(data: &MeshData, sharpness: f32) -> ControlMesh {
 /// The largest distances from the limit surface away from end caps: of positions as parts of the diagonal, and of normals. `side`
 /// samples along each side of a face.
 fn distance(headless: &Headless, mesh: &ControlMesh, construction: Construction, side: u32) -> [f64; 2] {
-    let adaptive = Some(AdaptiveOptions { depth: DEPTH, sharp_depth: None });
+    let adaptive = Some(AdaptiveOptions { depth: DEPTH, ..AdaptiveOptions::default() });
     let options = ModelOptions { adaptive, construction, ..ModelOptions::default() };
     let limit = LimitSurface::new(mesh).expect("a surface");
     let captured = Captured::new(headless, mesh, &options).expect("a model");

@@ -49,6 +49,9 @@ described! {
         pub of: String,
         #[serde(default)]
         pub copies: u32,
+        /// Sharpness of all creases, if it was given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub sharpness: Option<f32>,
         pub vertices: usize,
         pub faces: usize,
         /// Patches that are drawn, by kind.
@@ -114,12 +117,13 @@ impl DeviceOut {
 
 impl MeshOut {
     /// `of` by name, and how many times.
-    pub(super) fn new(subject: &Subject, of: &str, copies: u32) -> Self {
+    pub(super) fn new(subject: &Subject, of: &str, sharpness: Option<f32>, copies: u32) -> Self {
         let patches = PatchKind::ALL.map(|kind| (kind.name().to_owned(), subject.patch_count(kind)));
         Self {
             name: subject.name.clone(),
             of: of.to_owned(),
             copies,
+            sharpness,
             vertices: subject.mesh.vertex_count(),
             faces: subject.mesh.face_count(),
             patches: patches.into(),
@@ -127,6 +131,11 @@ impl MeshOut {
             thumbnail: None,
         }
     }
+}
+
+/// What the name of a mesh ends in whose creases all have this sharpness.
+pub(super) fn sharpness_in_name(sharpness: f32) -> String {
+    format!(", sharpness {sharpness}")
 }
 
 /// The mesh of which this one is copies; itself, if nothing is known of it.

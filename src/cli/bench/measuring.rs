@@ -2,8 +2,9 @@
 
 use super::super::error::CliError;
 use super::super::output::{Progress, note};
-use super::args::{BenchArgs, Meshes};
+use super::args::BenchArgs;
 use super::facts::{DeviceOut, LeftOut, OptionsOut};
+use super::meshes::{Meshes, Original};
 use super::recorded::{self, Recorded};
 use super::results::Results;
 use super::row::Row;
@@ -82,7 +83,7 @@ impl BenchArgs {
     /// Measures the normals of the schemes that are raced against the limit surface's. Copies of a mesh are as far.
     fn find_normal_errors(
         &self,
-        originals: &[(String, ControlMesh)],
+        originals: &[Original],
         contestants: &[Contestant],
         results: &mut Results,
     ) -> Result<(), CliError> {
@@ -92,7 +93,7 @@ impl BenchArgs {
             return Ok(());
         }
         let _progress = Progress::new("comparing with the limit surface");
-        for (of, mesh) in originals {
+        for Original { name: of, mesh, .. } in originals {
             let errors = normal_errors(mesh, &schemes, self.refine)?;
             results.meshes.iter_mut().filter(|mesh| mesh.of == *of).for_each(|mesh| mesh.normal_error = errors.clone());
         }

@@ -2,7 +2,7 @@
 
 use super::super::cull;
 use super::super::described::described;
-use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, CullBy, Motion, Normals, Series, Subject};
+use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Creases, CullBy, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use ash_subdiv::renderer::Cull;
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,11 @@ fn moving() -> String {
     Motion::Moving.name().to_owned()
 }
 
+/// Likewise.
+fn direct() -> String {
+    Creases::Direct.name().to_owned()
+}
+
 described! {
     /// Contestant of a row.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -58,6 +63,9 @@ described! {
         /// Depth of an adaptive surface.
         #[serde(default)]
         pub adaptive: Option<u32>,
+        /// How it follows creases.
+        #[serde(default = "direct")]
+        pub creases: String,
         /// And by what, if that is not what usually does.
         pub cull: String,
     }
@@ -193,6 +201,7 @@ impl Who {
             path: contestant.path.name().to_owned(),
             normals: contestant.normals.name().to_owned(),
             adaptive: contestant.depth,
+            creases: contestant.creases.name().to_owned(),
             cull: cull::name(cull) + &by,
         }
     }
@@ -216,9 +225,10 @@ impl Who {
 
     fn drawn(&self) -> impl Iterator<Item = String> {
         let depth = self.adaptive.map(|depth| format!("adaptive {depth}"));
+        let creases = (self.creases != Creases::Direct.name()).then(|| format!("{} creases", self.creases));
         let normals = (self.normals != Normals::Own.name()).then(|| "shared normals".to_owned());
         let cull = (self.cull != NONE).then(|| self.cull.clone());
-        depth.into_iter().chain(normals).chain(cull)
+        depth.into_iter().chain(creases).chain(normals).chain(cull)
     }
 }
 

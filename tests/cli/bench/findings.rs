@@ -264,3 +264,39 @@ fn presets_set_published_figures_beside() {
     let lines = instanced["published"].as_array().unwrap();
     assert_eq!((lines.len(), &lines[0]["figure"], &lines[1]["figure"]), (2, &json!(365.0), &json!(348.0)));
 }
+
+#[test]
+fn time_and_bytes_stand_beside_those_of_the_least_sharpness() {
+    let few = "--factors 1 --paths tessellation,bilinear --sharpness 3,0";
+    let results = json(&format!("bench {SMALL} --preset niessner2012 {few}"));
+    let meshes: Vec<_> = results["meshes"].as_array().unwrap().iter().map(|mesh| &mesh["name"]).collect();
+    assert_eq!(meshes, ["machine-part, sharpness 0", "machine-part, sharpness 3"]);
+    assert_eq!(results["meshes"][1]["sharpness"], 3.0);
+    let rows = results["rows"].as_array().unwrap();
+    // One patch a face, three ways to follow creases, the floor.
+    let ways: Vec<_> = rows[5..].iter().map(|row| (&row["adaptive"], row["creases"].as_str().unwrap())).collect();
+    let (none, two) = (&Value::Null, &json!(2));
+    assert_eq!(ways, [(none, "direct"), (two, "direct"), (two, "deep"), (two, "refined"), (none, "direct")]);
+    let bytes = |row: usize| rows[row]["bytes"]["total"].as_f64().unwrap();
+    let findings = results["sharpness"].as_array().unwrap();
+    assert_eq!(findings.len(), 4);
+    for (i, finding) in findings.iter().enumerate() {
+        assert_eq!(finding["mesh"], "machine-part, sharpness 3");
+        assert!((finding["bytes"].as_f64().unwrap() - bytes(5 + i) / bytes(i)).abs() < 1e-12, "{finding}");
+        assert!(finding["geometry"]["value"].as_f64().unwrap() > 0.0);
+    }
+    // Followed at hardly any bytes; caps go one level deeper; refined, faces along creases do at least twice as often.
+    assert!(bytes(6) < 1.1 * bytes(1) && bytes(7) > bytes(6) && bytes(8) > 2.0 * bytes(6), "{rows:?}");
+    let text = String::from_utf8(run(&format!("bench {SMALL} --preset niessner2012 {few}")).stdout).unwrap();
+    assert!(text.contains("\ntime and bytes, to the least sharpness ") && text.contains("Nießner, Loop, Greiner 2012"));
+    fails(
+        &format!("bench {SMALL} --shape torus --sharpness 2"),
+        1,
+        "torus: it has no creases of finite sharpness: name a mesh that has",
+    );
+    fails(
+        "bench --sharpness 10",
+        2,
+        "invalid value '10' for '--sharpness <SHARPNESS>': it must be a number from 0 to less than 10",
+    );
+}
