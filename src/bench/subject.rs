@@ -1,8 +1,7 @@
 //! Subjects: a mesh, or some of its patches.
 
 use super::BenchError;
-use crate::adaptive::MAX_DEPTH;
-use crate::mesh::{ControlMesh, MeshData, SHARPNESS_INFINITE};
+use crate::mesh::{ControlMesh, MeshData};
 use crate::named::named;
 use crate::patch::{Fallback, Scheme};
 use crate::table::{TableError, prepare};
@@ -66,13 +65,6 @@ impl Subject {
         let holes = data.holes.iter().copied().chain(holes).collect();
         let mesh = ControlMesh::new(MeshData { holes, ..data.clone() })?;
         Ok(Self { name, mesh, refine: 0, counts })
-    }
-
-    /// Steps of refinement after which no crease is left of finite sharpness, or as many as there can be.
-    pub(super) fn levels_of_creases(&self) -> u32 {
-        let creases = self.mesh.data().creases.iter().map(|crease| crease.sharpness);
-        let finite = creases.filter(|&sharpness| sharpness < SHARPNESS_INFINITE);
-        (finite.fold(0.0, f32::max).ceil() as u32).saturating_sub(self.refine).min(MAX_DEPTH)
     }
 
     /// Patches of a kind that are drawn.

@@ -56,9 +56,13 @@ described! {
         pub faces: usize,
         /// Patches that are drawn, by kind.
         pub patches: BTreeMap<String, u32>,
-        /// Error by scheme: root mean square of the angle to the limit surface's normal, in radians. Measured for reports.
+        /// Error by surface, a scheme or adaptive surface: root mean square of the angle to the limit surface's normal, in radians.
+        /// Measured for reports.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         pub normal_error: BTreeMap<String, f64>,
+        /// Likewise of the position, over the diagonal.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        pub position_error: BTreeMap<String, f64>,
         /// A picture as a `data:` address. Made for reports.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub thumbnail: Option<String>,
@@ -128,6 +132,7 @@ impl MeshOut {
             faces: subject.mesh.face_count(),
             patches: patches.into(),
             normal_error: BTreeMap::new(),
+            position_error: BTreeMap::new(),
             thumbnail: None,
         }
     }

@@ -213,6 +213,11 @@ impl Who {
         named.chain(self.drawn()).collect::<Vec<_>>().join(" ")
     }
 
+    /// The surface that is drawn, whatever the way.
+    pub(super) fn surface(&self) -> String {
+        [self.scheme.clone()].into_iter().chain(self.leaves()).collect::<Vec<_>>().join(" ")
+    }
+
     /// Whether it is one of what no change of this program makes faster or slower.
     pub(super) fn is_floor(&self) -> bool {
         bench::Path::ALL.iter().any(|path| path.is_floor() && path.name() == self.path)
@@ -223,12 +228,17 @@ impl Who {
         [self.path.clone()].into_iter().chain(self.drawn()).collect::<Vec<_>>().join(", ")
     }
 
-    fn drawn(&self) -> impl Iterator<Item = String> {
+    /// What makes an adaptive surface another.
+    fn leaves(&self) -> impl Iterator<Item = String> + use<> {
         let depth = self.adaptive.map(|depth| format!("adaptive {depth}"));
         let creases = (self.creases != Creases::Direct.name()).then(|| format!("{} creases", self.creases));
+        depth.into_iter().chain(creases)
+    }
+
+    fn drawn(&self) -> impl Iterator<Item = String> {
         let normals = (self.normals != Normals::Own.name()).then(|| "shared normals".to_owned());
         let cull = (self.cull != NONE).then(|| self.cull.clone());
-        depth.into_iter().chain(creases).chain(normals).chain(cull)
+        self.leaves().chain(normals).chain(cull)
     }
 }
 
