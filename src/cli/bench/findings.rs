@@ -117,7 +117,7 @@ pub(super) fn any_size(setting: &Setting, meshes: &[MeshOut]) -> Setting {
 }
 
 /// The same for all sharpness of a mesh.
-fn any_sharpness(setting: &Setting, meshes: &[MeshOut]) -> Setting {
+pub(super) fn any_sharpness(setting: &Setting, meshes: &[MeshOut]) -> Setting {
     let sharpness = meshes.iter().find(|mesh| mesh.name == setting.mesh).and_then(|mesh| mesh.sharpness);
     let mesh = match sharpness {
         Some(sharpness) => setting.mesh.replacen(&sharpness_in_name(sharpness), "", 1),

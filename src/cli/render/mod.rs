@@ -61,6 +61,16 @@ described! {
     }
 }
 
+impl ErrorOut {
+    /// Of errors, if they are what is painted.
+    fn of(painting: &Painting) -> Option<Self> {
+        match *painting {
+            Painting::Errors(ErrorMap { top, largest, .. }) => Some(Self { top, largest }),
+            Painting::Levels(_) => None,
+        }
+    }
+}
+
 pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let file = args.output.display().to_string();
     let ending = args.output.extension().map(|ending| ending.to_ascii_lowercase());
@@ -99,10 +109,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     progress.now("writing the picture");
     args.save(&mut pixels, painting.as_ref())?;
     drop(progress);
-    let error = match painting {
-        Some(Painting::Errors(ErrorMap { top, largest, .. })) => Some(ErrorOut { top, largest }),
-        _ => None,
-    };
+    let error = painting.as_ref().and_then(ErrorOut::of);
     if !json {
         return args.print(patches, samples, &device, error);
     }

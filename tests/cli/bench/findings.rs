@@ -287,7 +287,17 @@ fn time_and_bytes_stand_beside_those_of_the_least_sharpness() {
     }
     // Followed at hardly any bytes; caps go one level deeper; refined, faces along creases do at least twice as often.
     assert!(bytes(6) < 1.1 * bytes(1) && bytes(7) > bytes(6) && bytes(8) > 2.0 * bytes(6), "{rows:?}");
-    let text = String::from_utf8(run(&format!("bench {SMALL} --preset niessner2012 {few}")).stdout).unwrap();
+    let folder = folder("bench-sharpness");
+    let report = format!("--report {}", folder.display());
+    let text = String::from_utf8(run(&format!("bench {SMALL} --preset niessner2012 {few} {report}")).stdout).unwrap();
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    for what in ["time", "bytes"] {
+        let caption = format!("machine-part, equal spacing: {what} against sharpness at factor 1</figcaption>");
+        let plot = page.split(&caption).nth(1).unwrap().split("</figure>").next().unwrap();
+        // Five rows at each sharpness.
+        assert_eq!(plot.matches("<polygon").count(), 10);
+        assert!(plot.contains("2^sharpness 8,"), "{plot}");
+    }
     assert!(text.contains("\ntime and bytes, to the least sharpness ") && text.contains("Nießner, Loop, Greiner 2012"));
     fails(
         &format!("bench {SMALL} --shape torus --sharpness 2"),

@@ -1,7 +1,7 @@
 //! Plots of the report, and the style of each contestant in all of them.
 
 use super::super::super::error::CliError;
-use super::super::findings::{any_passes, any_size};
+use super::super::findings::{any_passes, any_sharpness, any_size};
 use super::super::results::Results;
 use super::super::row::{NONE, Row, Setting, Who};
 use super::super::unique;
@@ -65,6 +65,7 @@ pub(super) fn plots(results: &Results) -> Result<Markup, CliError> {
     }
     figures.by_size()?;
     figures.by_passes()?;
+    figures.by_sharpness()?;
     let legend = unique(rows, |row| &row.who);
     if figures.drawn.is_empty() {
         return Ok(html! {});
@@ -143,6 +144,28 @@ impl<'r> Figures<'r> {
                 power.map_or_else(String::new, |power| format!(": {} as patches^{power:.2}", rows[0].who.label()));
             let caption = format!("{}: growth at factor {factor}{power}", self.title(&setting));
             self.add(caption, &Plot { x: "patches", marks: &[], y: GEOMETRY, lines: &lines, front: false })?;
+        }
+        Ok(())
+    }
+
+    /// Against the power of two of sharpness: what doubles with each step is a line at 45 degrees.
+    fn by_sharpness(&mut self) -> Result<(), CliError> {
+        let meshes = &self.results.meshes;
+        let power = |row: &Row| {
+            let mesh = meshes.iter().find(|mesh| mesh.name == row.setting.mesh);
+            mesh.and_then(|mesh| mesh.sharpness).map_or(0.0, |sharpness| f64::from(sharpness).exp2())
+        };
+        for (setting, factor, rows) in
+            self.of_several(|setting| any_sharpness(setting, meshes), |row| power(row).to_bits())
+        {
+            let marks = unique(&rows, |row| power(row));
+            let title = self.title(&setting);
+            let times = lines(&rows, |row| Some((power(row), row.geometry_ms.median)));
+            let bytes = lines(&rows, |row| Some((power(row), row.total_bytes() as f64 / 1024.0)));
+            for (what, y, lines) in [("time", GEOMETRY, times), ("bytes", "KiB", bytes)] {
+                let caption = format!("{title}: {what} against sharpness at factor {factor}");
+                self.add(caption, &Plot { x: "2^sharpness", marks: &marks, y, lines: &lines, front: false })?;
+            }
         }
         Ok(())
     }
