@@ -12,7 +12,8 @@
 //! 1. [`mesh`]: a [`ControlMesh`], from a file ([`mesh::read`]) or from arrays ([`MeshData`]), is checked once:
 //!    manifold, oriented, finite. From here on nothing about it can fail but its size.
 //! 2. [`table::prepare_patches`]: a mesh with faces of five or more corners is refined once ([`limit::refine`]), so that
-//!    every face is a triangle or a quad; [`Scheme::Pm`] takes pentagons as they are. The caller may ask for more steps.
+//!    every face is a triangle or a quad; [`Scheme::Pm`] takes pentagons as they are, and Gregory patches have such faces cut in
+//!    triangles instead, which are drawn by their leaves ([`adaptive`]). The caller may ask for more steps.
 //! 3. [`topology`]: every vertex gets its ordered one-ring, every face its [`PatchKind`](topology::PatchKind).
 //! 4. [`patch`]: the control points of a patch are sums of the control vertices in the one-rings of its corners.
 //!    The code that makes them is written once, over values that can be summed: points give control points, rows of

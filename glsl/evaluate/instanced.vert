@@ -26,7 +26,7 @@ void main() {
     uint patch_number = patch_drawn(uint(gl_InstanceIndex));
     uint first_corner = draw.first_corner + patch_number * CORNERS;
     uint segments = item.segments;
-    read_cached(first_corner, segments);
+    read_cached(draw.first_patch + patch_number, first_corner, segments);
     vec3 at = lattice_parameter(uint(gl_VertexIndex), segments, first_corner);
     LatticeSample surface = lattice_sample(at);
 #ifdef DISPLACED

@@ -22,6 +22,7 @@ layout(set = 2, binding = 0, std430) writeonly buffer Vertices { float vertices[
 
 // One patch for each workgroup along x.
 layout(push_constant, std430) uniform Patches {
+    uint first_patch;
     uint first_corner;
     uint first_vertex;
     uint segments;
@@ -36,7 +37,7 @@ void put(uint at, vec3 x) {
 
 void main() {
     uint first_corner = patches.first_corner + gl_WorkGroupID.x * CORNERS;
-    read_cached(first_corner, patches.segments);
+    read_cached(patches.first_patch + gl_WorkGroupID.x, first_corner, patches.segments);
     uint first_vertex = patches.first_vertex + gl_WorkGroupID.x * patches.vertices;
     uint start = gl_WorkGroupID.y * GROUP_VERTICES;
     uint end = min(start + GROUP_VERTICES, patches.vertices);

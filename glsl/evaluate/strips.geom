@@ -138,7 +138,7 @@ void main() {
     }
 #endif
     if (IS_CACHED) {
-        read_cached(draw.first_corner + patch_number * CORNERS, segments);
+        read_cached(draw.first_patch + patch_number, draw.first_corner + patch_number * CORNERS, segments);
     } else {
         sum_points();
     }

@@ -90,11 +90,13 @@
 #define LEAF_REGULAR 0u
 #define LEAF_CAP 1u
 #define LEAF_CREASE 2u
-// Words of a face, and the first of those that say who owns the normals. An owner is a patch from OWNER_SHIFT on, and its edge or
-// corner; or none, where a neighbour is not refined.
-#define FACE_WORDS 17u
-#define NORMAL_OWNERS 9u
-#define OWNER_SHIFT 2u
+// Words of a face, and the first of those that say who owns the positions, the normals. An owner is a patch from OWNER_SHIFT on, whether
+// it is a wedge, and its edge or corner; or none, where a neighbour is not refined.
+#define FACE_WORDS 18u
+#define OWNERS 2u
+#define NORMAL_OWNERS 10u
+#define OWNER_SHIFT 3u
+#define WEDGE_BIT 4u
 #define OWNER_NONE 0xffffffffu
 
 // What is captured of a patch, and of a vertex.

@@ -68,7 +68,7 @@ impl Alone {
                 return Ok(dart.map_or_else(|| values.frame(), |sharp| dart_frame(&values, sharp)).p);
             }
             let face_starts = mesh.face_offsets()[..mesh.face_count()].to_vec();
-            let part = refine_part(&topology, &face_starts, |vertex| vertex)?;
+            let part = refine_part(&topology, &face_starts, |face| mesh.face(face).len() > 4, |vertex| vertex)?;
             let coarse = std::mem::take(&mut rows);
             for (piece, row) in part.rows.iter().flat_map(|piece| (0..piece.len()).map(move |row| (piece, row))) {
                 // Centres, numbered after the coarse vertices, come first.

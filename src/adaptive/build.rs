@@ -11,7 +11,7 @@ use crate::patch::Scheme;
 use crate::topology::{Topology, draws_face};
 use rustc_hash::FxBuildHasher;
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// The bit of a vertex, while the plan is being made, that is a ghost's number.
 pub(super) const GHOST: u32 = 1 << 31;
@@ -23,11 +23,37 @@ impl Plan {
     /// [`AdaptiveError::TooDeep`], [`AdaptiveError::NoCaps`]; [`AdaptiveError::TooLarge`] and [`AdaptiveError::Level`] if the
     /// plan or a level of it cannot be addressed.
     pub fn new(topology: &Topology, scheme: Scheme, options: &AdaptiveOptions) -> Result<Self, AdaptiveError> {
+        Self::of_faces(topology, scheme, options, draws_face(topology))
+    }
+
+    /// Plans faces of five and more corners and those that touch them, at depth 0. Others have no roots.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub(crate) fn around_polygons(topology: &Topology, scheme: Scheme) -> Result<Self, AdaptiveError> {
+        let mut touches = vec![false; topology.vertex_count()];
+        let half_edges = |face: usize| topology.mesh().face_corners(face as u32).map(|h| h as u32);
+        let draws = draws_face(topology);
+        for face in (0..draws.len()).filter(|&face| half_edges(face).len() > 4) {
+            half_edges(face).for_each(|h| touches[topology.vertex(h) as usize] = true);
+        }
+        let is_near = |face| half_edges(face).any(|h| touches[topology.vertex(h) as usize]);
+        let faces = draws.into_iter().enumerate().map(|(face, draws)| draws && is_near(face)).collect();
+        Self::of_faces(topology, scheme, &AdaptiveOptions::default(), faces)
+    }
+
+    /// Plans the faces for which `own` holds.
+    fn of_faces(
+        topology: &Topology,
+        scheme: Scheme,
+        options: &AdaptiveOptions,
+        own: Vec<bool>,
+    ) -> Result<Self, AdaptiveError> {
         options.check()?;
         if !scheme.has_caps() {
             return Err(AdaptiveError::NoCaps { scheme });
         }
-        let mut builder = Builder::new(topology, scheme, *options);
+        let mut builder = Builder::new(topology, scheme, *options, own);
         let mut level = builder.control_level(topology);
         loop {
             let (classes, fates) = level.fates(options);
@@ -66,8 +92,8 @@ pub(super) struct Builder {
     pub(super) levels: Vec<Vec<Piece>>,
     /// The refined vertices of all levels.
     pub(super) row_count: usize,
-    /// The vertices of level 1 that are the points of faces of five and more corners, by face.
-    pub(super) centres: HashMap<u32, u32>,
+    /// The vertices of level 1 that are the points of faces other than quads, by face.
+    pub(super) centres: BTreeMap<u32, u32>,
     pub(super) ghosts: Vec<Row>,
     /// The ghost beyond each vertex, mirroring another.
     pub(super) ghost_numbers: HashMap<(u32, u32), u32, FxBuildHasher>,
@@ -77,12 +103,12 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    fn new(topology: &Topology, scheme: Scheme, options: AdaptiveOptions) -> Self {
+    fn new(topology: &Topology, scheme: Scheme, options: AdaptiveOptions, own: Vec<bool>) -> Self {
         let mesh = topology.mesh();
         let (mut roots, mut face_roots) = (Vec::new(), vec![0]);
-        for (face, drawn) in (0..).zip(draws_face(topology)) {
+        for (face, own) in (0..).zip(own) {
             match mesh.face(face).len() as u32 {
-                _ if !drawn => {}
+                _ if !own => {}
                 4 => roots.push(Root { face, part: 0, level: 0 }),
                 size => roots.extend((0..size).map(|part| Root { face, part, level: 1 })),
             }
@@ -99,7 +125,7 @@ impl Builder {
             refined: Vec::new(),
             levels: Vec::new(),
             row_count: 0,
-            centres: HashMap::new(),
+            centres: BTreeMap::new(),
             ghosts: Vec::new(),
             ghost_numbers: HashMap::default(),
             caps: Caps::new(scheme),

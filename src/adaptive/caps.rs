@@ -12,8 +12,8 @@ use crate::patch::gregory::gregory_points;
 use crate::topology::{Place, Topology};
 use rayon::prelude::*;
 use rustc_hash::FxBuildHasher;
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 /// Control points of a cap.
@@ -67,7 +67,7 @@ pub(super) struct Around<'t> {
     /// What the vertices of the caps ask.
     pub classes: &'t [Class],
     /// The vertices at the points of faces of many corners, by face.
-    pub centres: &'t HashMap<u32, u32>,
+    pub centres: &'t BTreeMap<u32, u32>,
 }
 
 /// Rings of a level that are no part of a pattern, with their frames.

@@ -36,6 +36,8 @@ impl Builder {
     fn used(&self) -> Vec<bool> {
         let used: Vec<AtomicBool> = (0..self.row_count).map(|_| AtomicBool::new(false)).collect();
         let control = self.control_vertices;
+        // The centres, by which faces other than quads are cut in wedges.
+        used[..self.centres.len()].iter().for_each(|used| used.store(true, Ordering::Relaxed));
         let mark = |vertex: u32| {
             if vertex & (GHOST | FRAME) == 0 && vertex >= control {
                 used[(vertex - control) as usize].store(true, Ordering::Relaxed);
@@ -107,7 +109,7 @@ impl Builder {
         );
         drop(parts);
 
-        let centres = control..control + used[..self.centres.len()].iter().filter(|used| **used).count() as u32;
+        let centres = control..control + self.centres.len() as u32;
         let start = |level: &Vec<Piece>| level.first().map_or(kept, |piece| numbers[piece.first]);
         let starts: Vec<u32> = self.levels.iter().map(start).chain([kept]).collect();
         let cap_points = frames.end..control + all as u32;
@@ -125,6 +127,7 @@ impl Builder {
             grids: self.grids,
             leaves: self.leaves,
             centres,
+            centre_faces: self.centres.into_keys().collect(),
             ghosts,
             frames,
             cap_points,

@@ -104,7 +104,7 @@ impl Level<'_> {
     }
 
     /// The next level: the children of the refined faces and all faces around them; its vertices as sums, in pieces; and the
-    /// faces of five and more corners whose points are its first vertices. `child` tells the cell of a face's child around its
+    /// faces other than quads whose points are its first vertices. `child` tells the cell of a face's child around its
     /// corner.
     pub(super) fn refine(
         &self,
@@ -116,7 +116,11 @@ impl Level<'_> {
         let half_edges = self.half_edges_with_children(fates);
         let own = topology.mesh().vertex_count() as u32;
         let number = |vertex| if vertex < own { self.first_vertex + vertex } else { first_vertex + (vertex - own) };
-        let Part { mesh, rows, centres } = refine_part(topology, &half_edges, number)?;
+        let has_centre = |face: u32| match topology.mesh().face(face).len() {
+            3 => matches!(fates[face as usize], Fate::Refined(_)),
+            size => size > 4,
+        };
+        let Part { mesh, rows, centres } = refine_part(topology, &half_edges, has_centre, number)?;
         let cell = |&h: &u32| {
             let face = topology.face(h);
             let cell = child(face, h - topology.mesh().face_corners(face).start as u32);
@@ -127,8 +131,8 @@ impl Level<'_> {
         Ok((Level { number: self.number + 1, topology, first_vertex, cells }, rows, centres))
     }
 
-    /// Half-edges whose children the next level needs: those of refined faces and of the ring around them; by Chaikin's method, of one
-    /// ring more.
+    /// Half-edges whose children the next level needs: those of refined faces and of the ring around them, by Chaikin's method of one
+    /// ring more; and those of all faces with five and more corners, which have centres.
     fn half_edges_with_children(&self, fates: &[Fate]) -> Vec<u32> {
         let topology = &*self.topology;
         let all = 0..topology.mesh().corner_count() as u32;
@@ -136,7 +140,7 @@ impl Level<'_> {
         for h in all.clone().filter(|&h| matches!(fates[topology.face(h) as usize], Fate::Refined(_))) {
             touched[topology.vertex(h) as usize] = true;
         }
-        let is_touched = |h: u32| touched[topology.vertex(h) as usize];
+        let is_touched = |h: u32| touched[topology.vertex(h) as usize] || topology.face_size(h) > 4;
         if topology.mesh().data().crease_method == CreaseMethod::Uniform {
             return all.filter(|&h| is_touched(h)).collect();
         }

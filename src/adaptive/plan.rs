@@ -28,8 +28,11 @@ pub struct Plan {
     pub rows: Stencils,
     /// The refined vertices of levels 1, 2, ..: their numbers. Each level follows on the one before.
     pub levels: Vec<Range<u32>>,
-    /// The first vertices of level 1: the points of faces of five and more corners. Rows of level 1 and of end caps read them.
+    /// The first vertices of level 1: the points of faces of five and more corners, and of triangles that have roots. Rows of level 1
+    /// and of end caps read them.
     pub centres: Range<u32>,
+    /// The faces that these are of, in order.
+    pub centre_faces: Vec<u32>,
     /// The ghost vertices: those beyond boundaries and infinitely sharp creases, mirrored (`2 b - i`), that make leaves there
     /// regular.
     pub ghosts: Range<u32>,

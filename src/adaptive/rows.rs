@@ -15,8 +15,8 @@ impl Plan {
         self.control_vertices as usize + self.rows.len()
     }
 
-    /// The ranges of vertices that can be made one after the other, each all at once: the points of faces of five and more
-    /// corners, level 1, the other levels, ghosts with frames, end caps. Some may be empty.
+    /// The ranges of vertices that can be made one after the other, each all at once: the points of faces other than
+    /// quads, level 1, the other levels, ghosts with frames, end caps. Some may be empty.
     pub fn steps(&self) -> impl Iterator<Item = Range<u32>> + '_ {
         let levels = self.levels.iter().map(|level| level.start.max(self.centres.end)..level.end);
         let rest = [self.ghosts.start..self.frames.end, self.cap_points.clone()];

@@ -44,11 +44,13 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// A mesh, refined at least `refine` times, of which a subset of the patches is drawn.
+    /// A mesh, refined at least `refine` times and once if it has faces of five and more corners, for all to draw the same faces, of which a subset of the patches is drawn.
     ///
     /// # Errors
     /// [`BenchError::NoPatches`] if the subset has no patches; a refined mesh that cannot be addressed.
     pub fn new(name: &str, mesh: ControlMesh, refine: u32, subset: Subset) -> Result<Self, BenchError> {
+        let polygons = mesh.data().face_sizes.iter().any(|&size| size > 4);
+        let refine = if polygons { refine.max(1) } else { refine };
         let prepared = prepare(&mesh, refine)?;
         let plan = prepared.plan(Scheme::Gregory, Fallback::Refuse).map_err(TableError::from)?;
         let counts = PatchKind::ALL.map(|kind| if subset.has(kind) { plan.count(kind) } else { 0 });

@@ -65,8 +65,8 @@ impl Serialize for Leaves<'_> {
 impl<'s> Leaves<'s> {
     fn new(surface: &'s CpuSurface, plan: &'s Plan) -> Self {
         let (origins, patches) = (surface.origins(), surface.plan().patches());
-        // All faces are quads, which have one root each.
-        let patch = |i: usize| (origins[i], plan.face_roots[patches[i].face as usize]);
+        // Of the two of a wedge the one around its corner: the other is the next wedge's.
+        let patch = |i: usize| (origins[i], surface.prepared().roots(plan, &patches[i])[0]);
         Self { plan, vertices: surface.vertices(|p| p), patches: by_origin(&origins).into_iter().map(patch).collect() }
     }
 

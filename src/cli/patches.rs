@@ -5,9 +5,9 @@ use super::leaves;
 use super::output::{self, Progress};
 use super::source::{DeviceArgs, MeshArgs, report_notices};
 use ash_subdiv::capture::Captured;
-use ash_subdiv::table::{FaceOrigin, Patch};
+use ash_subdiv::table::{CpuSurface, FaceOrigin, Notice, Patch, TableOptions};
 use ash_subdiv::topology::PatchKind;
-use ash_subdiv::{Construction, ControlMesh, Scheme};
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme};
 use clap::{Args, ValueEnum};
 use serde::{Serialize, Serializer};
 use std::fmt::Display;
@@ -111,10 +111,13 @@ pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
     }
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
+    let refine = steps(&args.mesh, &mesh, &progress);
     match args.construction {
         Maker::Cpu => {
             progress.now("making control points");
-            let surface = args.mesh.cpu_surface(&mesh, &progress)?;
+            let options = TableOptions { refine, ..args.mesh.source.table_options(args.mesh.scheme) };
+            let surface = CpuSurface::with_options(&mesh, &options)?;
+            report_notices(&surface.notices(), &progress);
             if let Some(plan) = surface.adaptive() {
                 drop(progress);
                 return leaves::write(&surface, plan, json);
@@ -125,22 +128,34 @@ pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
                 points.into_iter().map(|patch| patch.into_iter().map(Into::into).collect()).collect();
             write(args, json, Made { patches: surface.plan().patches(), origins: &surface.origins(), points: &points })
         }
-        Maker::TwoStage => on_device(args, json, &mesh, Construction::TwoStage, progress),
-        Maker::Stencil => on_device(args, json, &mesh, Construction::Stencil, progress),
-        Maker::Cached => on_device(args, json, &mesh, Construction::Cached, progress),
+        Maker::TwoStage => on_device(args, json, (&mesh, refine), Construction::TwoStage, progress),
+        Maker::Stencil => on_device(args, json, (&mesh, refine), Construction::Stencil, progress),
+        Maker::Cached => on_device(args, json, (&mesh, refine), Construction::Cached, progress),
+    }
+}
+
+/// Steps of refinement before patches are made: one where faces have five or more corners, so that they have patches, and not leaves.
+fn steps(args: &MeshArgs, mesh: &ControlMesh, progress: &Progress) -> u32 {
+    let mut polygons = (0..).zip(&mesh.data().face_sizes).filter(|(_, size)| **size > 4);
+    match (args.source.refine, args.source.adaptive(), polygons.next()) {
+        (0, None, Some((first, _))) if args.scheme.has_caps() => {
+            report_notices(&[Notice::RefinedPolygons { polygons: 1 + polygons.count(), first }], progress);
+            1
+        }
+        (refine, ..) => refine,
     }
 }
 
 fn on_device(
     args: &PatchesArgs,
     json: bool,
-    mesh: &ControlMesh,
+    (mesh, refine): (&ControlMesh, u32),
     construction: Construction,
     progress: Progress,
 ) -> Result<(), CliError> {
     let (tables, points) = args.device.run(|headless| {
         progress.now("building tables");
-        let options = args.mesh.model_options(construction);
+        let options = ModelOptions { refine, ..args.mesh.model_options(construction) };
         let captured = Captured::new(headless, mesh, &options)?;
         report_notices(captured.tables().notices(), &progress);
         progress.now("making control points");

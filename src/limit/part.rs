@@ -17,12 +17,12 @@ pub(crate) struct Part {
     /// Its vertices as sums of the coarse mesh's vertices and, numbered after these, of its own first vertices, the centres. In
     /// pieces, one after the other.
     pub rows: Vec<Stencils>,
-    /// The faces of five and more corners whose points are the first vertices.
+    /// The faces whose points are the first vertices.
     pub centres: Vec<u32>,
 }
 
-/// Refines what is around some face corners. Faces of many corners take part through their points, which are vertices
-/// already: so rows stay short. Rows have `number(v)` in the place of vertex v.
+/// Refines what is around some face corners. Faces with a centre, as those of many corners should have, take part through their
+/// points, which are vertices already: so rows stay short. Rows have `number(v)` in the place of vertex v.
 ///
 /// At the rim of the part tags may be missing, and rows are right as far as the coarse mesh is.
 ///
@@ -31,6 +31,7 @@ pub(crate) struct Part {
 pub(crate) fn refine_part(
     topology: &Topology,
     half_edges: &[u32],
+    has_centre: impl Fn(u32) -> bool,
     number: impl Fn(u32) -> u32 + Sync,
 ) -> Result<Part, MeshError> {
     let mut step = Step::new(topology);
@@ -46,7 +47,7 @@ pub(crate) fn refine_part(
         *number
     };
     let mut centres = Vec::new();
-    for &h in half_edges.iter().filter(|&&h| topology.face_size(h) > 4) {
+    for &h in half_edges.iter().filter(|&&h| has_centre(topology.face(h))) {
         if see(step.face_vertex(h), h) as usize == centres.len() {
             centres.push(topology.face(h));
         }

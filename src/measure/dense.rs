@@ -1,10 +1,10 @@
 //! A surface as a dense mesh of triangles, and its point that is nearest to another.
 
-use super::surfaces::{Parameters, parts};
-use crate::topology::PatchKind;
+use super::surfaces::Parameters;
 use glam::DVec3;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
+use std::ops::Range;
 
 /// Triangles of a surface, about.
 const TRIANGLES: f64 = 2e6;
@@ -29,35 +29,35 @@ struct Block {
     rows: usize,
 }
 
-/// Cells along each side of a part of a patch; parts of triangles have fewer, so that there are about as many in all.
-fn cells(kind: PatchKind, patches: usize) -> usize {
+/// Cells along each side of a part of a patch; those of several have fewer, so that there are about as many in all.
+fn cells(parts: &Range<i32>, patches: usize) -> usize {
     let side = ((TRIANGLES / 2.0 / patches as f64).sqrt() as usize).clamp(4, 32);
-    if kind == PatchKind::Triangle { side.div_ceil(2) } else { side }
+    if parts.len() > 1 { side.div_ceil(2) } else { side }
 }
 
-/// The points of one patch among `patches`: part by part, in rows along u.
-pub(super) fn lattice(kind: PatchKind, patches: usize, position: impl Fn(Parameters) -> DVec3) -> Vec<DVec3> {
-    let side = cells(kind, patches) as u32;
+/// The points of one patch with these parts, among `patches`: part by part, in rows along u.
+pub(super) fn lattice(parts: &Range<i32>, patches: usize, position: impl Fn(Parameters) -> DVec3) -> Vec<DVec3> {
+    let side = cells(parts, patches) as u32;
     let at = |i: u32| f64::from(i) / f64::from(side);
     let row = |sub, j| (0..=side).map(move |i| Parameters { sub, u: at(i), v: at(j) });
-    parts(kind).flat_map(|sub| (0..=side).flat_map(move |j| row(sub, j))).map(position).collect()
+    parts.clone().flat_map(|sub| (0..=side).flat_map(move |j| row(sub, j))).map(position).collect()
 }
 
 impl Dense {
     /// A surface from the [`lattice`] of every patch.
-    pub(super) fn new(kinds: &[PatchKind], lattices: &[Vec<DVec3>]) -> Self {
-        Self::with_patches(kinds, lattices, kinds.len())
+    pub(super) fn new(parts: &[Range<i32>], lattices: &[Vec<DVec3>]) -> Self {
+        Self::with_patches(parts, lattices, parts.len())
     }
 
     /// As if there were this many patches.
-    fn with_patches(kinds: &[PatchKind], lattices: &[Vec<DVec3>], patches: usize) -> Self {
+    fn with_patches(parts: &[Range<i32>], lattices: &[Vec<DVec3>], patches: usize) -> Self {
         let points = lattices.concat();
         let mut blocks = Vec::new();
         let mut start = 0;
-        for &kind in kinds {
-            let side = cells(kind, patches);
+        for parts in parts {
+            let side = cells(parts, patches);
             let starts = || (0..side).step_by(BLOCK);
-            for _ in parts(kind) {
+            for _ in parts.clone() {
                 for (row, column) in starts().flat_map(|row| starts().map(move |column| (row, column))) {
                     let [rows, columns] = [row, column].map(|cell| BLOCK.min(side - cell));
                     let block = Block { first: start + row * (side + 1) + column, stride: side + 1, columns, rows };
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn the_nearest_triangle_is_the_nearest_of_all() {
         // Two bent sheets, one over the other, whose sides are no multiple of a block's.
-        let kinds = [PatchKind::IrregularQuad, PatchKind::Triangle];
+        let parts = [-1..0, 0..3];
         let sheet = |height: f64| {
             move |at: Parameters| {
                 let (u, v) = (at.u + f64::from(at.sub.max(0)), at.v);
@@ -153,11 +153,11 @@ mod tests {
             }
         };
         let patches = 20_000;
-        let lattices = [lattice(kinds[0], patches, sheet(0.0)), lattice(kinds[1], patches, sheet(0.5))];
-        let dense = Dense::with_patches(&kinds, &lattices, patches);
+        let lattices = [lattice(&parts[0], patches, sheet(0.0)), lattice(&parts[1], patches, sheet(0.5))];
+        let dense = Dense::with_patches(&parts, &lattices, patches);
         let blocks: Vec<_> = dense.tree.iter().flat_map(|block| block.data.triangles(&dense.points)).collect();
-        let cells = |kind| cells(kind, patches).pow(2);
-        assert_eq!((cells(kinds[0]), cells(kinds[1])), (49, 16));
+        let cells = |parts| cells(parts, patches).pow(2);
+        assert_eq!((cells(&parts[0]), cells(&parts[1])), (49, 16));
         assert_eq!(blocks.len(), 2 * (49 + 3 * 16));
         for i in 0..200 {
             let [x, y, z] = [0.7548, 0.5698, 0.4302].map(|step| (f64::from(i) * step).fract());

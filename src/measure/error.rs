@@ -2,7 +2,7 @@
 
 use super::nearest::{self, Nearest};
 use super::sums::{Deviation, Sums};
-use super::surfaces::{Parameters, SchemePatches, Surfaces, angle, drawn_faces, parts};
+use super::surfaces::{Face, Parameters, SchemePatches, Surfaces, angle};
 use crate::adaptive::AdaptiveOptions;
 use crate::limit::LimitSurface;
 use crate::mesh::ControlMesh;
@@ -81,8 +81,8 @@ pub struct ErrorReport {
 /// between corner k, the middles of its edges and the centre. That is a convention: other ways to lay the parameters of
 /// a triangle over those of the limit surface give other distances, and slightly other angles. Where the mesh is refined
 /// before patches are made, samples are those of the refined faces. A mesh with faces of five or more corners is refined
-/// once for every scheme, [`Scheme::Pm`] too, so that all are measured on the same faces; for adaptive subdivision a mesh with
-/// triangles is refined once, too.
+/// once for every scheme, [`Scheme::Pm`] too, so that all are measured on the same faces. With adaptive subdivision no mesh is;
+/// faces other than quads are measured on the parts of the limit surface themselves.
 ///
 /// **Nearest distance.** As many points of both surfaces, spread evenly over the area, each against the other surface
 /// as a mesh of triangles (about two million, at least 32 a patch, at most 2048). Chords of such a mesh are off the
@@ -130,9 +130,8 @@ pub fn surface_errors(
         Some(surface) => surface.prepared(),
         None => &prepare(mesh, options.refine)?,
     };
-    let topology = prepared.topology();
     let schemes = defined.into_iter().map(SchemePatches::new).collect();
-    let surfaces = Surfaces { topology, faces: drawn_faces(topology), schemes };
+    let surfaces = Surfaces { topology: prepared.whole(), faces: Face::all(prepared), schemes };
 
     let faces = surfaces.for_each(|limit, face| measure_face(&surfaces, limit, face, options.samples))?;
     let areas: Vec<f64> = faces.iter().map(|face| face.area).collect();
@@ -142,7 +141,7 @@ pub fn surface_errors(
     };
     // A mesh without extent is as good as its patches, which are the same point.
     let scale = if diagonal > 0.0 { diagonal.recip() } else { 0.0 };
-    let measured = Measured { kinds: surfaces.faces.iter().map(|&(_, kind)| kind).collect(), faces, nearest, scale };
+    let measured = Measured { kinds: surfaces.faces.iter().map(|face| face.kind).collect(), faces, nearest, scale };
     let irregular_patches = measured.kinds.iter().filter(|kind| **kind != PatchKind::Regular).count();
     let mut number = 0..;
     let mut of_scheme = |surface: &CpuSurface| {
@@ -241,7 +240,7 @@ fn measure_face(surfaces: &Surfaces, limit: &LimitSurface, face: usize, samples:
     let points: Vec<_> = schemes.clone().map(|scheme| surfaces.control_points(scheme, face)).collect();
     let mut errors = PatchErrors { area: 0.0, schemes: Vec::new() };
     errors.schemes.resize_with(schemes.len(), Default::default);
-    for sub in parts(surfaces.faces[face].1) {
+    for sub in surfaces.faces[face].parts.clone() {
         for (i, j) in (0..samples).flat_map(|j| (0..samples).map(move |i| (i, j))) {
             let at = Parameters { sub, u: middle(i), v: middle(j) };
             let truth = surfaces.limit(limit, face, at);

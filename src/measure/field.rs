@@ -1,6 +1,6 @@
 //! The error at every point of a lattice, to be shown where it is.
 
-use super::surfaces::{Parameters, Surfaces, angle};
+use super::surfaces::{Face, Surfaces, angle};
 use crate::mesh::MeshError;
 use crate::table::{CpuSurface, grid_parameters};
 
@@ -36,13 +36,13 @@ pub enum Quantity {
 /// If `n` is below 2.
 pub fn error_field(surface: &CpuSurface, quantity: Quantity, n: u32) -> Result<Vec<Vec<f64>>, MeshError> {
     let patches = surface.plan().patches();
-    let faces = patches.iter().map(|patch| (patch.face, patch.kind)).collect();
-    let surfaces = Surfaces { topology: surface.prepared().topology(), faces, schemes: Vec::new() };
+    let faces = patches.iter().map(|patch| Face::of(surface.prepared(), patch)).collect();
+    let surfaces = Surfaces { topology: surface.prepared().whole(), faces, schemes: Vec::new() };
     let samples = surface.grid(&surface.control_points(|p| p), n);
     surfaces.for_each(|limit, patch| {
         let kind = patches[patch].kind;
         let error = |(&point, sample): (&[f64; 2], &crate::patch::Sample<_>)| {
-            let truth = surfaces.limit(limit, patch, Parameters::of_point(patches[patch], point));
+            let truth = surfaces.limit(limit, patch, surfaces.faces[patch].parameters(point));
             match quantity {
                 Quantity::Position => truth.position.distance(sample.position),
                 Quantity::Normal => angle(truth.normal, sample.normal).unwrap_or(0.0),

@@ -2,12 +2,12 @@
 
 use super::dense::{Dense, lattice};
 use super::sums::Sums;
-use super::surfaces::{Parameters, Surfaces, angle, parts};
+use super::surfaces::{Parameters, Surfaces, angle};
 use crate::mesh::MeshError;
 use crate::patch::Sample;
-use crate::topology::PatchKind;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Where normals differ by more, in radians, the nearest point is on the other side of something thin.
 const MAX_ANGLE: f64 = 1.2;
@@ -35,22 +35,22 @@ struct LimitPatch {
 
 /// Measures both ways from about `samples` points of each surface. `areas` are those of the patches.
 pub(super) fn measure(surfaces: &Surfaces, areas: &[f64], samples: u32) -> Result<Nearest, MeshError> {
-    let kinds: Vec<_> = surfaces.faces.iter().map(|&(_, kind)| kind).collect();
+    let parts: Vec<_> = surfaces.faces.iter().map(|face| face.parts.clone()).collect();
     let ranges = spread(areas, samples);
     let limits = surfaces.for_each(|limit, patch| {
-        let kind = kinds[patch];
-        let lattice = lattice(kind, kinds.len(), |at| surfaces.limit(limit, patch, at).position);
+        let (of_patch, patches) = (&parts[patch], parts.len());
+        let lattice = lattice(of_patch, patches, |at| surfaces.limit(limit, patch, at).position);
         let probe = |number: u32| {
-            let at = parameters(kind, number);
+            let at = parameters(of_patch, number);
             let truth = surfaces.limit(limit, patch, at);
-            let mean = areas[patch] / f64::from(parts(kind).len() as u32);
+            let mean = areas[patch] / f64::from(of_patch.len() as u32);
             let weight = truth.du.cross(truth.dv).length() / mean;
             Probe { at, sample: Sample { position: truth.position, normal: truth.normal }, weight }
         };
         LimitPatch { lattice, probes: ranges[patch].clone().map(probe).collect() }
     })?;
     let (lattices, probes): (Vec<_>, Vec<_>) = limits.into_iter().map(|patch| (patch.lattice, patch.probes)).unzip();
-    let limit = Dense::new(&kinds, &lattices);
+    let limit = Dense::new(&parts, &lattices);
     let own = |probes: &Vec<Probe>| {
         let mut sums = Sums::default();
         for probe in probes {
@@ -63,11 +63,11 @@ pub(super) fn measure(surfaces: &Surfaces, areas: &[f64], samples: u32) -> Resul
         let of_patch = |patch: usize| {
             let points = surfaces.control_points(scheme, patch);
             let evaluate = |at| surfaces.evaluate(scheme, patch, &points, at);
-            let lattice = lattice(kinds[patch], kinds.len(), |at| evaluate(at).position);
+            let lattice = lattice(&parts[patch], parts.len(), |at| evaluate(at).position);
             (lattice, probes[patch].iter().map(|probe| evaluate(probe.at)).collect::<Vec<_>>())
         };
-        let (lattices, samples): (Vec<_>, Vec<_>) = (0..kinds.len()).into_par_iter().map(of_patch).unzip();
-        let dense = Dense::new(&kinds, &lattices);
+        let (lattices, samples): (Vec<_>, Vec<_>) = (0..parts.len()).into_par_iter().map(of_patch).unzip();
+        let dense = Dense::new(&parts, &lattices);
         let sums = |(probes, samples): (&Vec<Probe>, &Vec<Sample<DVec3>>)| {
             let mut sums = Sums::default();
             for (probe, sample) in probes.iter().zip(samples) {
@@ -83,7 +83,7 @@ pub(super) fn measure(surfaces: &Surfaces, areas: &[f64], samples: u32) -> Resul
 }
 
 /// Numbers of samples for each patch, as many as its area is worth.
-fn spread(areas: &[f64], samples: u32) -> Vec<std::ops::Range<u32>> {
+fn spread(areas: &[f64], samples: u32) -> Vec<Range<u32>> {
     let total: f64 = areas.iter().sum();
     let (mut before, mut start) = (0.0, 0);
     let range = |area: &f64| {
@@ -97,8 +97,7 @@ fn spread(areas: &[f64], samples: u32) -> Vec<std::ops::Range<u32>> {
 }
 
 /// Evenly spread, whichever numbers a patch has: the additive sequence by powers of the plastic number.
-fn parameters(kind: PatchKind, number: u32) -> Parameters {
-    let parts = parts(kind);
+fn parameters(parts: &Range<i32>, number: u32) -> Parameters {
     let part = number % parts.len() as u32;
     let number = f64::from(number / parts.len() as u32) + 1.0;
     let [u, v] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2].map(|step| (number * step).fract());

@@ -1,6 +1,6 @@
 //! Distances of drawn triangles from the limit surface, in pixels of the screen.
 
-use super::surfaces::Parameters;
+use super::surfaces::{Face, Parameters};
 use crate::capture::{CaptureDraw, Captured, CapturedVertex};
 use crate::limit::LimitSurface;
 use crate::mesh::ControlMesh;
@@ -77,7 +77,7 @@ pub fn screen_error(captured: &Captured, mesh: &ControlMesh, draw: &CaptureDraw)
     let both_sides = mesh.boundary_edge_count() > 0 || !mesh.data().holes.is_empty();
     let tables = captured.tables();
     let smooth = CpuSurface::with_options(mesh, &tables.options())?;
-    let (topology, vertices) = (smooth.prepared().topology(), smooth.vertices(|p| p));
+    let (topology, vertices) = (smooth.prepared().whole(), smooth.vertices(|p| p));
     let (mut triangles, mut shift, mut shape, mut facets) = (0, Spread::new(), Spread::new(), Spread::new());
     captured.triangles(draw, |captured| {
         triangles += captured.len() as u64;
@@ -89,7 +89,8 @@ pub fn screen_error(captured: &Captured, mesh: &ControlMesh, draw: &CaptureDraw)
             let measure = |triangles: &&[[CapturedVertex; 3]]| {
                 let patch = tables.plan().patches()[triangles[0][0].patch as usize];
                 let points = smooth.points_of(patch, &vertices);
-                let surface = Surface { limit: &limit, smooth: &smooth, both_sides, patch, points };
+                let face = Face::of(smooth.prepared(), &patch);
+                let surface = Surface { limit: &limit, smooth: &smooth, both_sides, patch, face, points };
                 triangles.iter().flat_map(|triangle| screen.measure(&surface, triangle)).collect()
             };
             let seen: Vec<Vec<Seen>> = chunk.par_iter().map(measure).collect();
@@ -128,6 +129,7 @@ struct Surface<'s> {
     /// Whether what faces away is seen.
     both_sides: bool,
     patch: Patch,
+    face: Face,
     /// Its control points.
     points: Vec<DVec3>,
 }
@@ -160,7 +162,7 @@ impl Screen {
 
     /// The samples of a triangle that are seen.
     fn measure(&self, surface: &Surface, triangle: &[CapturedVertex; 3]) -> impl Iterator<Item = Seen> {
-        let Surface { limit, smooth, both_sides, patch, ref points } = *surface;
+        let Surface { limit, smooth, both_sides, patch, ref face, ref points } = *surface;
         let positions = triangle.map(|vertex| Vec3::from(vertex.position).as_dvec3());
         let coordinates = triangle.map(|vertex| Vec3::from(vertex.coordinate).as_dvec3());
         let area = match positions.map(|position| self.project(position)) {
@@ -172,8 +174,8 @@ impl Screen {
             let drawn = mean(positions);
             let (at, true) = self.project(drawn)? else { return None };
             let place: [f64; 2] = mean(coordinates).truncate().into();
-            let Parameters { sub, u, v } = Parameters::of_point(patch, place);
-            let truth = limit.evaluate(patch.face, sub, u, v);
+            let Parameters { sub, u, v } = face.parameters(place);
+            let truth = limit.evaluate(face.face, sub, u, v);
             if !both_sides && truth.normal.dot(self.eye - truth.position) <= 0.0 {
                 return None;
             }

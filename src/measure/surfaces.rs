@@ -3,19 +3,66 @@
 use crate::limit::{LimitSample, LimitSurface};
 use crate::mesh::MeshError;
 use crate::patch::Sample;
-use crate::table::{CpuSurface, Patch};
+use crate::table::{CpuSurface, Patch, Prepared, in_wedge};
 use crate::topology::{PatchKind, Topology, draws_face};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Patches measured with one limit surface, which remembers what it has refined: about 0.1 MB an irregular face.
 const CHUNK: usize = 4096;
 
-pub(super) fn drawn_faces(topology: &Topology) -> Vec<(u32, PatchKind)> {
-    let faces = (0..).zip(draws_face(topology)).filter(|(_, draws)| *draws);
-    // The prepared mesh has no larger faces than these.
-    faces.filter_map(|(face, _)| Some((face, topology.patch_kind(face)?))).collect()
+/// A face that is drawn as one patch, or a piece of one.
+#[derive(Debug, Clone)]
+pub(super) struct Face {
+    /// As [`LimitSurface`] counts.
+    pub face: u32,
+    pub kind: PatchKind,
+    /// Of a piece: the corner from which its edge starts, and how many corners the face has.
+    piece: Option<[i32; 2]>,
+    /// The parts that are measured, by the `sub` of the limit surface. A wedge is measured as all of the part around its corner, half
+    /// of which the wedge before has.
+    pub parts: Range<i32>,
+}
+
+impl Face {
+    fn new(prepared: &Prepared, face: u32, kind: PatchKind) -> Self {
+        let (face, corner) = prepared.whole_face(face);
+        let piece = corner.map(|corner| [corner as i32, prepared.whole().mesh().face(face).len() as i32]);
+        let parts = match (piece, kind) {
+            (Some([corner, _]), _) => corner..corner + 1,
+            (None, PatchKind::Triangle) => 0..3,
+            _ => -1..0,
+        };
+        Self { face, kind, piece, parts }
+    }
+
+    pub(super) fn of(prepared: &Prepared, patch: &Patch) -> Self {
+        let face = Self::new(prepared, patch.face, patch.kind);
+        let pentagon = (patch.kind == PatchKind::Pentagon).then(|| [patch.first() as i32, 5]);
+        Self { piece: face.piece.or(pentagon), ..face }
+    }
+
+    /// Those that are drawn, in order.
+    pub(super) fn all(prepared: &Prepared) -> Vec<Self> {
+        let topology = prepared.topology();
+        let faces = (0..).zip(draws_face(topology)).filter(|(_, draws)| *draws);
+        // The prepared mesh has no larger faces than these.
+        faces.filter_map(|(face, _)| Some(Self::new(prepared, face, topology.patch_kind(face)?))).collect()
+    }
+
+    /// Where a point is that is given by the parameters of its patch.
+    pub(super) fn parameters(&self, [u, v]: [f64; 2]) -> Parameters {
+        match (self.piece, self.kind) {
+            (Some([corner, size]), _) => {
+                let (is_next, u, v) = in_wedge(u, v);
+                Parameters { sub: if is_next { (corner + 1) % size } else { corner }, u, v }
+            }
+            (None, PatchKind::Triangle) => Parameters::of_triangle([u, v]),
+            _ => Parameters { sub: -1, u, v },
+        }
+    }
 }
 
 /// The patches of a scheme.
@@ -37,9 +84,10 @@ impl<'p> SchemePatches<'p> {
 
 /// The patches of all schemes that have them, and the surface they approximate.
 pub(super) struct Surfaces<'s> {
+    /// Of the faces that the limit surface has.
     pub topology: &'s Arc<Topology>,
-    /// Faces that are drawn, and the patches they become.
-    pub faces: Vec<(u32, PatchKind)>,
+    /// Those that are drawn.
+    pub faces: Vec<Face>,
     pub schemes: Vec<SchemePatches<'s>>,
 }
 
@@ -67,12 +115,15 @@ impl Surfaces<'_> {
     /// The patch at parameters of a part of the limit surface.
     pub(super) fn evaluate(&self, scheme: usize, face: usize, points: &[DVec3], at: Parameters) -> Sample<DVec3> {
         let SchemePatches { surface, patches, .. } = &self.schemes[scheme];
+        if patches[face].is_wedge() {
+            return surface.evaluate_root(patches[face], points, at.u, at.v);
+        }
         let [u, v] = at.of_patch();
         surface.evaluate(patches[face], points, u, v)
     }
 
     pub(super) fn limit(&self, limit: &LimitSurface, face: usize, at: Parameters) -> LimitSample {
-        limit.evaluate(self.faces[face].0, at.sub, at.u, at.v)
+        limit.evaluate(self.faces[face].face, at.sub, at.u, at.v)
     }
 }
 
@@ -102,21 +153,8 @@ impl Parameters {
         }
     }
 
-    /// The other way: where the point of a patch is.
-    pub(super) fn of_point(patch: Patch, [u, v]: [f64; 2]) -> Self {
-        match patch.kind {
-            PatchKind::Regular | PatchKind::IrregularQuad => return Self { sub: -1, u, v },
-            PatchKind::Pentagon => {
-                // A piece is half of the parts at either end of its edge.
-                let (here, next) = (patch.first() as i32, (patch.first() as i32 + 1) % 5);
-                let centre = 1.0 - u - v;
-                return match u >= v {
-                    true => Self { sub: here, u: 2.0 * v + centre, v: centre },
-                    false => Self { sub: next, u: centre, v: 2.0 * u + centre },
-                };
-            }
-            PatchKind::Triangle => {}
-        }
+    /// The other way: where the point of a triangle is.
+    fn of_triangle([u, v]: [f64; 2]) -> Self {
         let corners = [u, v, 1.0 - u - v];
         let nearest = (1..3).fold(0, |best, k| if corners[k] > corners[best] { k } else { best });
         let (to_next, to_previous) = (corners[(nearest + 1) % 3], corners[(nearest + 2) % 3]);
@@ -127,11 +165,6 @@ impl Parameters {
     }
 }
 
-/// The parts of a patch, by the `sub` of the limit surface.
-pub(super) fn parts(kind: PatchKind) -> std::ops::Range<i32> {
-    if kind == PatchKind::Triangle { 0..3 } else { -1..0 }
-}
-
 /// Between unit vectors, in radians; `None` if one is zero.
 pub(super) fn angle(a: DVec3, b: DVec3) -> Option<f64> {
     (a != DVec3::ZERO && b != DVec3::ZERO).then(|| a.cross(b).length().atan2(a.dot(b)))
@@ -140,15 +173,12 @@ pub(super) fn angle(a: DVec3, b: DVec3) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Scheme;
-    use crate::table::PatchId;
 
     #[test]
     fn points_of_triangles_are_found_in_their_parts() {
         for (sub, i, j) in (0..3).flat_map(|sub| (0..8).flat_map(move |i| (0..8).map(move |j| (sub, i, j)))) {
             let at = Parameters { sub, u: f64::from(i) / 8.0, v: f64::from(j) / 8.0 };
-            let patch = Patch { face: 0, kind: PatchKind::Triangle, scheme: Scheme::Gregory, id: PatchId::whole(0) };
-            let back = Parameters::of_point(patch, at.of_patch());
+            let back = Parameters::of_triangle(at.of_patch());
             assert_eq!(back.sub, sub);
             assert!((back.u - at.u).abs().max((back.v - at.v).abs()) < 1e-12, "{at:?} {back:?}");
         }

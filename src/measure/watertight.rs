@@ -3,7 +3,7 @@
 use crate::capture::{CaptureDraw, Captured, CapturedVertex, Idle, Which};
 use crate::gpu::Blend;
 use crate::headless::{Headless, Offscreen, OffscreenDesc, Texture};
-use crate::mesh::{ControlMesh, FaceVarying, MeshData};
+use crate::mesh::{ControlMesh, FaceVarying, MeshData, SHARPNESS_INFINITE};
 use crate::renderer::{
     DrawItem, EdgeTable, Error, Factor, Fragment, ModelOptions, ModelTables, Options, Renderer, Style, Target, View,
 };
@@ -83,10 +83,17 @@ impl Seams {
         let edges = prepared.edges(plan);
         let mut patches = vec![0; edges.vertices.len()];
         edges.of_corners.iter().for_each(|&edge| patches[edge as usize] += 1);
+        // Leaves on both sides of an edge have one normal wherever the limit surface has.
+        let mut of_leaves = vec![true; edges.vertices.len()];
+        let refined = plan.patches().iter().flat_map(|patch| std::iter::repeat_n(patch.refined, patch.kind.corners()));
+        refined.zip(&edges.of_corners).for_each(|(refined, &edge)| of_leaves[edge as usize] &= refined);
         let mut smooth = vec![true; edges.vertices.len()];
         let half_edges = plan.corners(topology);
         for (&h, &edge) in half_edges.iter().zip(&edges.of_corners) {
-            smooth[edge as usize] = topology.is_within_rings(h);
+            smooth[edge as usize] = match of_leaves[edge as usize] {
+                true => topology.sharpness(h) < SHARPNESS_INFINITE,
+                false => topology.is_within_rings(h),
+            };
         }
         let corner = |&h: &u32| {
             let (vertex, next) = (topology.mesh_vertex(h), topology.mesh_vertex(topology.next(h)));

@@ -1,8 +1,10 @@
 //! The cells of the caller's faces that a prepared mesh has as faces, and the curves of its edges.
 
 use super::patch_id::{FaceOrigin, MAX_PARTS, PatchId};
+use super::plan::Patch;
+use super::wedges::CutFace;
 use crate::mesh::{ControlMesh, MeshError};
-use crate::topology::Topology;
+use crate::topology::{PatchKind, Topology};
 
 /// Numbers of the parts of a mesh's faces, as Ptex numbers its faces: a quad is one part, any other face has one around each
 /// corner.
@@ -51,15 +53,19 @@ impl Parts {
     }
 
     /// Where a patch comes from.
-    pub(super) fn origin(&self, id: PatchId, is_piece: bool) -> FaceOrigin {
-        let (face, corner) = self.face(id.face());
-        let corner = if is_piece { Some(id.first()) } else { corner.filter(|_| id.level() > 0) };
+    pub(super) fn origin(&self, patch: &Patch) -> FaceOrigin {
+        let (id, (face, part)) = (patch.id, self.face(patch.id.face()));
+        let corner = match patch.kind {
+            PatchKind::Pentagon => Some(id.first()),
+            _ if patch.is_wedge() => part,
+            _ => part.filter(|_| id.level() > 0),
+        };
         FaceOrigin { face, corner, id }
     }
 }
 
 /// A part of a curve: what half-edges lie on. A curve begins as an edge, that of the caller's mesh or one within a face where
-/// refinement made it; each further step halves its parts.
+/// refinement made it or wedges meet; each further step halves its parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct CurvePart {
     /// The number of the curve.
@@ -91,21 +97,30 @@ impl OnCurve {
 #[derive(Debug, Clone)]
 pub struct Cells {
     parts: Parts,
-    /// By face of the prepared mesh; empty where nothing was refined.
+    /// By face of the prepared mesh; empty where nothing was refined or cut.
     of_faces: Vec<PatchId>,
-    /// By half-edge; empty where nothing was refined.
+    /// By half-edge; empty where nothing was refined or cut.
     of_half_edges: Vec<OnCurve>,
     /// Curves so far, where something was refined.
     curves: u32,
     /// Vertices of the caller's mesh.
     control_vertices: u32,
+    /// Whether the mesh is refined.
+    is_refined: bool,
 }
 
 impl Cells {
     /// Of the mesh as it is.
     pub(super) fn whole(mesh: &ControlMesh) -> Result<Self, MeshError> {
         let (parts, control_vertices) = (Parts::new(mesh)?, mesh.vertex_count() as u32);
-        Ok(Self { parts, of_faces: Vec::new(), of_half_edges: Vec::new(), curves: 0, control_vertices })
+        Ok(Self {
+            parts,
+            of_faces: Vec::new(),
+            of_half_edges: Vec::new(),
+            curves: 0,
+            control_vertices,
+            is_refined: false,
+        })
     }
 
     /// Of the mesh that one step of refinement makes of that of `topology`, at most [`MAX_LEVEL`](super::patch_id::MAX_LEVEL) in all.
@@ -131,13 +146,35 @@ impl Cells {
         };
         let corners = mesh.corner_count() as u32;
         let of_half_edges = (0..corners).flat_map(child).collect();
-        Self { of_faces, of_half_edges, curves: curves + corners, ..self }
+        Self { of_faces, of_half_edges, curves: curves + corners, is_refined: true, ..self }
+    }
+
+    /// Of the mesh that is left of that of `topology`, which nothing refined, when faces of it are cut: `faces` says what its own are.
+    pub(super) fn cut(self, topology: &Topology, faces: &[CutFace]) -> Self {
+        let (whole, curves) = edges_as_curves(topology);
+        let mesh = topology.mesh();
+        let of_face = |cut: &CutFace| PatchId::whole(self.parts.first(cut.face) + cut.corner.unwrap_or(0));
+        // From the corner of half-edge h to the centre of its face.
+        let spoke = |h: u32, reversed| OnCurve { part: CurvePart { curve: curves + h, level: 0, index: 0 }, reversed };
+        let mut of_half_edges = Vec::with_capacity(4 * faces.len());
+        for &CutFace { face, corner } in faces {
+            let corners = mesh.face_corners(face);
+            match corner {
+                None => of_half_edges.extend_from_slice(&whole[corners]),
+                Some(corner) => {
+                    let h = corners.start as u32 + corner;
+                    of_half_edges.extend([whole[h as usize], spoke(topology.next(h), false), spoke(h, true)]);
+                }
+            }
+        }
+        let curves = curves + mesh.corner_count() as u32;
+        Self { of_faces: faces.iter().map(of_face).collect(), of_half_edges, curves, ..self }
     }
 
     /// Where the vertices of the prepared mesh start among those that shaders read: after the control vertices where it is
     /// refined, else they are these.
     pub(super) fn first_vertex(&self) -> u32 {
-        if self.of_faces.is_empty() { 0 } else { self.control_vertices }
+        if self.is_refined { self.control_vertices } else { 0 }
     }
 
     /// The parts of the caller's faces.

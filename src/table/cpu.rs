@@ -31,8 +31,10 @@ pub struct CpuSurface {
 #[derive(Debug, Clone)]
 struct Leaves {
     plan: adaptive::Plan,
-    /// The place of each leaf's first control point among those of its face.
+    /// The place of each leaf's first control point among those of its root.
     starts: Vec<u32>,
+    /// How many control points each root has.
+    counts: Vec<u32>,
 }
 
 impl CpuSurface {
@@ -91,10 +93,10 @@ impl CpuSurface {
         self.plan.patches().par_iter().map(|&patch| self.points_of(patch, &vertices)).collect()
     }
 
-    /// What control points are made of: `value` of each position of the prepared mesh, then the vertices of
+    /// What control points are made of: `value` of each position of the prepared mesh ([`Prepared::whole`]), then the vertices of
     /// [`adaptive::Plan`].
     pub fn vertices<T: Blend + Send + Sync>(&self, value: impl Fn(DVec3) -> T) -> Vec<T> {
-        let mesh = self.prepared.mesh();
+        let mesh = self.prepared.whole().mesh();
         let vertices: Vec<T> = (0..mesh.vertex_count() as u32).map(|vertex| value(mesh.position(vertex))).collect();
         match &self.leaves {
             Some(leaves) => leaves.plan.points(&vertices),
@@ -103,7 +105,7 @@ impl CpuSurface {
     }
 
     /// The control points of a patch, with [`CpuSurface::vertices`]: those of its scheme; of a face that is refined those of its
-    /// leaves, one leaf after the other in the order of its quadtree.
+    /// leaves, one leaf after the other in the order of its quadtree, or of its two quadtrees.
     pub fn points_of<T: Blend>(&self, patch: Patch, vertices: &[T]) -> Vec<T> {
         let Some(leaves) = self.leaves_of(patch) else {
             let vertex = |vertex: u32| vertices[vertex as usize].clone();
@@ -111,11 +113,13 @@ impl CpuSurface {
         };
         let plan = &leaves.plan;
         let of_leaf = |leaf: u32| plan.control_points(&plan.leaves[leaf as usize], vertices);
-        plan.leaves_of(plan.face_roots[patch.face as usize]).into_iter().flat_map(of_leaf).collect()
+        let [root, next] = self.prepared.roots(plan, &patch);
+        let leaves = std::iter::once(root).chain((next != root).then_some(next)).flat_map(|root| plan.leaves_of(root));
+        leaves.flat_map(of_leaf).collect()
     }
 
     /// A patch with these control points at the parameters (u, v), by which a refined face finds its leaf. GLSL twin:
-    /// `evaluate_face` in `glsl/lib/evaluate/leaves.glsl`.
+    /// `evaluate_spot` in `glsl/lib/evaluate/leaves.glsl`.
     ///
     /// On its edges, too, the face asks its own leaves, where shaders ask those of the edge's owner. The two differ by rounding, but
     /// for positions next to an end cap that does not have the crease of finite sharpness beside it, and for normals where several
@@ -124,19 +128,27 @@ impl CpuSurface {
     /// # Panics
     /// If `points` are not those of [`CpuSurface::points_of`].
     pub fn evaluate<P: Point>(&self, patch: Patch, points: &[P], u: f64, v: f64) -> Sample<P> {
-        let Some(Leaves { plan, starts }) = self.leaves_of(patch) else {
+        let Some(leaves) = self.leaves_of(patch) else {
             return patch.scheme.evaluate(patch.kind, points, scalar::<P>(u), scalar::<P>(v));
         };
-        let (leaf, u, v) = plan.locate(plan.face_roots[patch.face as usize], u, v);
-        let kind = plan.leaves[leaf as usize].kind;
-        let points = &points[starts[leaf as usize] as usize..][..kind.points()];
-        let [position, du, dv] = kind.evaluate(points, u, v);
-        Sample { position, normal: unit_normal(du, dv, P::default()) }
+        let [root, next] = self.prepared.roots(&leaves.plan, &patch);
+        match patch.is_wedge().then(|| in_wedge(u, v)) {
+            None => leaves.evaluate(root, points, u, v),
+            Some((false, u, v)) => leaves.evaluate(root, points, u, v),
+            Some((true, u, v)) => leaves.evaluate(next, &points[leaves.counts[root as usize] as usize..], u, v),
+        }
+    }
+
+    /// The first root of a patch that is refined, with these control points, at (u, v): also where a wedge does not have it.
+    #[cfg(feature = "measure")]
+    pub(crate) fn evaluate_root<P: Point>(&self, patch: Patch, points: &[P], u: f64, v: f64) -> Sample<P> {
+        let leaves = self.leaves_of(patch).expect("the patch is refined");
+        leaves.evaluate(self.prepared.roots(&leaves.plan, &patch)[0], points, u, v)
     }
 
     /// The leaves, if the patch is a face that is refined.
     fn leaves_of(&self, patch: Patch) -> Option<&Leaves> {
-        self.leaves.as_ref().filter(|_| patch.kind == PatchKind::IrregularQuad)
+        self.leaves.as_ref().filter(|_| patch.refined)
     }
 
     /// Every patch at the parameters of [`grid_parameters`].
@@ -157,16 +169,33 @@ impl CpuSurface {
 
 impl Leaves {
     fn new(plan: adaptive::Plan) -> Self {
-        let mut starts = vec![0; plan.leaves.len()];
+        let (mut starts, mut counts) = (vec![0; plan.leaves.len()], Vec::with_capacity(plan.roots.len()));
         for root in 0..plan.roots.len() as u32 {
             let mut start = 0;
             for leaf in plan.leaves_of(root) {
                 starts[leaf as usize] = start;
                 start += plan.leaves[leaf as usize].kind.points() as u32;
             }
+            counts.push(start);
         }
-        Self { plan, starts }
+        Self { plan, starts, counts }
     }
+
+    /// A root at (u, v), whose control points come first.
+    fn evaluate<P: Point>(&self, root: u32, points: &[P], u: f64, v: f64) -> Sample<P> {
+        let (leaf, u, v) = self.plan.locate(root, u, v);
+        let kind = self.plan.leaves[leaf as usize].kind;
+        let [position, du, dv] = kind.evaluate(&points[self.starts[leaf as usize] as usize..][..kind.points()], u, v);
+        Sample { position, normal: unit_normal(du, dv, P::default()) }
+    }
+}
+
+/// Where a point of a wedge is, by its first two barycentric coordinates: whether in the root around the end of the wedge's edge, and
+/// (u, v) there. Each root has half of the wedge, which is half of the root. GLSL twin: `wedge_spot` in
+/// `glsl/lib/evaluate/leaves.glsl`.
+pub(crate) fn in_wedge(x: f64, y: f64) -> (bool, f64, f64) {
+    let z = 1.0 - x - y;
+    if x >= y { (false, 2.0 * y + z, z) } else { (true, z, 2.0 * x + z) }
 }
 
 /// A grid of parameters on a patch, `n` along each side.

@@ -1,22 +1,27 @@
 //! What shaders read of faces that are refined: quadtrees, leaves, and who owns edges and corners.
 
 use super::plan::PatchPlan;
+use super::prepare::Prepared;
 use crate::adaptive::{self, LEAF, LeafKind, LevelCounts};
 use crate::constants::{
-    FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE, OWNER_SHIFT,
+    FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE, OWNER_SHIFT, OWNERS,
+    WEDGE_BIT,
 };
 use crate::limit::Stencils;
 use crate::mesh::SHARPNESS_INFINITE;
-use crate::topology::{PatchKind, Topology};
+use crate::topology::Topology;
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// The faces of a plan of adaptive subdivision, as shaders read them. GLSL twin: `glsl/lib/evaluate/leaves.glsl`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeafTable {
-    /// For each irregular quad, in the order of the patches: its root; the owners of the positions on its edges, from corner k to the
-    /// next, and at its corners; likewise the owners of the normals, which differ where infinitely sharp edges part faces. An owner
-    /// is a patch from bit `OWNER_SHIFT` on, and its edge or corner; or `OWNER_NONE`, where a neighbour is not refined.
+    /// For each patch from the first that is refined on, in order: its root, of a wedge that around the start of its edge, then that
+    /// around the end; the owners of the positions on its edges, from corner k to the next, and at its corners; likewise the owners of
+    /// the normals, which differ where infinitely sharp edges part faces. An owner is a patch from bit `OWNER_SHIFT` on, with
+    /// `WEDGE_BIT` where it is a wedge, and its edge or corner; or `OWNER_NONE`, where a neighbour is not refined. Of patches that are
+    /// not refined zeros.
     pub faces: Vec<[u32; FACE_WORDS as usize]>,
     /// For each leaf, its kind; a crease's sharpness or the first of the four face points f- of an end cap; two words that are not
     /// used; then 16 control points, row by row along v.
@@ -25,7 +30,7 @@ pub struct LeafTable {
     pub quadtrees: Vec<u32>,
     /// The leaves and refined cells of each level: [`adaptive::Plan::counts`].
     pub counts: Vec<LevelCounts>,
-    /// The number of the first irregular quad among all patches.
+    /// The number of the first patch that is refined.
     pub first_patch: u32,
     /// Sums that make the vertices which are not the mesh's.
     pub refinement: Refinement,
@@ -63,19 +68,22 @@ impl Refinement {
 }
 
 impl LeafTable {
-    /// For the patches in `patches` of the mesh that was planned.
-    pub(super) fn new(topology: &Topology, patches: &PatchPlan, mut plan: adaptive::Plan) -> Self {
+    /// For the patches in `patches` of a mesh that was planned.
+    pub(super) fn new(prepared: &Prepared, patches: &PatchPlan, mut plan: adaptive::Plan) -> Self {
         order_caps(&mut plan);
-        let range = patches.range(PatchKind::IrregularQuad);
+        let topology = prepared.topology();
+        let first_patch = patches.patches().iter().position(|patch| patch.refined).unwrap_or(patches.patches().len());
         let owners = Owners::new(topology, patches);
-        let faces = patches.patches()[range.clone()].par_iter();
+        let faces = patches.patches()[first_patch..].par_iter();
         let faces = faces.map(|patch| {
-            let first = topology.mesh().face_corners(patch.face).start as u32;
             let mut words = [0; FACE_WORDS as usize];
-            words[0] = plan.face_roots[patch.face as usize];
-            for (k, h) in (first..first + 4).enumerate() {
-                [words[1 + k], words[NORMAL_OWNERS as usize + k]] = owners.edge(h);
-                [words[5 + k], words[NORMAL_OWNERS as usize + 4 + k]] = owners.corner(h);
+            if patch.refined {
+                words[..2].copy_from_slice(&prepared.roots(&plan, patch));
+                let (edges, normals) = (OWNERS as usize, NORMAL_OWNERS as usize);
+                for (k, h) in patch.corners(topology).enumerate() {
+                    [words[edges + k], words[normals + k]] = owners.edge(h);
+                    [words[edges + 4 + k], words[normals + 4 + k]] = owners.corner(h);
+                }
             }
             words
         });
@@ -86,7 +94,7 @@ impl LeafTable {
         Self {
             faces,
             leaves,
-            first_patch: range.start as u32,
+            first_patch: first_patch as u32,
             refinement,
             counts: plan.counts(),
             quadtrees: plan.nodes,
@@ -94,14 +102,14 @@ impl LeafTable {
     }
 }
 
-/// Whether a face is refined: it is not, if one regular leaf covers it.
+/// Whether a face is refined: it is not if it has no root, or one regular leaf covers it.
 pub(super) fn is_refined(plan: &adaptive::Plan, face: u32) -> bool {
     let roots = plan.face_roots[face as usize]..plan.face_roots[face as usize + 1];
     let whole = |root: u32| match plan.nodes[root as usize] {
         node if node & LEAF == 0 => false,
         node => plan.leaves[(node & !LEAF) as usize].kind == LeafKind::Regular,
     };
-    !(roots.len() == 1 && whole(roots.start))
+    !(roots.is_empty() || roots.len() == 1 && whole(roots.start))
 }
 
 fn leaf_words(
@@ -154,10 +162,12 @@ fn order_caps(plan: &mut adaptive::Plan) {
 /// Who makes what patches share.
 struct Owners<'t> {
     topology: &'t Topology,
-    /// The number of each face's patch, if it is an irregular quad.
+    /// The number of each face's patch, if it is refined.
     refined: Vec<u32>,
     /// Whether each face is drawn, but not refined.
     coarse: Vec<bool>,
+    /// The half-edges from each vertex in which several fans of faces touch.
+    touching: HashMap<u32, Vec<u32>>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -167,19 +177,27 @@ impl<'t> Owners<'t> {
         let faces = topology.mesh().face_count();
         let (mut refined, mut coarse) = (vec![NONE; faces], vec![false; faces]);
         for (patch, number) in patches.patches().iter().zip(0..) {
-            match patch.kind {
-                PatchKind::IrregularQuad => refined[patch.face as usize] = number,
-                _ => coarse[patch.face as usize] = true,
+            match patch.refined {
+                true => refined[patch.face as usize] = number,
+                false => coarse[patch.face as usize] = true,
             }
         }
-        Self { topology, refined, coarse }
+        let mut touching: HashMap<u32, Vec<u32>> = HashMap::new();
+        if topology.split_count() > 0 {
+            let half_edges = 0..topology.mesh().corner_count() as u32;
+            for h in half_edges.filter(|&h| topology.touches(topology.mesh_vertex(h))) {
+                touching.entry(topology.mesh_vertex(h)).or_default().push(h);
+            }
+        }
+        Self { topology, refined, coarse, touching }
     }
 
     /// The owner that a half-edge, or its start, is of.
     fn word(&self, h: u32) -> u32 {
         let face = self.topology.face(h);
         let k = h - self.topology.mesh().face_corners(face).start as u32;
-        self.refined[face as usize] << OWNER_SHIFT | k
+        let wedge = if self.topology.face_size(h) == 3 { WEDGE_BIT } else { 0 };
+        self.refined[face as usize] << OWNER_SHIFT | wedge | k
     }
 
     /// The first of some half-edges, in the order of their patches.
@@ -209,11 +227,12 @@ impl<'t> Owners<'t> {
     /// The owners of position and normal where a half-edge starts.
     fn corner(&self, h: u32) -> [u32; 2] {
         let (fan, _) = self.topology.fan(h);
-        if fan.iter().any(|&h| self.is_coarse(h)) {
+        let around = self.touching.get(&self.topology.mesh_vertex(h)).unwrap_or(&fan);
+        if around.iter().any(|&h| self.is_coarse(h)) {
             return [OWNER_NONE; 2];
         }
         let drawn = |h: &u32| self.refined[self.topology.face(*h) as usize] != NONE;
-        let owner = self.first(fan.iter().copied().filter(drawn)).unwrap_or(h);
+        let owner = self.first(around.iter().copied().filter(drawn)).unwrap_or(h);
         // The faces on the same side of all sharp edges. Half-edges of a fan follow each other around the vertex.
         let start = fan.iter().position(|&h| self.is_sharp(h)).unwrap_or(0);
         let around = (0..fan.len()).map(|i| fan[(start + i) % fan.len()]);

@@ -23,9 +23,12 @@ mod shared;
 mod sharing;
 mod stencils;
 mod subdivision;
+mod wedges;
 
 pub(crate) use bytes::bytes;
 pub use cells::{CurvePart, Parts};
+#[cfg(feature = "measure")]
+pub(crate) use cpu::in_wedge;
 pub use cpu::{CpuSurface, grid_parameters};
 pub use edges::{EdgeRecord, EdgeTable};
 pub use error::TableError;

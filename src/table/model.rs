@@ -75,7 +75,7 @@ impl ModelTables {
         if shared.is_some() && !options.scheme.is_watertight() {
             return Err(TableError::NothingShared { scheme: options.scheme });
         }
-        let leaves = adaptive.map(|adaptive| LeafTable::new(topology, &plan, adaptive));
+        let leaves = adaptive.map(|adaptive| LeafTable::new(&prepared, &plan, adaptive));
         let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(topology, &plan));
         Ok(Self {
             texcoords: plan.texcoords(topology),
@@ -91,7 +91,7 @@ impl ModelTables {
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
-            patch_vertices: prepared.mesh().vertex_count(),
+            patch_vertices: prepared.whole().mesh().vertex_count(),
             steps: prepared.steps,
         })
     }

@@ -17,6 +17,9 @@ pub struct Patch {
     pub kind: PatchKind,
     /// The scheme that draws it: the one asked for, or the one fallen back to.
     pub scheme: Scheme,
+    /// Whether it is drawn by its leaves ([`adaptive`](crate::adaptive)). A triangle is then a wedge: that between an edge of a face
+    /// other than a quad and the centre of the face.
+    pub refined: bool,
     /// What it covers of the caller's mesh.
     pub id: PatchId,
 }
@@ -45,6 +48,11 @@ impl Patch {
         if self.kind == PatchKind::Pentagon { self.id.first() } else { 0 }
     }
 
+    /// Whether it is the triangle between an edge of a face other than a quad and the centre of the face.
+    pub fn is_wedge(&self) -> bool {
+        self.refined && self.kind == PatchKind::Triangle
+    }
+
     /// The edges along which the surface ends or is drawn sharp: see [`PatchId::boundary`].
     fn boundary(self, topology: &Topology) -> u32 {
         let edges = if self.kind == PatchKind::Pentagon { 1 } else { self.kind.corners() };
@@ -53,26 +61,28 @@ impl Patch {
     }
 
     /// What patches are sorted by.
-    pub(crate) fn group(self) -> (PatchKind, Scheme) {
-        (self.kind, self.scheme)
+    pub(crate) fn group(self) -> (PatchKind, Scheme, bool) {
+        (self.kind, self.scheme, self.refined)
     }
 }
 
-/// Patches of one kind and scheme, which stand together and are drawn together.
+/// Patches of one kind and scheme, all refined or none, which stand together and are drawn together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PatchGroup {
     /// The kind of all of them.
     pub kind: PatchKind,
     /// The scheme of all of them.
     pub scheme: Scheme,
+    /// Whether all of them are drawn by their leaves: [`Patch::refined`].
+    pub refined: bool,
     /// Where they stand among [`PatchPlan::patches`].
     pub patches: Range<usize>,
     /// The number of the first corner of the first, when the corners of all patches are counted in order.
     pub first_corner: usize,
 }
 
-/// All patches of a mesh: the regular ones, then irregular quads, triangles, pieces of pentagons; in each kind by scheme, and
-/// then in the order of their faces.
+/// All patches of a mesh: the regular ones, then irregular quads, triangles, pieces of pentagons; in each kind by scheme, those that
+/// are refined last, and then in the order of their faces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PatchPlan {
     patches: Vec<Patch>,
@@ -103,9 +113,10 @@ impl PatchPlan {
                 (Err(_), Some(fallback)) => (fallback.check(topology, face)?, fallback),
                 (kind, _) => (kind?, scheme),
             };
+            let refined = is_refined(face);
             // Of a face that is refined, what the corners of irregular ones have.
-            let kind = if kind == PatchKind::Regular && is_refined(face) { PatchKind::IrregularQuad } else { kind };
-            Ok(Patch { face, kind, scheme, id: cells.of_face(face) })
+            let kind = if kind == PatchKind::Regular && refined { PatchKind::IrregularQuad } else { kind };
+            Ok(Patch { face, kind, scheme, refined, id: cells.of_face(face) })
         };
         let faces = draws_face(topology).into_par_iter().enumerate();
         let faces = faces.map(|(face, draws)| draws.then(|| of_face(face as u32)));
@@ -128,8 +139,8 @@ impl PatchPlan {
         let mut groups = Vec::new();
         let (mut first, mut first_corner) = (0, 0);
         for same in patches.chunk_by(|a, b| a.group() == b.group()) {
-            let (kind, scheme) = same[0].group();
-            groups.push(PatchGroup { kind, scheme, patches: first..first + same.len(), first_corner });
+            let (kind, scheme, refined) = same[0].group();
+            groups.push(PatchGroup { kind, scheme, refined, patches: first..first + same.len(), first_corner });
             first += same.len();
             first_corner += same.len() * kind.corners();
         }
@@ -148,7 +159,7 @@ impl PatchPlan {
         &self.patches
     }
 
-    /// The patches of each kind and scheme that there are, in order.
+    /// The patches of each group that there are, in order.
     pub fn groups(&self) -> &[PatchGroup] {
         &self.groups
     }
@@ -161,7 +172,7 @@ impl PatchPlan {
 
     /// Where a patch comes from in the caller's mesh.
     pub fn origin(&self, patch: &Patch) -> FaceOrigin {
-        self.parts.origin(patch.id, patch.kind == PatchKind::Pentagon)
+        self.parts.origin(patch)
     }
 
     /// Where each patch comes from, in order.

@@ -7,8 +7,9 @@ use super::error::TableError;
 use super::leaves::is_refined;
 use super::options::{Evaluation, TableOptions};
 use super::patch_id::MAX_LEVEL;
-use super::plan::PatchPlan;
-use crate::adaptive::{self, AdaptiveOptions};
+use super::plan::{Patch, PatchPlan};
+use super::wedges::{CutFace, Wedges};
+use crate::adaptive;
 use crate::limit::{Stencils, refine};
 use crate::mesh::{ControlMesh, MAX_CORNERS, MeshError, SHARPNESS_INFINITE};
 use crate::patch::{Fallback, Scheme, Undefined};
@@ -102,6 +103,7 @@ impl fmt::Display for Notice {
 #[derive(Debug, Clone)]
 pub struct Prepared {
     topology: Arc<Topology>,
+    cut: Option<Cut>,
     /// The refinement steps, in order. Each step's inputs are the outputs of the one before.
     pub steps: Vec<Stencils>,
     cells: Cells,
@@ -112,17 +114,49 @@ pub struct Prepared {
     split_vertices: usize,
 }
 
+/// Faces of a prepared mesh that are cut in wedges.
+#[derive(Debug, Clone)]
+struct Cut {
+    /// The mesh before.
+    whole: Arc<Topology>,
+    /// By face of the prepared mesh.
+    faces: Vec<CutFace>,
+}
+
 impl Prepared {
     /// The mesh as it is.
     fn of(mesh: &ControlMesh) -> Result<Self, MeshError> {
         Ok(Self {
             topology: Arc::new(Topology::new(mesh)),
+            cut: None,
             steps: Vec::new(),
             cells: Cells::whole(mesh)?,
             refined_faces: None,
             rounds_sharpness: true,
             split_vertices: 0,
         })
+    }
+
+    /// The mesh refined `levels` times.
+    fn refined(mesh: &ControlMesh, levels: u32) -> Result<Self, MeshError> {
+        // Before anything is allocated. Each step makes a quad of every corner.
+        let corners = 4usize.saturating_pow(levels).saturating_mul(mesh.corner_count());
+        if corners > MAX_CORNERS {
+            return Err(MeshError::TooLarge { what: "face corners when refined", count: corners, max: MAX_CORNERS });
+        }
+        if levels > MAX_LEVEL {
+            let (count, max) = (levels as usize, MAX_LEVEL as usize);
+            return Err(MeshError::TooLarge { what: "levels of refinement", count, max });
+        }
+        let mut prepared = Self::of(mesh)?;
+        for _ in 0..levels {
+            prepared.split_vertices += prepared.topology.split_count();
+            let refined = refine(&prepared.topology)?;
+            prepared.cells = prepared.cells.refined(&prepared.topology);
+            prepared.steps.push(refined.stencils);
+            prepared.topology = Arc::new(Topology::new(&refined.mesh));
+        }
+        Ok(prepared)
     }
 
     /// The prepared mesh: triangles and quads only, or pentagons too where the scheme has patches for them.
@@ -133,6 +167,46 @@ impl Prepared {
     /// How its faces hang together.
     pub fn topology(&self) -> &Arc<Topology> {
         &self.topology
+    }
+
+    /// How the faces hang together that adaptive subdivision is of: those of the prepared mesh, before some are cut in wedges.
+    pub fn whole(&self) -> &Arc<Topology> {
+        self.cut.as_ref().map_or(&self.topology, |cut| &cut.whole)
+    }
+
+    /// The face of [`Prepared::whole`] that a face of the prepared mesh is, or that it is a wedge of; then the corner from which the
+    /// wedge's edge starts.
+    pub fn whole_face(&self, face: u32) -> (u32, Option<u32>) {
+        self.cut.as_ref().map_or((face, None), |cut| (cut.faces[face as usize].face, cut.faces[face as usize].corner))
+    }
+
+    /// The roots of the quadtrees that a patch is evaluated by: of a wedge those around the two ends of its edge, else twice the same.
+    pub fn roots(&self, plan: &adaptive::Plan, patch: &Patch) -> [u32; 2] {
+        let (face, corner) = self.whole_face(patch.face);
+        let first = plan.face_roots[face as usize];
+        let Some(corner) = corner else { return [first; 2] };
+        let next = if first + corner + 1 == plan.face_roots[face as usize + 1] { first } else { first + corner + 1 };
+        [first + corner, next]
+    }
+
+    /// Has the faces that have centres in a plan cut in wedges, and plans all.
+    fn with_leaves(self, scheme: Scheme, plan: adaptive::Plan) -> Result<Planned, TableError> {
+        let Self { topology: whole, cells, .. } = self;
+        let (topology, cells, cut) = match plan.centre_faces.is_empty() {
+            true => (whole, cells, None),
+            false => {
+                let Wedges { mesh, faces } = Wedges::new(&whole, &plan.centre_faces)?;
+                let cells = cells.cut(&whole, &faces);
+                (Arc::new(Topology::new(&mesh)), cells, Some(Cut { whole, faces }))
+            }
+        };
+        let prepared = Self { topology, cells, cut, ..self };
+        let is_refined = |face| {
+            let (face, corner) = prepared.whole_face(face);
+            corner.is_some() || is_refined(&plan, face)
+        };
+        let patches = PatchPlan::new(&prepared.topology, &prepared.cells, scheme, Fallback::Refuse, is_refined)?;
+        Ok((prepared, patches, Some(plan)))
     }
 
     /// Plans the patches of the prepared mesh.
@@ -191,43 +265,30 @@ pub fn prepare_patches(
     Ok((prepared, plan))
 }
 
+/// A prepared mesh, its patches, and what is refined of it.
+type Planned = (Prepared, PatchPlan, Option<adaptive::Plan>);
+
 /// Prepares `mesh` for the tables of some options, and plans its patches and its adaptive subdivision.
 ///
 /// # Errors
 /// Those of [`prepare_patches`], [`prepare_quads`] and [`adaptive::Plan::new`].
-pub(crate) fn prepare_for(
-    mesh: &ControlMesh,
-    options: &TableOptions,
-) -> Result<(Prepared, PatchPlan, Option<adaptive::Plan>), TableError> {
+pub(crate) fn prepare_for(mesh: &ControlMesh, options: &TableOptions) -> Result<Planned, TableError> {
     let &TableOptions { scheme, fallback, evaluation, refine, .. } = options;
     match (options.adaptive, evaluation) {
         (Some(_), Evaluation::Subdivision) => Err(TableError::NotAdaptive { evaluation }),
         (Some(adaptive), _) => {
-            let (prepared, patches, plan) = prepare_adaptive(mesh, scheme, &adaptive, refine)?;
-            Ok((prepared, patches, Some(plan)))
+            let prepared = Prepared { rounds_sharpness: false, ..Prepared::refined(mesh, refine)? };
+            let plan = adaptive::Plan::new(&prepared.topology, scheme, &adaptive)?;
+            prepared.with_leaves(scheme, plan)
         }
         (None, Evaluation::Subdivision) => prepare_quads(mesh, refine).map(|(prepared, plan)| (prepared, plan, None)),
+        (None, _) if refine == 0 && scheme.has_caps() && mesh.data().face_sizes.iter().any(|&size| size > 4) => {
+            let prepared = Prepared::of(mesh)?;
+            let plan = adaptive::Plan::around_polygons(&prepared.topology, scheme)?;
+            prepared.with_leaves(scheme, plan)
+        }
         (None, _) => prepare_patches(mesh, scheme, fallback, refine).map(|(prepared, plan)| (prepared, plan, None)),
     }
-}
-
-/// Prepares `mesh` for adaptive subdivision, and plans it: as [`prepare()`], but every face becomes a quad.
-///
-/// # Errors
-/// A refined mesh that cannot be addressed; those of [`adaptive::Plan::new`].
-fn prepare_adaptive(
-    mesh: &ControlMesh,
-    scheme: Scheme,
-    options: &AdaptiveOptions,
-    levels: u32,
-) -> Result<(Prepared, PatchPlan, adaptive::Plan), TableError> {
-    let notice = |faces, first| Notice::RefinedToQuads { faces, first };
-    let prepared = Prepared { rounds_sharpness: false, ..refine_faces(mesh, levels, |size| size != 4, notice)? };
-    let (topology, cells) = (&prepared.topology, &prepared.cells);
-    let plan = adaptive::Plan::new(topology, scheme, options)?;
-    let is_refined = |face| is_refined(&plan, face);
-    let patches = PatchPlan::new(topology, cells, scheme, Fallback::Refuse, is_refined)?;
-    Ok((prepared, patches, plan))
 }
 
 /// Refines `mesh` at least `levels` times, and once if it has faces with five or more corners.
@@ -258,32 +319,10 @@ fn refine_faces(
     misfit: impl Fn(u32) -> bool,
     notice: impl Fn(usize, u32) -> Notice,
 ) -> Result<Prepared, MeshError> {
-    let mut prepared = Prepared::of(mesh)?;
     let mut misfits = (0..).zip(&mesh.data().face_sizes).filter(|&(_, &size)| misfit(size));
-    let mut needed = levels;
-    if let Some((first, _)) = misfits.next() {
-        if levels == 0 {
-            prepared.refined_faces = Some(notice(1 + misfits.count(), first));
-        }
-        needed = levels.max(1);
-    }
-    // Before anything is allocated. Each step makes a quad of every corner.
-    let corners = 4usize.saturating_pow(needed).saturating_mul(mesh.corner_count());
-    if corners > MAX_CORNERS {
-        return Err(MeshError::TooLarge { what: "face corners when refined", count: corners, max: MAX_CORNERS });
-    }
-    if needed > MAX_LEVEL {
-        let (count, max) = (needed as usize, MAX_LEVEL as usize);
-        return Err(MeshError::TooLarge { what: "levels of refinement", count, max });
-    }
-    for _ in 0..needed {
-        prepared.split_vertices += prepared.topology.split_count();
-        let refined = refine(&prepared.topology)?;
-        prepared.cells = prepared.cells.refined(&prepared.topology);
-        prepared.steps.push(refined.stencils);
-        prepared.topology = Arc::new(Topology::new(&refined.mesh));
-    }
-    Ok(prepared)
+    let Some((first, _)) = misfits.next() else { return Prepared::refined(mesh, levels) };
+    let refined_faces = (levels == 0).then(|| notice(1 + misfits.count(), first));
+    Ok(Prepared { refined_faces, ..Prepared::refined(mesh, levels.max(1))? })
 }
 
 /// Vertices around which all is smooth but one sharp edge, which ends there.

@@ -58,7 +58,8 @@ fn samples_are_the_same_on_both_sides() {
         for (a, b) in cpu["faces"].as_array().unwrap().iter().zip(gpu["faces"].as_array().unwrap()) {
             assert_eq!((&a["face"], &a["sub"]), (&b["face"], &b["sub"]));
             assert_close(&a["positions"], &b["positions"], 1e-6 * diagonal);
-            for i in (0..grid * grid).filter(is_inside) {
+            let is_quad = length(&a["normals"]) == grid * grid;
+            for i in (0..grid * grid).filter(|i| is_quad && is_inside(i)) {
                 assert_close(&a["normals"][i], &b["normals"][i], 1e-4);
             }
         }
@@ -206,6 +207,6 @@ fn pictures_show_the_errors_of_their_depth() {
         let picture = "render --shape polygons --shading error-position --size 240x120 --samples 1";
         json(&format!("{picture} -o {} {more}", path.display()))["error"]["largest"].as_f64().unwrap()
     };
-    let [plain, depth_0, depth_2] = ["", "--adaptive 0", "--adaptive 2"].map(largest);
-    assert!((depth_0 / plain - 1.0).abs() < 1e-6 && depth_2 < 0.5 * plain, "{plain} {depth_0} {depth_2}");
+    let [plain, depth_0, depth_3] = ["", "--adaptive 0", "--adaptive 3"].map(largest);
+    assert!((depth_0 / plain - 1.0).abs() < 1e-6 && depth_3 < 0.5 * plain, "{plain} {depth_0} {depth_3}");
 }

@@ -106,8 +106,15 @@ fn info_counts() {
     assert_eq!((&info["faces"], &info["construction"]), (&6.into(), &"stencil".into()));
     assert!(info["bytes"]["stencil_types"].is_u64());
 
+    // Cut in wedges: three of each triangle, for all touch larger faces.
     let info = json("info --shape polygons");
-    assert!(info["ngons"].as_u64().unwrap() > 0 && length(&info["notices"]) == 1, "{info}");
+    assert_eq!((&info["ngons"], length(&info["notices"])), (&32.into(), 0), "{info}");
+    assert_eq!(
+        info["patches"],
+        serde_json::json!({ "regular": 0, "irregular_quad": 90, "triangle": 3 * 60 + 5 * 12 + 6 * 20, "pentagon": 0 })
+    );
+    let info = json("info --shape polygons --scheme acc");
+    assert!(length(&info["notices"]) == 1 && info["patches"]["triangle"] == 0, "{info}");
 
     let info = json("info --shape strip");
     assert_eq!(info["boundary_edges"], 18);

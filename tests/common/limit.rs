@@ -2,6 +2,7 @@
 
 use super::{files, shared, tests};
 use ash_subdiv::mesh::{BoundaryRule, ReadOptions, read};
+use ash_subdiv::table::FaceOrigin;
 use ash_subdiv::{ControlMesh, MeshData};
 use glam::DVec3;
 
@@ -34,6 +35,16 @@ pub struct LimitSample {
 pub struct VertexLimit {
     /// Whether limit point and normal exist and agree among the faces around the vertex.
     pub valid: bool,
+}
+
+/// The part of the limit surface where a patch has a point, and (u, v) there: the patch is a quad, or the triangle between an edge of
+/// another face and its centre, which is half of the parts around both ends of the edge.
+pub fn on_limit(mesh: &ControlMesh, origin: &FaceOrigin, [u, v]: [f64; 2]) -> (i32, [f64; 2]) {
+    let Some(corner) = origin.corner else { return (-1, [u, v]) };
+    let next = (corner + 1) % mesh.face(origin.face).len() as u32;
+    // By the middle of the edge: as much of it as the nearer end has of the other.
+    let (centre, middle) = (1.0 - u - v, 2.0 * u.min(v));
+    if u >= v { (corner as i32, [middle + centre, centre]) } else { (next as i32, [centre, middle + centre]) }
 }
 
 impl LimitSample {

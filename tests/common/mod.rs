@@ -11,7 +11,7 @@ pub mod random;
 #[cfg(feature = "headless")]
 pub mod stage;
 
-use ash_subdiv::ControlMesh;
+use ash_subdiv::{ControlMesh, Scheme};
 use std::path::{Path, PathBuf};
 
 /// The folder beside the checkout with reference data.
@@ -65,6 +65,11 @@ pub fn pentagons() -> ControlMesh {
         ..Default::default()
     })
     .expect("manifold")
+}
+
+/// Steps of refinement after which a scheme has patches for all faces: with leaves in their place, none are needed.
+pub fn steps_to_patches(mesh: &ControlMesh, scheme: Scheme) -> u32 {
+    u32::from(scheme.has_caps() && mesh.data().face_sizes.iter().any(|&size| size > 4))
 }
 
 /// A device that says everything that is wrong; end with `finish_silent`.

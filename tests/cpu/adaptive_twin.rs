@@ -1,5 +1,6 @@
 //! Adaptive surfaces on the CPU.
 
+use crate::common::limit::on_limit;
 use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::patch::Sample;
@@ -27,12 +28,12 @@ fn samples_come_to_the_limit_surface() {
         let mut before = f64::INFINITY;
         for depth in [0, 2, 5] {
             let surface = surface(&mesh, depth);
-            let topology = surface.prepared().topology();
-            let limit = LimitSurface::new(topology.mesh()).unwrap();
+            let (limit, origins) = (LimitSurface::new(&mesh).unwrap(), surface.origins());
             let mut worst = 0.0f64;
-            for (patch, samples) in surface.plan().patches().iter().zip(samples(&surface)) {
-                for ([u, v], sample) in grid_parameters(patch.kind, GRID).into_iter().zip(samples) {
-                    let truth = limit.evaluate(patch.face, -1, u, v);
+            for ((patch, origin), samples) in surface.plan().patches().iter().zip(&origins).zip(samples(&surface)) {
+                for (at, sample) in grid_parameters(patch.kind, GRID).into_iter().zip(samples) {
+                    let (sub, [u, v]) = on_limit(&mesh, origin, at);
+                    let truth = limit.evaluate(origin.face, sub, u, v);
                     let away = sample.position.distance(truth.position) / mesh.diagonal();
                     worst = worst.max(away);
                     // The limit surface itself for all leaves but end caps.

@@ -25,3 +25,4 @@ mod schemes;
 mod topology;
 mod twin_comments;
 mod vectors;
+mod wedges;

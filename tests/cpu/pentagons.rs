@@ -206,7 +206,10 @@ fn pentagons_are_refined_only_where_they_must_be() {
     let surface = CpuSurface::new(&mesh, Scheme::Pm, 0).expect("defined");
     assert_eq!(surface.plan().count(PatchKind::Pentagon), 10);
     assert!(surface.notices().is_empty(), "{:?}", surface.notices());
-    for scheme in [Scheme::Gregory, Scheme::Acc, Scheme::CPatch] {
+    // Where end caps are, faces are cut in wedges.
+    let cut = CpuSurface::new(&mesh, Scheme::Gregory, 0).expect("wedges");
+    assert!(cut.plan().patches().iter().all(|patch| patch.refined) && cut.notices().is_empty());
+    for scheme in [Scheme::Acc, Scheme::CPatch] {
         let refined = CpuSurface::new(&mesh, scheme, 0).expect("quads only");
         assert_eq!(refined.plan().patches().len(), mesh.corner_count(), "{scheme:?}");
     }

@@ -46,9 +46,16 @@ const FALLBACK: Fallback = Fallback::Gregory;
 
 /// The control points of the twin by face and part, since each construction sorts patches in its own way.
 fn reference(mesh: &ControlMesh, scheme: Scheme) -> HashMap<PatchId, (Patch, Vec<DVec3>)> {
-    let surface =
-        CpuSurface::with_options(mesh, &TableOptions { scheme, fallback: FALLBACK, ..TableOptions::default() })
-            .expect("small");
+    let surface = CpuSurface::with_options(
+        mesh,
+        &TableOptions {
+            refine: common::steps_to_patches(mesh, scheme),
+            scheme,
+            fallback: FALLBACK,
+            ..TableOptions::default()
+        },
+    )
+    .expect("small");
     // The GPU starts from f32 positions.
     let points = surface.control_points(|position| position.as_vec3().as_dvec3());
     surface.plan().patches().iter().zip(points).map(|(patch, points)| (patch.id, (*patch, points))).collect()
@@ -60,7 +67,8 @@ fn control_points() {
     for (name, mesh, scheme) in cases() {
         let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
-            let options = ModelOptions { scheme, fallback: FALLBACK, construction, ..ModelOptions::default() };
+            let refine = common::steps_to_patches(&mesh, scheme);
+            let options = ModelOptions { scheme, fallback: FALLBACK, construction, refine, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let points = captured.control_points().expect("a capture");
             let tables = captured.tables();
@@ -87,7 +95,8 @@ fn grids() {
     for (name, mesh, scheme) in cases() {
         let expected = reference(&mesh, scheme);
         for construction in Construction::ALL {
-            let options = ModelOptions { scheme, fallback: FALLBACK, construction, ..ModelOptions::default() };
+            let refine = common::steps_to_patches(&mesh, scheme);
+            let options = ModelOptions { scheme, fallback: FALLBACK, construction, refine, ..ModelOptions::default() };
             let captured = Captured::new(&headless, &mesh, &options).expect("a model");
             let tables = captured.tables();
             for (patch, samples) in tables.plan().patches().iter().zip(captured.grid(6).expect("a capture")) {
@@ -126,8 +135,15 @@ fn evaluated_vertices() {
             (Spacing::FractionalEven, 4.3),
         ] {
             for &(name, ref expected, ref mesh, scheme) in &few {
-                let options =
-                    ModelOptions { scheme, fallback: FALLBACK, construction, spacing, ..ModelOptions::default() };
+                let refine = common::steps_to_patches(mesh, scheme);
+                let options = ModelOptions {
+                    scheme,
+                    fallback: FALLBACK,
+                    construction,
+                    spacing,
+                    refine,
+                    ..ModelOptions::default()
+                };
                 let captured = Captured::new(&headless, mesh, &options).expect("a model");
                 let tables = captured.tables();
                 let vertices = captured.vertices(factor).expect("a capture");

@@ -61,8 +61,9 @@ fn control_points_of_shared_edges() {
     let headless = common::headless();
     let meshes = meshes();
     for (construction, scheme) in cases() {
-        let options = ModelOptions { construction, scheme, ..ModelOptions::default() };
         for (name, mesh, edges) in &meshes {
+            let refine = common::steps_to_patches(mesh, scheme);
+            let options = ModelOptions { construction, scheme, refine, ..ModelOptions::default() };
             let captured = Captured::new(&headless, mesh, &options).expect("a model");
             let points = captured.control_points().expect("a capture");
             let patches = captured.tables().plan().patches();
@@ -94,8 +95,10 @@ fn evaluated_vertices_of_shared_edges() {
             (Spacing::FractionalOdd, 4.3, true),
             (Spacing::FractionalEven, 4.3, true),
         ] {
-            let options = ModelOptions { construction, scheme, spacing, shared_normals, ..ModelOptions::default() };
             for (name, mesh, edges) in &meshes {
+                let refine = common::steps_to_patches(mesh, scheme);
+                let options =
+                    ModelOptions { construction, scheme, spacing, shared_normals, refine, ..ModelOptions::default() };
                 let captured = Captured::new(&headless, mesh, &options).expect("a model");
                 let on_edges = on_edges(&captured, factor);
                 for edge in edges {

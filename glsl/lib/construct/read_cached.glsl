@@ -9,11 +9,10 @@
 #include "edges/shared_texcoords.glsl"
 #endif
 
-// Of a patch whose first corner this is, for a lattice of so many segments.
-void read_cached(uint first_corner, uint segments) {
+// Of a patch with this number among all and this first corner, for a lattice of so many segments.
+void read_cached(uint patch_number, uint first_corner, uint segments) {
 #ifdef MAY_BE_ADAPTIVE
-    // Patches of four corners come first in a model.
-    evaluated_patch = first_corner / CORNERS;
+    evaluated_patch = patch_number;
 #endif
     for (int k = 0; k < CORNERS; ++k) {
         vec4 texels[KEPT_TEXELS] = texels_of_patch(first_corner, k);

@@ -9,7 +9,7 @@
 #include "draw/tables.glsl"
 #include "evaluate/patch.glsl"
 
-// Whether irregular quads are refined.
+// Whether patches are refined. Triangles are then wedges, each between an edge of a face other than a quad and the face's centre.
 layout(constant_id = ID_ADAPTIVE) const bool ADAPTIVE = false;
 
 layout(set = 1, binding = BINDING_TABLE_TEXELS + 4) uniform usamplerBuffer quadtree_texels;
@@ -140,9 +140,16 @@ Surface evaluate_leaf(uint leaf, vec2 at) {
     return Surface(position, du, dv, vec3(0.0));
 }
 
-// A face at (u, v), whose patch is given. Rust twin: `Plan::locate`.
-Surface evaluate_face(uint patch_number, vec2 at) {
-    uint node = quadtree_node(table_words[tables.faces + FACE_WORDS * patch_number]);
+// A place on the surface: the root of a quadtree, and (u, v) there.
+struct Spot {
+    uint root;
+    vec2 at;
+};
+
+// Rust twin: `Plan::locate`.
+Surface evaluate_spot(Spot spot) {
+    vec2 at = spot.at;
+    uint node = quadtree_node(spot.root);
     for (uint level = 0u; level < MAX_DEPTH && (node & LEAF_BIT) == 0u; ++level) {
         uvec2 far = uvec2(greaterThanEqual(at, vec2(0.5)));
         precise vec2 inside = 2.0 * at - vec2(far);
@@ -152,37 +159,122 @@ Surface evaluate_face(uint patch_number, vec2 at) {
     return evaluate_leaf(node & ~LEAF_BIT, at);
 }
 
+uint face_word(uint patch_number, uint word) {
+    return table_words[tables.faces + FACE_WORDS * patch_number + word];
+}
+
+// The point of a wedge with these barycentric coordinates: each half is half of a root. Rust twin: `in_wedge` in src/table/cpu.rs.
+Spot wedge_spot(uint patch_number, vec3 at) {
+    bool far = at.x < at.y;
+    precise float along = 2.0 * (far ? at.x : at.y) + at.z;
+    return Spot(face_word(patch_number, far ? 1u : 0u), far ? vec2(at.z, along) : vec2(along, at.z));
+}
+
+// The point of the patch that is evaluated.
+Spot own_spot(vec3 at) {
+#ifdef TRIANGLE
+    return wedge_spot(evaluated_patch, at);
+#else
+    return Spot(face_word(evaluated_patch, 0u), at.xy);
+#endif
+}
+
+// The edges on which a point lies.
+bvec4 edges_of(vec3 at) {
+#ifdef TRIANGLE
+    return bvec4(at.z == 0.0, at.x == 0.0, at.y == 0.0, false);
+#else
+    return bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
+#endif
+}
+
 // Edge 0 to 3, or corner 4 to 7, on which a point lies.
 uint edge_or_corner(bvec4 on) {
-    bool corner = (on.x || on.z) && (on.y || on.w);
     uint edge = on.x ? 0u : on.y ? 1u : on.z ? 2u : 3u;
+#ifdef TRIANGLE
+    bool corner = on.x ? on.y || on.z : on.y && on.z;
+    return corner ? 4u + (on.x ? (on.y ? 1u : 0u) : 2u) : edge;
+#else
+    bool corner = (on.x || on.z) && (on.y || on.w);
     return corner ? 4u + (on.x ? (on.y ? 1u : 0u) : on.y ? 2u : 3u) : edge;
+#endif
+}
+
+// How far a point of an edge is from the end of the edge.
+float way_back(bvec4 on, vec3 at) {
+#ifdef TRIANGLE
+    return on.x ? at.x : on.y ? at.y : at.z;
+#else
+    precise float left = 1.0 - at.x, up = 1.0 - at.y;
+    return on.x ? left : on.y ? up : on.z ? at.x : at.y;
+#endif
 }
 
 // Who owns the positions on an edge or at a corner of the patch. Rust twin: `LeafTable::faces` in src/table/leaves.rs.
 uint owner_of(uint edge_or_corner) {
-    return table_words[tables.faces + FACE_WORDS * evaluated_patch + 1u + edge_or_corner];
+    return face_word(evaluated_patch, OWNERS + edge_or_corner);
 }
 
 // Who owns the normals.
 uint normal_owner_of(uint edge_or_corner) {
-    return table_words[tables.faces + FACE_WORDS * evaluated_patch + NORMAL_OWNERS + edge_or_corner];
+    return face_word(evaluated_patch, NORMAL_OWNERS + edge_or_corner);
 }
 
-// (u, v) of an edge's point, or of a corner, in the owner's face; `back` is its distance from the end of this patch's edge.
-vec2 place_of(uint owner, uint edge_or_corner, vec2 at, float back) {
-    uint k = owner & 3u;
-    bool is_own = owner >> OWNER_SHIFT == evaluated_patch && k == (edge_or_corner & 3u);
+// A point of an edge, or a corner, as the owner has it; `back` is its distance from the end of this patch's edge.
+Spot spot_of(uint owner, uint edge_or_corner, vec3 at, float back) {
+    uint of = owner >> OWNER_SHIFT, k = owner & 3u;
+    if (of == evaluated_patch && k == (edge_or_corner & 3u)) {
+        return own_spot(at);
+    }
     // The other side goes the other way.
     float way = edge_or_corner < 4u ? back : 0.0;
     precise float left = 1.0 - way;
+    if ((owner & WEDGE_BIT) != 0u) {
+        return wedge_spot(of, k == 0u ? vec3(left, way, 0.0) : k == 1u ? vec3(0.0, left, way) : vec3(way, 0.0, left));
+    }
     vec2 place = k == 0u ? vec2(way, 0.0) : k == 1u ? vec2(1.0, way) : k == 2u ? vec2(left, 1.0) : vec2(0.0, left);
-    return is_own ? at : place;
+    return Spot(face_word(of, 0u), place);
 }
 
 // Whether leaves make a point of an edge or a corner.
 bool is_of_leaves(bvec4 on) {
     return ADAPTIVE && owner_of(edge_or_corner(on)) != OWNER_NONE;
+}
+
+// The patch as if it were not refined: the scheme's.
+Surface evaluate_whole(vec3 at);
+
+// A patch that is refined: its leaves inside; on edges and at corners those of the owner, with its normal as `facing`. Where a
+// neighbour is not refined, what both make of their corners.
+Surface evaluate_leaves(vec3 at) {
+    bvec4 on = edges_of(at);
+    uint owner = 0u, of_normal = 0u, edge = 0u;
+    Spot spot = own_spot(at);
+    float back = 0.0;
+    if (any(on)) {
+        edge = edge_or_corner(on);
+        owner = owner_of(edge);
+        if (owner == OWNER_NONE) {
+            return evaluate_whole(at);
+        }
+        of_normal = normal_owner_of(edge);
+        back = way_back(on, at);
+        spot = spot_of(owner, edge, at, back);
+    }
+    Surface surface = evaluate_spot(spot);
+#ifdef DISPLACED
+    surface.facing = unit_normal(surface.du, surface.dv, vec3(0.0));
+#endif
+    if (of_normal != owner) {
+        Surface side = evaluate_spot(spot_of(of_normal, edge, at, back));
+        surface.du = side.du;
+        surface.dv = side.dv;
+    }
+    return surface;
+}
+
+Surface evaluate_surface(vec3 at) {
+    return ADAPTIVE ? evaluate_leaves(at) : evaluate_whole(at);
 }
 
 #endif

@@ -15,39 +15,8 @@ Surface evaluate_gregory_quad(float u, float v) {
 
 #include "evaluate/leaves.glsl"
 
-// A face that is refined: its leaves inside; on edges and at corners those of the owner, with its normal as `facing`. Where a
-// neighbour is not refined, what both make of their corners.
-Surface evaluate_leaves(vec3 at) {
-    bvec4 on = bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
-    uint owner = evaluated_patch << OWNER_SHIFT, of_normal = owner;
-    vec2 place = at.xy;
-    float back = 0.0;
-    uint edge = 0u;
-    if (any(on)) {
-        edge = edge_or_corner(on);
-        owner = owner_of(edge);
-        if (owner == OWNER_NONE) {
-            return evaluate_gregory_quad(at.x, at.y);
-        }
-        of_normal = normal_owner_of(edge);
-        precise float left = 1.0 - at.x, up = 1.0 - at.y;
-        back = on.x ? left : on.y ? up : on.z ? at.x : at.y;
-        place = place_of(owner, edge, at.xy, back);
-    }
-    Surface surface = evaluate_face(owner >> OWNER_SHIFT, place);
-#ifdef DISPLACED
-    surface.facing = unit_normal(surface.du, surface.dv, vec3(0.0));
-#endif
-    if (of_normal != owner) {
-        Surface side = evaluate_face(of_normal >> OWNER_SHIFT, place_of(of_normal, edge, at.xy, back));
-        surface.du = side.du;
-        surface.dv = side.dv;
-    }
-    return surface;
-}
-
-Surface evaluate_surface(vec3 at) {
-    return ADAPTIVE ? evaluate_leaves(at) : evaluate_gregory_quad(at.x, at.y);
+Surface evaluate_whole(vec3 at) {
+    return evaluate_gregory_quad(at.x, at.y);
 }
 
 #endif

@@ -20,6 +20,7 @@ const BLOCK_VERTICES: u64 = 65_536;
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Dispatch {
+    first_patch: u32,
     first_corner: u32,
     first_vertex: u32,
     segments: u32,
@@ -189,6 +190,7 @@ impl Lattice {
             let corners = group.kind.corners() as u32;
             for patch in (0..lattice.patches).step_by(MAX_WORKGROUPS as usize) {
                 let dispatch = Dispatch {
+                    first_patch: group.patches.start as u32 + patch,
                     first_corner: group.first_corner as u32 + patch * corners,
                     first_vertex: lattice.first_vertex + patch * lattice.vertices,
                     segments: self.segments,

@@ -21,7 +21,6 @@ use crate::renderer::options::{
 use crate::renderer::shader::{PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
 use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
-use crate::topology::PatchKind;
 use ash::vk;
 use bindings::{ModelBuffers, ModelSet};
 use edge_factors::EdgeFactors;
@@ -131,7 +130,7 @@ fn stages(tables: &ModelTables, options: &ModelOptions, pipelines: &ModelPipelin
             edge_factors: tables.edges().is_some() && evaluation != Evaluation::Tessellation,
             stride: tables.kept_texels(),
             attributes: false,
-            adaptive: tables.leaves().is_some() && group.kind == PatchKind::IrregularQuad,
+            adaptive: group.refined,
         };
         PatchStages { attributes: path(evaluation).has_attributes(&pipelines.draws, stages), ..stages }
     };

@@ -33,10 +33,12 @@ pub struct ModelOptions {
     pub displacement: Option<DisplacementId>,
     /// Let edges have tessellation factors of their own ([`Factor::Edges`](crate::renderer::Factor::Edges)).
     pub edge_factors: bool,
-    /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it.
+    /// Steps of Catmull-Clark refinement before patches are made. Faces with five or more corners need one, and get it, but where
+    /// end caps are patches of the scheme ([`Scheme::has_caps`](crate::Scheme::has_caps)): there they and the faces around them are drawn
+    /// by their leaves, which needs a queue that computes.
     pub refine: u32,
     /// Refine irregular faces where they have to be, and draw the limit surface itself but for end caps at this depth: see
-    /// [`adaptive`](crate::adaptive). Still one patch a face. A mesh with faces that are no quads is refined once before. Needs a queue
+    /// [`adaptive`](crate::adaptive). Still one patch a face, or a triangle an edge where faces are no quads. Needs a queue
     /// that computes.
     pub adaptive: Option<AdaptiveOptions>,
 }

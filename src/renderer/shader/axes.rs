@@ -109,12 +109,12 @@ impl Patch {
             two_face_points: false,
             may_be_adaptive: false,
         };
-        let gregory = PatchShaders { scheme: "gregory", owned: 5, hull: 5, two_face_points: true, ..quad };
-        let gregory_quad = PatchShaders { may_be_adaptive: true, ..gregory };
+        let gregory =
+            PatchShaders { scheme: "gregory", owned: 5, hull: 5, two_face_points: true, may_be_adaptive: true, ..quad };
         let pm = PatchShaders { scheme: "pm", owned: 6, hull: 0, keeps_frame: false, ..quad };
         match self {
             Self::Bicubic => quad,
-            Self::GregoryQuad => gregory_quad,
+            Self::GregoryQuad => gregory,
             Self::GregoryTriangle => PatchShaders { corners: 3, ..gregory },
             Self::AccQuad => PatchShaders { scheme: "acc", owned: 8, keeps_frame: false, ..quad },
             Self::PmQuad => pm,
