@@ -11,6 +11,7 @@
 #include <epoxy/gl.h>  // before any OpenSubdiv header, which would include <GL/gl.h>
 #include <epoxy/egl.h>
 
+#include <opensubdiv/far/patchMap.h>
 #include <opensubdiv/far/patchTableFactory.h>
 #include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/far/topologyDescriptor.h>
@@ -70,7 +71,10 @@ double spread(std::vector<double> v) {
 // ---------------------------------------------------------------- command line
 
 struct Args {
-    std::string file, picture;
+    std::string file, picture, samples;            // samples: where to write points of the surface
+    int grid = 14;                                 // of these, points along each side of a face
+    int secondary = -1;                            // isolation level of sharp features; that of all if negative
+    bool single_crease = false;
     int level = 2, frames = 25, size = 1024;
     int batch = 4000;                              // evaluated vertices a draw; 1: a draw for every patch
     bool gregory = true;
@@ -97,6 +101,10 @@ Args parse_args(int argc, char **argv) {
         else if (key == "--size") args.size = std::stoi(value);
         else if (key == "--batch") args.batch = std::stoi(value);
         else if (key == "--ppm") args.picture = value;
+        else if (key == "--samples") args.samples = value;
+        else if (key == "--grid") args.grid = std::stoi(value);
+        else if (key == "--secondary") args.secondary = std::stoi(value);
+        else if (key == "--single-crease") args.single_crease = value == "1";
         else if (key == "--cap" && (value == "gregory" || value == "bspline")) args.gregory = value == "gregory";
         else if (key == "--factors") {
             args.factors.clear();
@@ -107,7 +115,8 @@ Args parse_args(int argc, char **argv) {
     }
     if (args.file.empty())
         fail("usage: opensubdiv FILE.obj [--level 2] [--cap gregory|bspline] [--factors 4,8,16,32] [--frames 25]"
-             " [--size 1024] [--view x,y,z] [--ppm FILE] [--batch 4000]");
+             " [--size 1024] [--view x,y,z] [--ppm FILE] [--batch 4000] [--single-crease 0|1] [--secondary LEVEL]"
+             " [--samples FILE] [--grid 14]");
     return args;
 }
 
@@ -194,9 +203,12 @@ Tables build_tables(Mesh const &mesh, Args const &args) {
     options.SetEndCapType(args.gregory ? Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS
                                        : Far::PatchTableFactory::Options::ENDCAP_BSPLINE_BASIS);
     options.useInfSharpPatch = true;
+    options.useSingleCreasePatch = args.single_crease;
     options.generateVaryingTables = false;
     options.generateVaryingLocalPoints = false;
-    refiner->RefineAdaptive(options.GetRefineAdaptiveOptions());
+    auto refine_options = options.GetRefineAdaptiveOptions();
+    if (args.secondary >= 0) refine_options.secondaryLevel = unsigned(args.secondary);
+    refiner->RefineAdaptive(refine_options);
     double t1 = now_ms();
 
     tables.patches.reset(Far::PatchTableFactory::Create(*refiner, options));
@@ -234,6 +246,41 @@ Tables measure_set_up(Mesh const &mesh, Args const &args, std::string const &lab
     std::printf("setup %s total_ms=%.2f spread=%.2f refine_ms=%.2f patch_table_ms=%.2f stencils_ms=%.2f\n",
                 label.c_str(), median(total), spread(total), median(refine), median(patches), median(stencils));
     return tables;
+}
+
+// Writes position and normal at a grid of (u, v) of every face, all of which are quads, as text: v after v, u fastest.
+void write_samples(Mesh const &mesh, Tables const &tables, Args const &args) {
+    for (int size : mesh.face_sizes)
+        if (size != 4) fail("--samples is for meshes of quads");
+    std::vector<float> points = mesh.points;
+    points.resize(size_t(mesh.vertex_count() + tables.stencils->GetNumStencils()) * 3);
+    Osd::BufferDescriptor const source(0, 3, 3), target(mesh.vertex_count() * 3, 3, 3);
+    Osd::CpuEvaluator::EvalStencils(points.data(), source, points.data(), target, tables.stencils->GetSizes().data(),
+                                    tables.stencils->GetOffsets().data(), tables.stencils->GetControlIndices().data(),
+                                    tables.stencils->GetWeights().data(), 0, tables.stencils->GetNumStencils());
+    Far::PatchMap const map(*tables.patches);
+    std::ofstream file(args.samples);
+    file.precision(9);
+    for (int face = 0; face < int(mesh.face_sizes.size()); ++face)
+        for (int j = 0; j < args.grid; ++j)
+            for (int i = 0; i < args.grid; ++i) {
+                double const u = double(i) / (args.grid - 1), v = double(j) / (args.grid - 1);
+                auto const *handle = map.FindPatch(face, u, v);
+                if (!handle) fail("no patch at a sample");
+                float weights[3][20];
+                tables.patches->EvaluateBasis(*handle, float(u), float(v), weights[0], weights[1], weights[2]);
+                auto const vertices = tables.patches->GetPatchVertices(*handle);
+                std::array<double, 3> sums[3] = {};
+                for (int k = 0; k < vertices.size(); ++k)
+                    for (int of = 0; of < 3; ++of)
+                        for (int axis = 0; axis < 3; ++axis)
+                            sums[of][axis] += double(weights[of][k]) * points[size_t(vertices[k]) * 3 + axis];
+                auto const &du = sums[1], &dv = sums[2];
+                for (double x : sums[0]) file << x << ' ';
+                file << du[1] * dv[2] - du[2] * dv[1] << ' ' << du[2] * dv[0] - du[0] * dv[2] << ' '
+                     << du[0] * dv[1] - du[1] * dv[0] << '\n';
+            }
+    if (!file) fail("cannot write " + args.samples);
 }
 
 // What lies in GL buffers: indices and 12-byte Osd::PatchParam; sizes, offsets, indices, weights of the stencils.
@@ -371,8 +418,11 @@ void main() {
 }
 )";
 
+bool g_single_crease = false;
+
 GLuint compile(GLenum stage, std::string const &body) {
-    std::string source = "#version 450 core\n" + Osd::GLSLPatchShaderSource::GetCommonShaderSource() + kGlue + body;
+    std::string const creases = g_single_crease ? "#define OSD_PATCH_ENABLE_SINGLE_CREASE\n" : "";
+    std::string source = "#version 450 core\n" + creases + Osd::GLSLPatchShaderSource::GetCommonShaderSource() + kGlue + body;
     char const *text = source.c_str();
     GLuint shader = glCreateShader(stage);
     glShaderSource(shader, 1, &text, nullptr);
@@ -561,6 +611,7 @@ void write_picture(std::string const &path, int size) {
 int main(int argc, char **argv) {
     Args const args = parse_args(argc, argv);
     setvbuf(stdout, nullptr, _IOLBF, 0);
+    g_single_crease = args.single_crease;
     create_context();
 
     Mesh const mesh = read_obj(args.file);
@@ -571,6 +622,10 @@ int main(int argc, char **argv) {
     Tables const tables = measure_set_up(mesh, args, label);
     label += " patches=" + std::to_string(tables.patches->GetNumPatchesTotal());
     print_bytes(tables, mesh.vertex_count(), label);
+    if (!args.samples.empty()) {
+        write_samples(mesh, tables, args);
+        return 0;
+    }
 
     // Control points.
     int const point_count = mesh.vertex_count() + tables.stencils->GetNumStencils();

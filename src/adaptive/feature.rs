@@ -20,6 +20,8 @@ named! {
         Dart = "dart",
         /// A vertex of finite sharpness, three or more creases that meet, or a corner with several faces on a side.
         Corner = "corner",
+        /// A crease of finite sharpness, with [`AdaptiveOptions::refine_creases`].
+        Crease = "crease",
     }
 }
 

@@ -83,6 +83,7 @@ impl Level<'_> {
             Shape::SingleCrease { half_edge, .. } if may_refine && !is_constant(topology, half_edge) => {
                 Fate::Refined(Reason::VaryingCrease)
             }
+            Shape::SingleCrease { .. } if may_refine && options.refine_creases => Fate::Refined(Reason::Crease),
             // Creases along opposite edges: their corners are no features.
             Shape::Irregular if may_refine && { self.corners(face) }.all(|h| class(h) == Class::Crease) => {
                 Fate::Refined(Reason::VaryingCrease)

@@ -14,6 +14,9 @@ pub struct AdaptiveOptions {
     /// The level of the end caps around sharp features: darts, corners, creases whose sharpness varies. `None` is
     /// [`AdaptiveOptions::depth`].
     pub sharp_depth: Option<u32>,
+    /// Whether faces along creases of finite sharpness are refined, too, down to [`AdaptiveOptions::sharp_depth`]. The surface is
+    /// the same: to compare with leaves that follow the crease.
+    pub refine_creases: bool,
 }
 
 impl AdaptiveOptions {

@@ -1,9 +1,10 @@
 //! Drawables: what the race needs of every path.
 
-use super::{BenchError, Contestant, Motion, Normals, Subject};
-use crate::adaptive::AdaptiveOptions;
+use super::{BenchError, Contestant, Creases, Motion, Normals, Subject};
+use crate::adaptive::{AdaptiveOptions, MAX_DEPTH};
 use crate::gpu::Spacing;
 use crate::headless::{Headless, OffscreenDesc};
+use crate::mesh::{ControlMesh, SHARPNESS_INFINITE};
 use crate::renderer::{ModelOptions, TableBytes, View};
 use ash::vk;
 use std::time::Instant;
@@ -146,10 +147,26 @@ impl Contestant {
             spacing: lane.spacing,
             shared_normals: self.normals == Normals::Shared,
             refine: lane.subject.refine,
-            adaptive: self.depth.map(|depth| AdaptiveOptions { depth, ..AdaptiveOptions::default() }),
+            adaptive: self.adaptive_options(&lane.subject.mesh, lane.subject.refine),
             ..ModelOptions::default()
         }
     }
+
+    /// Depths of the adaptive surface, if it is one, of a mesh that is refined this often before.
+    pub fn adaptive_options(self, mesh: &ControlMesh, refine: u32) -> Option<AdaptiveOptions> {
+        self.depth.map(|depth| AdaptiveOptions {
+            depth,
+            sharp_depth: (self.creases != Creases::Direct).then(|| depth.max(levels_of_creases(mesh, refine))),
+            refine_creases: self.creases == Creases::Refined,
+        })
+    }
+}
+
+/// Further steps of refinement after which no crease is left of finite sharpness, or as many as there can be.
+fn levels_of_creases(mesh: &ControlMesh, refine: u32) -> u32 {
+    let creases = mesh.data().creases.iter().map(|crease| crease.sharpness);
+    let finite = creases.filter(|&sharpness| sharpness < SHARPNESS_INFINITE);
+    (finite.fold(0.0, f32::max).ceil() as u32).saturating_sub(refine).min(MAX_DEPTH)
 }
 
 /// Milliseconds that some work takes.

@@ -165,6 +165,20 @@ impl CullBy {
     }
 }
 
+named! {
+    /// How an adaptive surface follows creases of finite sharpness.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Creases {
+        /// Leaves follow them directly; around their ends and corners end caps are at the depth of all others.
+        #[default]
+        Direct = "direct",
+        /// Likewise, but end caps there are as deep as the sharpest crease asks for.
+        Deep = "deep",
+        /// Faces along them are refined as often as the sharpest asks for.
+        Refined = "refined",
+    }
+}
+
 /// A contestant of a race.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Contestant {
@@ -174,6 +188,8 @@ pub struct Contestant {
     pub patches: Option<(Scheme, Construction)>,
     /// Depth of adaptive subdivision; `None` where each face is one patch of the scheme.
     pub depth: Option<u32>,
+    /// How it follows creases, if it is adaptive.
+    pub creases: Creases,
     /// Source of its normals.
     pub normals: Normals,
     /// Patches that it culls.
@@ -185,7 +201,15 @@ pub struct Contestant {
 impl Contestant {
     /// A contestant with each patch's own normals, without culling; `cull_by` is [as usual](CullBy::usual).
     pub const fn new(path: Path, patches: Option<(Scheme, Construction)>) -> Self {
-        Self { path, patches, depth: None, normals: Normals::Own, cull: Cull::NONE, cull_by: CullBy::usual(patches) }
+        Self {
+            path,
+            patches,
+            depth: None,
+            creases: Creases::Direct,
+            normals: Normals::Own,
+            cull: Cull::NONE,
+            cull_by: CullBy::usual(patches),
+        }
     }
 
     /// Variants with each of these normals and cullings that it can be combined with: patches are culled where
@@ -218,11 +242,13 @@ impl Contestant {
         normals.flat_map(with).collect()
     }
 
-    /// The same, and adaptive surfaces of these depths where the scheme has end caps and the path draws them.
-    pub fn at_depths(self, depths: &[u32]) -> Vec<Self> {
+    /// The same, and adaptive surfaces of these depths, with each way to follow creases, where the scheme has end caps and the
+    /// path draws them.
+    pub fn at_depths(self, depths: &[u32], creases: &[Creases]) -> Vec<Self> {
         let caps = matches!(self.patches, Some((Scheme::Gregory | Scheme::GregoryFitted, _)));
         let depths = if caps { depths } else { &[] };
-        [self].into_iter().chain(depths.iter().map(|&depth| Self { depth: Some(depth), ..self })).collect()
+        let at = |&depth| creases.iter().map(move |&creases| Self { depth: Some(depth), creases, ..self });
+        [self].into_iter().chain(depths.iter().flat_map(at)).collect()
     }
 
     /// Each path with each scheme and construction that it can be combined with.

@@ -49,8 +49,8 @@ impl Row {
         let scheme = self.scheme.name();
         match self.adaptive {
             None => scheme.into(),
-            Some(AdaptiveOptions { depth, sharp_depth: None }) => format!("{scheme} depth {depth}"),
-            Some(AdaptiveOptions { depth, sharp_depth: Some(sharp) }) => {
+            Some(AdaptiveOptions { depth, sharp_depth: None, .. }) => format!("{scheme} depth {depth}"),
+            Some(AdaptiveOptions { depth, sharp_depth: Some(sharp), .. }) => {
                 format!("{scheme} depth {depth} sharp {sharp}")
             }
         }

@@ -219,7 +219,7 @@ impl ErrorArgs {
 
     /// The depths to measure, each once, the lesser first.
     fn depths(&self) -> Vec<AdaptiveOptions> {
-        let depths = self.depths.iter().map(|&depth| AdaptiveOptions { depth, sharp_depth: None });
+        let depths = self.depths.iter().map(|&depth| AdaptiveOptions { depth, ..AdaptiveOptions::default() });
         let mut depths: Vec<_> = depths.chain(self.mesh.adaptive()).collect();
         depths.sort_by_key(|options| (options.depth, options.sharp_depth));
         depths.dedup();

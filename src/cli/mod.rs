@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `bench` | `bench`: what to race, results, presets, comparisons, the report |
-//! | `camera`, `displacement`, `shading`, `picture`, `error_map`, `legend` | what `render` needs |
+//! | `camera`, `displacement`, `shading`, `picture`, `paint` | what `render` needs |
 //! | `described` | the keys of JSON, for help and tables |
 //! | `cull` | which patches are culled |
 //! | `error_rows`, `plot`, `published` | what `error` needs |
@@ -23,16 +23,15 @@ mod described;
 mod devices;
 mod displacement;
 mod error;
-mod error_map;
 mod error_rows;
 mod errors;
 mod evaluation;
 mod info;
 mod leaves;
-mod legend;
 mod memory;
 mod obj;
 mod output;
+mod paint;
 mod parse;
 mod patches;
 mod picture;

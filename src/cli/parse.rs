@@ -1,5 +1,6 @@
 //! Values of options.
 
+use ash_subdiv::mesh::SHARPNESS_INFINITE;
 use ash_subdiv::renderer::Evaluation;
 use ash_subdiv::{Fallback, Scheme};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -96,6 +97,13 @@ pub(super) fn triple(text: &str) -> Result<DVec3, String> {
         Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
         _ => Err("it must be three numbers with commas between, such as 1,2.5,-3".into()),
     }
+}
+
+/// Sharpness of creases that are not infinitely sharp.
+pub(super) fn sharpness(text: &str) -> Result<f32, String> {
+    let fits = |sharpness: &f32| (0.0..SHARPNESS_INFINITE).contains(sharpness);
+    let error = || format!("it must be a number from 0 to less than {SHARPNESS_INFINITE}");
+    text.parse().ok().filter(fits).ok_or_else(error)
 }
 
 /// `WxH` in pixels.

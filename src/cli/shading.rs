@@ -27,6 +27,10 @@ pub(super) enum Shading {
     ErrorPosition,
     /// The angle to the normal of the exact surface, as a colour with a legend.
     ErrorNormal,
+    /// The leaves of --adaptive by level and kind, with a legend: light where a crease is followed, dark at end caps.
+    Levels,
+    /// Stripes that the surface reflects: they are as smooth as its normals are.
+    ReflectionLines,
 }
 
 /// The program's own shaders.
@@ -75,6 +79,11 @@ impl Shading {
         }
     }
 
+    /// Whether there is a map that is painted on the surface, with a legend.
+    pub(super) fn is_painted(self) -> bool {
+        self.quantity().is_some() || self == Self::Levels
+    }
+
     pub(super) fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }
@@ -85,8 +94,9 @@ impl Shading {
     }
 
     /// Layers, one over the other.
-    fn layers(self) -> Vec<Layer> {
+    fn layers(self, displaced: bool) -> Vec<Layer> {
         let lit = |colours| Layer::surface(Fragment::Lit, colours);
+        let own = |shader: &[u32]| vec![Layer::surface(Fragment::Spirv(shader.to_vec()), [CLAY; 4])];
         match self {
             Self::Lit => vec![lit([CLAY; 4])],
             Self::Normals => vec![Layer::surface(Fragment::Normals, [CLAY; 4])],
@@ -106,21 +116,22 @@ impl Shading {
                 let edges = Style { depth: Some(DepthState::LESS_OR_EQUAL), ..Style::cage() };
                 vec![Layer { style: faces, colours: [CLAY; 4] }, Layer::lines(edges, EDGES)]
             }
-            Self::ErrorPosition | Self::ErrorNormal => {
-                vec![Layer::surface(Fragment::Spirv(shaders::ERROR_FRAG.to_vec()), [CLAY; 4])]
-            }
+            Self::ErrorPosition | Self::ErrorNormal => own(shaders::ERROR_FRAG),
+            Self::Levels => own(shaders::LEVELS_FRAG),
+            Self::ReflectionLines if displaced => own(shaders::REFLECTION_LINES_FRAG_DISPLACED),
+            Self::ReflectionLines => own(shaders::REFLECTION_LINES_FRAG),
         }
     }
 
     /// The styles of the layers.
-    pub(super) fn styles(self) -> Vec<Style> {
-        self.layers().into_iter().map(|layer| layer.style).collect()
+    pub(super) fn styles(self, displaced: bool) -> Vec<Style> {
+        self.layers(displaced).into_iter().map(|layer| layer.style).collect()
     }
 
     /// A draw for each layer, in order, else like this one.
     pub(super) fn draws(self, item: DrawItem) -> Vec<DrawItem> {
         let draw =
             |(style, layer): (usize, Layer)| DrawItem { style, colors: layer.colours.map(Colour::linear), ..item };
-        self.layers().into_iter().enumerate().map(draw).collect()
+        self.layers(false).into_iter().enumerate().map(draw).collect()
     }
 }

@@ -104,7 +104,11 @@ impl SourceArgs {
 
     /// Depths of adaptive subdivision, if there is any.
     pub(super) fn adaptive(&self) -> Option<AdaptiveOptions> {
-        self.adaptive.map(|depth| AdaptiveOptions { depth, sharp_depth: self.sharp_depth })
+        self.adaptive.map(|depth| AdaptiveOptions {
+            depth,
+            sharp_depth: self.sharp_depth,
+            ..AdaptiveOptions::default()
+        })
     }
 
     /// The patches of the mesh on the CPU; reports the notices about it.

@@ -16,7 +16,7 @@ fn picture(path: &Path, arguments: &str) -> (Value, image::RgbaImage) {
 fn pictures_in_every_shading() {
     let folder = folder("shadings");
     let mut seen = Vec::new();
-    for shading in ["lit", "normals", "patches", "wireframe", "cage", "control-mesh"] {
+    for shading in ["lit", "normals", "patches", "wireframe", "cage", "control-mesh", "reflection-lines"] {
         let path = folder.join(format!("{shading}.png"));
         let (told, pixels) =
             picture(&path, &format!("--shape creature-mixed --shading {shading} --background 9,20,200"));
@@ -30,7 +30,7 @@ fn pictures_in_every_shading() {
         seen.push(pixels);
     }
     // Nothing but the pictures: no half-written files.
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 6);
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 7);
 }
 
 #[test]

@@ -141,7 +141,7 @@ fn leaves_are_as_many_as_published() {
 fn trees_lead_to_every_leaf_once() {
     let mesh = shape("polygons").unwrap();
     for scheme in [Scheme::Gregory, Scheme::GregoryFitted] {
-        let planned = Planned::new(&mesh, scheme, &AdaptiveOptions { depth: 3, sharp_depth: None });
+        let planned = Planned::new(&mesh, scheme, &AdaptiveOptions { depth: 3, ..AdaptiveOptions::default() });
         let plan = &planned.plan;
         let leaves = plan.nodes.iter().filter(|&node| node & LEAF != 0);
         assert_eq!(leaves.count(), plan.leaves.len());

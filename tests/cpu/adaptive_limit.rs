@@ -2,8 +2,10 @@
 
 use crate::adaptive::{Distance, Planned, distance, distance_at_samples, shared_mesh};
 use crate::common::limit::{mesh_and_limit, names};
-use ash_subdiv::ControlMesh;
+use ash_subdiv::adaptive::{AdaptiveOptions, Leaf, LeafKind, Reason};
 use ash_subdiv::limit::LimitSurface;
+use ash_subdiv::mesh::SHARPNESS_INFINITE;
+use ash_subdiv::{ControlMesh, Scheme, shape};
 
 /// The largest distance of a plan's samples from those of a reference, over the diagonal.
 fn distance_from_reference(name: &str, depth: u32) -> f64 {
@@ -85,4 +87,29 @@ fn any_sharpness_comes_to_its_limit() {
             assert!(samples < 1e-5, "{name} at {sharpness}: {samples:e}");
         }
     }
+}
+
+/// The same surface without leaves that follow creases, and ever more of others.
+#[test]
+fn creases_can_be_refined() {
+    let mut data = shape("machine-part").unwrap().into_data();
+    let finite = data.creases.iter_mut().filter(|crease| crease.sharpness < SHARPNESS_INFINITE);
+    finite.for_each(|crease| crease.sharpness = 2.5);
+    let mesh = ControlMesh::new(data).unwrap();
+    let surface = LimitSurface::new(&mesh).unwrap();
+    let mut before = 0;
+    for depth in 1..=3 {
+        let options = AdaptiveOptions { depth: 1, sharp_depth: Some(depth), refine_creases: true };
+        let planned = Planned::new(&mesh, Scheme::Gregory, &options);
+        let follows = |leaf: &&Leaf| matches!(leaf.kind, LeafKind::SingleCrease { .. });
+        let (following, leaves) = (planned.plan.leaves.iter().filter(follows).count(), planned.plan.leaves.len());
+        // At level 3 nothing is left of the sharpness.
+        assert!(leaves > before && (following == 0) == (depth == 3), "depth {depth}: {following} of {leaves}");
+        assert!(planned.plan.refined.iter().any(|cell| cell.reason == Reason::Crease));
+        let Distance { exact, slope, .. } = distance(&planned, &surface);
+        assert!(exact < 1e-12 && slope < 1e-9, "depth {depth}: {exact:e} {slope:e}");
+        before = leaves;
+    }
+    let options = AdaptiveOptions { depth: 1, sharp_depth: Some(3), ..AdaptiveOptions::default() };
+    assert!(before > 2 * Planned::new(&mesh, Scheme::Gregory, &options).plan.leaves.len());
 }

@@ -292,14 +292,14 @@ fn at_depth_0_caps_are_the_schemes_own_patches() {
 fn sharp_features_may_go_deeper() {
     let mesh = sharp_mesh(11);
     let deepest = |depth, sharp_depth| {
-        let options = AdaptiveOptions { depth, sharp_depth };
+        let options = AdaptiveOptions { depth, sharp_depth, ..AdaptiveOptions::default() };
         let plan = Plan::new(&Topology::new(&mesh), Scheme::Gregory, &options).unwrap();
         plan.leaves.iter().map(|leaf| leaf.level).max()
     };
     assert_eq!([deepest(1, None), deepest(1, Some(4)), deepest(4, Some(1))], [Some(1), Some(4), Some(4)]);
     let smooth = shape("creature").unwrap();
     let plan = |sharp_depth| {
-        let options = AdaptiveOptions { depth: 2, sharp_depth };
+        let options = AdaptiveOptions { depth: 2, sharp_depth, ..AdaptiveOptions::default() };
         Plan::new(&Topology::new(&smooth), Scheme::Gregory, &options).unwrap().leaves
     };
     assert_eq!(plan(Some(9)), plan(None));

@@ -12,7 +12,7 @@ use glam::DVec3;
 const GRID: u32 = 9;
 
 fn surface(mesh: &ControlMesh, depth: u32) -> CpuSurface {
-    let adaptive = Some(AdaptiveOptions { depth, sharp_depth: None });
+    let adaptive = Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });
     CpuSurface::with_options(mesh, &TableOptions { adaptive, ..TableOptions::default() }).expect("a surface")
 }
 

@@ -179,6 +179,7 @@ pub fn pictures() -> Vec<Picture> {
         // Creases of every sharpness, as they were authored.
         Picture::of_leaves("semi-sharp", 5, 24.0),
         Picture::of_leaves("ridges", 0, 12.0),
+        Picture::of_leaves("sharpness", 8, 16.0),
         // Cracks would show the paper through a closed surface.
         Picture { displacement: Some(0.012), around: Some(0.25), ..Picture::of_leaves("creature", 3, 12.0) },
         Picture {
@@ -250,6 +251,26 @@ fn ridges() -> ControlMesh {
     ControlMesh::new(data).expect("a mesh")
 }
 
+/// Nine cubes, row by row from the top: the edges of the upper face are ever sharper.
+fn sharpness() -> ControlMesh {
+    let cube = shape("cube").expect("built in").into_data();
+    let top = cube.positions.iter().map(|p| p[1]).fold(f64::MIN, f64::max);
+    let upper = cube.face_vertices.chunks(4).find(|face| face.iter().all(|&v| cube.positions[v as usize][1] == top));
+    let upper = upper.expect("an upper face");
+    let mut data = MeshData::default();
+    for (i, sharpness) in [0.0, 0.5, 1.0, 1.5, 2.0, 2.75, 4.0, 6.0, 8.0].into_iter().enumerate() {
+        let first = data.positions.len() as u32;
+        let [column, row] = [i % 3, i / 3].map(|k| 2.0 * k as f64 - 2.0);
+        // Away from the eye as much as up, as the eye looks down.
+        data.positions.extend(cube.positions.iter().map(|[x, y, z]| [x + column, y - row, z + 0.5 * row]));
+        data.face_sizes.extend(&cube.face_sizes);
+        data.face_vertices.extend(cube.face_vertices.iter().map(|v| first + v));
+        let edge = |k: usize| Crease { vertices: [first + upper[k], first + upper[(k + 1) % 4]], sharpness };
+        data.creases.extend((0..4).map(edge).filter(|crease| crease.sharpness > 0.0));
+    }
+    ControlMesh::new(data).expect("a mesh")
+}
+
 /// About this much around a point, with nothing cut off in front of it.
 fn close_up(point: Vec3, towards: Vec3, half: f32) -> View {
     let eye = point + towards * (5.0 * half);
@@ -261,6 +282,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
         "pentagons" => common::pentagons(),
         "semi-sharp" => semi_sharp(),
         "ridges" => ridges(),
+        "sharpness" => sharpness(),
         name => shape(name).expect("built in"),
     };
     let styles = picture.layers.iter().map(|layer| layer.style.clone()).collect();

@@ -19,6 +19,7 @@ mod module;
 mod passes;
 mod screen;
 mod seams;
+mod sharpness;
 mod subdivision;
 mod tessellate;
 mod twins;

@@ -2,17 +2,13 @@
 
 use super::super::cull::{CullArg, cull};
 use super::super::described::help;
-use super::super::error::CliError;
 use super::super::parse;
 use super::super::source::DeviceArgs;
-use super::facts::MeshOut;
 use super::presets::{self, Preset};
 use super::results::Results;
-use super::unique;
-use ash_subdiv::bench::{Camera, Contestant, CullBy, Motion, Normals, Path, Subject, Subset};
-use ash_subdiv::mesh::{ReadOptions, read, replicate, shape};
+use ash_subdiv::bench::{Camera, Contestant, Creases, CullBy, Motion, Normals, Path, Subset};
 use ash_subdiv::renderer::Cull;
-use ash_subdiv::{Construction, ControlMesh, Scheme, Spacing};
+use ash_subdiv::{Construction, Scheme, Spacing};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -20,13 +16,13 @@ use std::path::PathBuf;
 #[command(after_help = help::<Results>(NOTES, EXAMPLES), allow_negative_numbers = true)]
 pub(in super::super) struct BenchArgs {
     /// Control meshes: files ending in .obj, .gltf or .glb.
-    mesh: Vec<PathBuf>,
+    pub(super) mesh: Vec<PathBuf>,
     /// A built-in shape, see `subdiv shapes`; several with commas. The creature if no mesh is given.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
-    shape: Vec<String>,
+    pub(super) shape: Vec<String>,
     /// Take out vertices that belong to no face, instead of refusing the file (OBJ).
     #[arg(long)]
-    drop_isolated: bool,
+    pub(super) drop_isolated: bool,
     /// Schemes, with commas; all if not given.
     #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     pub(super) schemes: Vec<Scheme>,
@@ -42,6 +38,11 @@ pub(in super::super) struct BenchArgs {
     /// Measure each row of gregory and gregory-fitted again as adaptive surfaces of these depths, with commas.
     #[arg(long, value_name = "DEPTH", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=10))]
     pub(super) adaptive: Vec<u32>,
+    /// With --adaptive: how creases of finite sharpness are followed, with commas. `direct` has leaves that follow them and caps of
+    /// the depth at their ends; `deep` has caps there as deep as the sharpest crease asks for; `refined` refines faces along
+    /// them as often.
+    #[arg(long, value_name = "HOW", value_delimiter = ',', value_parser = parse::one_of(Creases::ALL, Creases::name))]
+    pub(super) creases: Vec<Creases>,
     /// Measure each row of the tessellation stages and of instances again with patches culled that are not seen: `back`
     /// those that face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
@@ -76,9 +77,13 @@ pub(in super::super) struct BenchArgs {
     /// them, then count fewer of what clipping leaves: compare views without it.
     #[arg(long)]
     pub(super) single_sided: bool,
+    /// Give all creases this sharpness, but for those that are infinitely sharp; several with commas, to see how time and bytes
+    /// grow. 0 takes them away.
+    #[arg(long, value_name = "SHARPNESS", value_delimiter = ',', value_parser = parse::sharpness)]
+    pub(super) sharpness: Vec<f32>,
     /// Make one large mesh of this many copies; several counts with commas, to see how time grows.
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    replicate: Vec<u32>,
+    pub(super) replicate: Vec<u32>,
     /// Steps of Catmull-Clark refinement before patches are made.
     #[arg(long, value_name = "STEPS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub(super) refine: u32,
@@ -110,7 +115,7 @@ pub(in super::super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
+        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "creases", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "sharpness", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]
@@ -154,7 +159,8 @@ before they are drawn, else the control shader does. What --cull-by has otherwis
 Of several views, the time of a triangle that clipping leaves is set beside that in the first. Of
 several counts of passes, `compute wins from so many passes on` says where its time and that of
 tessellating in every pass cross. Of copies of a mesh (--replicate), `time grows as` says by which
-power of patches. `more` is more than what was measured can tell.
+power of patches. Of a mesh at several --sharpness, time and bytes are set beside those at the
+least. `more` is more than what was measured can tell.
 
 ";
 
@@ -169,6 +175,7 @@ Examples:
   subdiv bench --paths tessellation,bilinear --normals own,shared --cull frustum --view fit,clipped
   subdiv bench --recording 1000
   subdiv bench --preset loop2009-table1
+  subdiv bench model.obj --preset niessner2012
   subdiv bench model.obj --paths tessellation,bilinear,vertex-buffer --json > today.json
   subdiv bench model.obj --paths tessellation,bilinear,vertex-buffer --compare today.json";
 
@@ -196,7 +203,9 @@ impl BenchArgs {
         let mut culls = vec![Cull::NONE, cull(&self.cull)];
         culls.dedup();
         let cull_by = pick(&self.cull_by, Some(&[]), &CullBy::ALL);
-        let adaptive = all.into_iter().flat_map(|contestant| contestant.at_depths(&self.adaptive));
+        let depths = if self.adaptive.is_empty() { self.preset.map_or(&[][..], |p| p.depths) } else { &self.adaptive };
+        let creases = pick(&self.creases, Some(self.preset.map_or(&[Creases::Direct], |p| p.creases)), &Creases::ALL);
+        let adaptive = all.into_iter().flat_map(|contestant| contestant.at_depths(depths, &creases));
         adaptive.flat_map(|contestant| contestant.variants(&normals, &culls, &cull_by)).collect()
     }
 
@@ -211,42 +220,6 @@ impl BenchArgs {
         factors.dedup();
         factors
     }
-
-    /// Meshes that are drawn.
-    pub(super) fn meshes(&self, patches: Subset) -> Result<Meshes, CliError> {
-        let options = ReadOptions { drop_isolated: self.drop_isolated, ..ReadOptions::default() };
-        let mut originals: Vec<(String, ControlMesh)> = Vec::new();
-        for path in unique(&self.mesh, |path| path) {
-            // Without its folder, where that is enough.
-            let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
-            let alone = self.mesh.iter().all(|other| other == path || name(other) != name(path));
-            let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
-            originals.push((name, read(path, &options)?));
-        }
-        let creature = ["creature".to_owned()];
-        let shapes = if self.mesh.is_empty() && self.shape.is_empty() { &creature } else { &self.shape[..] };
-        for name in unique(shapes, |name| name) {
-            originals.push((name.clone(), shape(name)?));
-        }
-        let mut subjects = Vec::new();
-        for (of, mesh) in &originals {
-            for copies in unique(&self.replicate, |&copies| copies) {
-                let (name, mesh) = match copies {
-                    1 => (of.clone(), mesh.clone()),
-                    _ => {
-                        let name = format!("{of} x{copies}");
-                        let copied = replicate(mesh, lattice(copies), 1.25);
-                        let copied = copied.map_err(|error| CliError::Work(format!("{name}: {error}")))?;
-                        (name, copied)
-                    }
-                };
-                let subject = Subject::new(&name, mesh, self.refine, patches)?;
-                let told = MeshOut::new(&subject, of, copies);
-                subjects.push((subject, told));
-            }
-        }
-        Ok(Meshes { originals, subjects })
-    }
 }
 
 /// What is given, else what the preset says, else all: each once, in the order of the registry, for the first row is what the
@@ -254,34 +227,4 @@ impl BenchArgs {
 fn pick<T: Copy + PartialEq>(given: &[T], preset: Option<&[T]>, all: &[T]) -> Vec<T> {
     let chosen = if given.is_empty() { preset.unwrap_or(all) } else { given };
     all.iter().copied().filter(|one| chosen.contains(one)).collect()
-}
-
-/// The meshes that are drawn.
-pub(super) struct Meshes {
-    /// By name, before any copies are made.
-    pub originals: Vec<(String, ControlMesh)>,
-    /// With the facts of each.
-    pub subjects: Vec<(Subject, MeshOut)>,
-}
-
-/// Copies as a block that is as near to a cube as the count allows.
-fn lattice(copies: u32) -> [u32; 3] {
-    let divisor = |n: u32, root: f64| (1..=root.round() as u32).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
-    let x = divisor(copies, f64::from(copies).cbrt());
-    let rest = copies / x;
-    let y = divisor(rest, f64::from(rest).sqrt());
-    [rest / y, y, x]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn copies_are_as_many_as_asked_for() {
-        for (copies, block) in [(1, [1, 1, 1]), (8, [2, 2, 2]), (9, [3, 3, 1]), (64, [4, 4, 4]), (7, [7, 1, 1])] {
-            assert_eq!(lattice(copies), block);
-        }
-        assert!((1..500).all(|n| lattice(n).iter().product::<u32>() == n));
-    }
 }

@@ -49,13 +49,20 @@ described! {
         pub of: String,
         #[serde(default)]
         pub copies: u32,
+        /// Sharpness of all creases, if it was given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub sharpness: Option<f32>,
         pub vertices: usize,
         pub faces: usize,
         /// Patches that are drawn, by kind.
         pub patches: BTreeMap<String, u32>,
-        /// Error by scheme: root mean square of the angle to the limit surface's normal, in radians. Measured for reports.
+        /// Error by surface, a scheme or adaptive surface: root mean square of the angle to the limit surface's normal, in radians.
+        /// Measured for reports.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         pub normal_error: BTreeMap<String, f64>,
+        /// Likewise of the position, over the diagonal.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        pub position_error: BTreeMap<String, f64>,
         /// A picture as a `data:` address. Made for reports.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub thumbnail: Option<String>,
@@ -114,19 +121,26 @@ impl DeviceOut {
 
 impl MeshOut {
     /// `of` by name, and how many times.
-    pub(super) fn new(subject: &Subject, of: &str, copies: u32) -> Self {
+    pub(super) fn new(subject: &Subject, of: &str, sharpness: Option<f32>, copies: u32) -> Self {
         let patches = PatchKind::ALL.map(|kind| (kind.name().to_owned(), subject.patch_count(kind)));
         Self {
             name: subject.name.clone(),
             of: of.to_owned(),
             copies,
+            sharpness,
             vertices: subject.mesh.vertex_count(),
             faces: subject.mesh.face_count(),
             patches: patches.into(),
             normal_error: BTreeMap::new(),
+            position_error: BTreeMap::new(),
             thumbnail: None,
         }
     }
+}
+
+/// What the name of a mesh ends in whose creases all have this sharpness.
+pub(super) fn sharpness_in_name(sharpness: f32) -> String {
+    format!(", sharpness {sharpness}")
 }
 
 /// The mesh of which this one is copies; itself, if nothing is known of it.

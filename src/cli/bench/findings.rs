@@ -1,7 +1,7 @@
 //! Findings over several rows: the growth of time, the passes from which on compute wins, the cost of a view that clips.
 
 use super::super::described::described;
-use super::facts::{MeshOut, original_name};
+use super::facts::{MeshOut, original_name, sharpness_in_name};
 use super::row::{GEOMETRY, GPU, Interval, NONE, Row, Setting, Who};
 use ash_subdiv::Construction;
 use ash_subdiv::bench::Path;
@@ -23,6 +23,9 @@ described! {
         /// The time of a triangle that clipping leaves, over that in the first view.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         pub views: Vec<Finding>,
+        /// Time and bytes with this sharpness of creases, over those with the least.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub sharpness: Vec<Finding>,
     }
 }
 
@@ -37,7 +40,7 @@ described! {
         pub factor: f32,
         pub geometry: Bounds,
         pub gpu: Bounds,
-        /// Of growth: the power of patches by which bytes grow.
+        /// Of growth: the power of patches by which bytes grow. Of sharpness: bytes over those with the least.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub bytes: Option<f64>,
     }
@@ -88,15 +91,22 @@ impl Findings {
             let base = alike.iter().find(|other| other.setting.view == rows[0].setting.view);
             findings.views.extend(alike.iter().filter_map(|row| of_view(row, base?)));
         }
+        for (_, alike) in groups(rows, |setting| any_sharpness(setting, meshes)) {
+            if alike[0].who.is_floor() {
+                continue;
+            }
+            findings.sharpness.extend(alike[1..].iter().filter_map(|row| of_sharpness(row, alike[0])));
+        }
         findings
     }
 
     /// The lists, each with what it is about.
-    pub(super) fn lists(&self) -> [(&'static str, &[Finding]); 3] {
+    pub(super) fn lists(&self) -> [(&'static str, &[Finding]); 4] {
         [
             ("time grows as patches^", &self.growth),
             ("compute wins from so many passes on", &self.break_even),
             ("time of a visible triangle, to the first view", &self.views),
+            ("time and bytes, to the least sharpness", &self.sharpness),
         ]
     }
 }
@@ -104,6 +114,16 @@ impl Findings {
 /// The same for all copies of a mesh.
 pub(super) fn any_size(setting: &Setting, meshes: &[MeshOut]) -> Setting {
     Setting { mesh: original_name(meshes, &setting.mesh).to_owned(), ..setting.clone() }
+}
+
+/// The same for all sharpness of a mesh.
+pub(super) fn any_sharpness(setting: &Setting, meshes: &[MeshOut]) -> Setting {
+    let sharpness = meshes.iter().find(|mesh| mesh.name == setting.mesh).and_then(|mesh| mesh.sharpness);
+    let mesh = match sharpness {
+        Some(sharpness) => setting.mesh.replacen(&sharpness_in_name(sharpness), "", 1),
+        None => setting.mesh.clone(),
+    };
+    Setting { mesh, ..setting.clone() }
 }
 
 pub(super) fn any_passes(setting: &Setting) -> Setting {
@@ -188,4 +208,11 @@ fn of_view(row: &Row, base: &Row) -> Option<Finding> {
         Some(Interval { value: ratio.value * fewer, low: ratio.low * fewer, high: ratio.high * fewer }.into())
     };
     if row.setting.view == base.setting.view { None } else { finding(&row.setting, row, of) }
+}
+
+/// A row of a sharper mesh than that of `base`.
+fn of_sharpness(row: &Row, base: &Row) -> Option<Finding> {
+    let of = |what: &str| paired_ratio(row.frames(what), base.frames(what)).map(|ratio| Interval::from(ratio).into());
+    let bytes = row.total_bytes() as f64 / base.total_bytes() as f64;
+    Some(Finding { bytes: Some(bytes).filter(|bytes| bytes.is_finite()), ..finding(&row.setting, row, of)? })
 }

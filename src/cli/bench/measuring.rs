@@ -2,16 +2,17 @@
 
 use super::super::error::CliError;
 use super::super::output::{Progress, note};
-use super::args::{BenchArgs, Meshes};
+use super::args::BenchArgs;
 use super::facts::{DeviceOut, LeftOut, OptionsOut};
+use super::meshes::{Meshes, Original};
 use super::recorded::{self, Recorded};
 use super::results::Results;
-use super::row::Row;
+use super::row::{Row, Who};
 use super::{compare, report, text, unique};
 use ash_subdiv::bench::{Bench, BenchError, BenchOptions, Contestant, Event, Recording, Subject};
 use ash_subdiv::headless::Headless;
-use ash_subdiv::measure::{ErrorOptions, surface_errors};
-use ash_subdiv::{ControlMesh, Scheme, Spacing};
+use ash_subdiv::measure::{ErrorOptions, FaceErrors, SchemeError, surface_errors};
+use ash_subdiv::{ControlMesh, Spacing};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -60,7 +61,7 @@ impl BenchArgs {
                 Some(models) => record(headless, &subjects, &contestants, &options, models, &mut results)?,
                 None => {
                     if report.is_some() {
-                        self.find_normal_errors(&originals, &contestants, &mut results)?;
+                        self.find_errors(&originals, &contestants, &mut results)?;
                     }
                     self.race(headless, &subjects, &contestants, &races, show, &mut results)?;
                 }
@@ -79,22 +80,24 @@ impl BenchArgs {
         report::Folder::prepare(folder, self.compare.as_deref())
     }
 
-    /// Measures the normals of the schemes that are raced against the limit surface's. Copies of a mesh are as far.
-    fn find_normal_errors(
+    /// Measures the surfaces that are raced against the limit surface. Copies of a mesh are as far.
+    fn find_errors(
         &self,
-        originals: &[(String, ControlMesh)],
+        originals: &[Original],
         contestants: &[Contestant],
         results: &mut Results,
     ) -> Result<(), CliError> {
-        let schemes = unique(contestants, |contestant| contestant.patches.map(|(scheme, _)| scheme));
-        let schemes: Vec<Scheme> = schemes.into_iter().flatten().collect();
-        if schemes.is_empty() {
+        let surfaces: Vec<Contestant> = contestants.iter().filter(|one| one.patches.is_some()).copied().collect();
+        if surfaces.is_empty() {
             return Ok(());
         }
         let _progress = Progress::new("comparing with the limit surface");
-        for (of, mesh) in originals {
-            let errors = normal_errors(mesh, &schemes, self.refine)?;
-            results.meshes.iter_mut().filter(|mesh| mesh.of == *of).for_each(|mesh| mesh.normal_error = errors.clone());
+        for Original { name: of, mesh, .. } in originals {
+            let errors = errors(mesh, &surfaces, self.refine)?;
+            for mesh in results.meshes.iter_mut().filter(|mesh| mesh.of == *of) {
+                mesh.normal_error = errors.iter().map(|(name, errors)| (name.clone(), errors.normal.rms)).collect();
+                mesh.position_error = errors.iter().map(|(name, errors)| (name.clone(), errors.position.rms)).collect();
+            }
         }
         Ok(())
     }
@@ -182,10 +185,32 @@ fn record(
     Ok(())
 }
 
-/// Errors of the normals of each scheme against the limit surface's, where it has patches.
-fn normal_errors(mesh: &ControlMesh, schemes: &[Scheme], refine: u32) -> Result<BTreeMap<String, f64>, CliError> {
-    let options = ErrorOptions { refine, samples: 9, nearest: 0, ..ErrorOptions::default() };
-    let report = surface_errors(mesh, schemes, &options)?;
-    let measured = report.schemes.into_iter().filter_map(|(scheme, errors)| Some((scheme, errors.ok()?)));
-    Ok(measured.map(|(scheme, errors)| (scheme.name().to_owned(), errors.all.normal.rms)).collect())
+/// Samples of the limit surface, about: a second's work or two.
+const SAMPLES: f64 = 1.5e6;
+
+/// Rounding of `f32`: no smaller error is told.
+const ROUNDING: f64 = 1e-7;
+
+/// Errors of each surface against the limit surface by its name, where the scheme has patches.
+fn errors(
+    mesh: &ControlMesh,
+    contestants: &[Contestant],
+    refine: u32,
+) -> Result<BTreeMap<String, FaceErrors>, CliError> {
+    let samples = ((SAMPLES / mesh.face_count().max(1) as f64).sqrt() as u32).clamp(9, 33);
+    let mut errors = BTreeMap::new();
+    for adaptive in unique(contestants, |one| one.adaptive_options(mesh, refine)) {
+        let alike = contestants.iter().filter(|one| one.adaptive_options(mesh, refine) == adaptive);
+        let alike: Vec<_> = alike.filter_map(|&one| Some((one, one.patches?.0))).collect();
+        let options = ErrorOptions { refine, adaptive, samples, nearest: 0, ..ErrorOptions::default() };
+        let report = surface_errors(mesh, &unique(&alike, |&(_, scheme)| scheme), &options)?;
+        for (contestant, scheme) in alike {
+            let measured = report.schemes.iter().find(|(of, _)| *of == scheme);
+            if let Some(&(_, Ok(SchemeError { mut all, .. }))) = measured {
+                [&mut all.position.rms, &mut all.normal.rms].into_iter().for_each(|rms| *rms = rms.max(ROUNDING));
+                errors.insert(Who::new(contestant).surface(), all);
+            }
+        }
+    }
+    Ok(errors)
 }

@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `args`, `together` | arguments, and which go together |
+//! | `meshes` | what is drawn |
 //! | `measuring` | the measurement |
 //! | `results`, `row`, `facts` | results, and the facts about them, as they are written and read |
 //! | `findings` | findings over several rows |
@@ -18,6 +19,7 @@ mod compare;
 mod facts;
 mod findings;
 mod measuring;
+mod meshes;
 mod presets;
 mod recorded;
 mod report;

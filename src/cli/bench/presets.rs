@@ -4,7 +4,7 @@ use super::super::described::described;
 use super::facts::{MeshOut, OptionsOut};
 use super::row::{Row, Who};
 use super::unique;
-use ash_subdiv::bench::{Contestant, Path, Subset};
+use ash_subdiv::bench::{Contestant, Creases, Path, Subset};
 use ash_subdiv::{Construction, Scheme};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde::{Deserialize, Serialize};
@@ -21,6 +21,13 @@ pub(super) struct Preset {
     /// The first is what was published, the others stand beside it.
     pub paths: &'static [Path],
     pub factors: &'static [f32],
+    /// Of adaptive surfaces, and how they follow creases.
+    pub depths: &'static [u32],
+    pub creases: &'static [Creases],
+    /// Sharpness of all creases; as they are if none is given.
+    pub sharpness: &'static [f32],
+    /// The built-in shape that is measured if no mesh is given.
+    pub shape: &'static str,
     pub patches: Subset,
     pub instances: u32,
     unit: Unit,
@@ -62,7 +69,27 @@ const CONVERTED: &[Path] = &[Path::GeometryTwoPass, Path::Tessellation, Path::Bi
 use Construction::{Cached, Stencil, TwoStage};
 use Scheme::{Acc, CPatch, Gregory, Pm};
 
-static PRESETS: [Preset; 5] = [
+/// What most presets have.
+const USUAL: Preset = Preset {
+    name: "",
+    title: "",
+    note: "",
+    schemes: &[],
+    constructions: &[],
+    paths: &[],
+    factors: &[],
+    depths: &[],
+    creases: &[Creases::Direct],
+    sharpness: &[],
+    shape: "creature",
+    patches: Subset::All,
+    instances: 1,
+    unit: Unit::FramesASecond,
+    geometry: false,
+    published: &[],
+};
+
+static PRESETS: [Preset; 7] = [
     Preset {
         name: "loop2009-table1",
         title: "Loop, Schaefer, Ni, Castaño 2009, table 1: 508 irregular quads",
@@ -72,7 +99,6 @@ static PRESETS: [Preset; 5] = [
         paths: &[Path::Tessellation, Path::Bilinear, Path::VertexBuffer],
         factors: &[6.0, 10.0],
         patches: Subset::Irregular,
-        instances: 1,
         unit: Unit::Milliseconds,
         geometry: true,
         published: &[
@@ -83,6 +109,7 @@ static PRESETS: [Preset; 5] = [
             Published("508 irregular quads", Gregory, TwoStage, 6.0, 0.0485),
             Published("508 irregular quads", Gregory, Stencil, 6.0, 0.053),
         ],
+        ..USUAL
     },
     Preset {
         name: "loop2009-table2",
@@ -93,10 +120,6 @@ static PRESETS: [Preset; 5] = [
         constructions: &[Cached, TwoStage],
         paths: &[Path::Instanced, Path::Tessellation, Path::Bilinear, Path::VertexBuffer],
         factors: &[16.0, 24.0],
-        patches: Subset::All,
-        instances: 1,
-        unit: Unit::FramesASecond,
-        geometry: false,
         published: &[
             Published("frog", Gregory, Cached, 16.0, 398.0),
             Published("frog", Acc, Cached, 16.0, 365.0),
@@ -111,6 +134,7 @@ static PRESETS: [Preset; 5] = [
             Published("bigguy", Acc, Cached, 24.0, 176.0),
             Published("bigguy", Pm, Cached, 24.0, 186.0),
         ],
+        ..USUAL
     },
     Preset {
         name: "ni2008-table4",
@@ -121,10 +145,6 @@ static PRESETS: [Preset; 5] = [
         constructions: &[Cached, TwoStage],
         paths: CONVERTED,
         factors: &[4.0, 8.0, 16.0, 32.0],
-        patches: Subset::All,
-        instances: 1,
-        unit: Unit::FramesASecond,
-        geometry: false,
         published: &[
             Published("sword", CPatch, Cached, 4.0, 965.0),
             Published("sword", CPatch, Cached, 8.0, 965.0),
@@ -139,20 +159,41 @@ static PRESETS: [Preset; 5] = [
             Published("frog", CPatch, Cached, 16.0, 226.0),
             Published("frog", CPatch, Cached, 32.0, 87.0),
         ],
+        ..USUAL
     },
     Preset {
         name: "ni2008-table5",
-        title: "Ni, Yeo, Myles, Goel, Peters 2008, table 5: c-patches, nine instances of one model",
-        note: "The published figures are not at hand, and left out. The way to draw is that of table 4.",
+        title: "Ni, Yeo, Myles, Goel, Peters 2008, table 5: c-patches in one pass",
+        note: "Published: frames a second, N x N points a patch, N = 2, 5, 8, taken as factor N - 1, converted and evaluated in \
+               one geometry shader. Measured: the same (geometry, stencil: the geometry shader makes the control points), with pixels.",
+        schemes: &[CPatch],
+        constructions: &[Stencil, Cached, TwoStage],
+        paths: &[Path::Geometry, Path::GeometryTwoPass, Path::Tessellation, Path::Bilinear, Path::VertexBuffer],
+        factors: &[1.0, 4.0, 7.0],
+        published: &[
+            Published("sword", CPatch, Stencil, 1.0, 389.0),
+            Published("sword", CPatch, Stencil, 4.0, 96.0),
+            Published("sword", CPatch, Stencil, 7.0, 43.0),
+            Published("head", CPatch, Stencil, 1.0, 108.0),
+            Published("head", CPatch, Stencil, 4.0, 34.0),
+            Published("head", CPatch, Stencil, 7.0, 15.0),
+            Published("frog", CPatch, Stencil, 1.0, 44.0),
+            Published("frog", CPatch, Stencil, 4.0, 10.0),
+            Published("frog", CPatch, Stencil, 7.0, 4.0),
+        ],
+        ..USUAL
+    },
+    Preset {
+        name: "ni2008-nine",
+        title: "Ni, Yeo, Myles, Goel, Peters 2008: c-patches, nine frogs",
+        note: "Published: frames a second, N = 9, taken as factor N - 1. The way to draw is that of table 4.",
         schemes: &[CPatch],
         constructions: &[Cached, TwoStage],
         paths: CONVERTED,
-        factors: &[4.0, 8.0, 16.0, 32.0],
-        patches: Subset::All,
+        factors: &[8.0],
         instances: 9,
-        unit: Unit::FramesASecond,
-        geometry: false,
-        published: &[],
+        published: &[Published("frog", CPatch, Cached, 8.0, 50.0)],
+        ..USUAL
     },
     Preset {
         name: "antal2007",
@@ -162,24 +203,34 @@ static PRESETS: [Preset; 5] = [
         constructions: &[TwoStage],
         paths: &[Path::Subdivision, Path::Tessellation, Path::Bilinear],
         factors: &[1.0, 2.0, 4.0],
-        patches: Subset::All,
-        instances: 1,
-        unit: Unit::FramesASecond,
-        geometry: false,
         published: &[
             Published("1300 quads", Gregory, TwoStage, 1.0, 1073.0),
             Published("1300 quads", Gregory, TwoStage, 2.0, 306.0),
             Published("1300 quads", Gregory, TwoStage, 4.0, 18.8),
         ],
+        ..USUAL
+    },
+    Preset {
+        name: "niessner2012",
+        title: "Nießner, Loop, Greiner 2012: semi-smooth creases from sharpness 0 to 8",
+        note: "Published: time and memory hardly grow with sharpness where leaves follow creases, and double with each step where \
+               faces along them are refined. Measured: an adaptive surface of depth 2 with leaves that follow creases, likewise \
+               with end caps as deep as sharpness asks for, and with faces along creases refined as often; moving vertices.",
+        schemes: &[Gregory],
+        constructions: &[TwoStage],
+        paths: &[Path::Tessellation, Path::Bilinear],
+        factors: &[8.0],
+        depths: &[2],
+        creases: &Creases::ALL,
+        sharpness: &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0],
+        shape: "machine-part",
+        ..USUAL
     },
 ];
 
 /// A preset by its name.
 pub(super) fn parser() -> impl TypedValueParser<Value = &'static Preset> {
-    let value = |preset: &Preset| {
-        let figures = if preset.published.is_empty() { " (the figures are not at hand)" } else { "" };
-        PossibleValue::new(preset.name).help(format!("{}{figures}", preset.title))
-    };
+    let value = |preset: &Preset| PossibleValue::new(preset.name).help(preset.title);
     PossibleValuesParser::new(PRESETS.iter().map(value)).map(|given| {
         // The parser lets none but these names through.
         PRESETS.iter().find(|preset| preset.name == given).unwrap_or(&PRESETS[0])
@@ -229,9 +280,10 @@ impl Preset {
         if beside.is_empty() && !self.published.is_empty() {
             let factors = unique(self.published, |published| published.3.to_string()).join(", ");
             let (path, patches) = (self.paths[0].name(), self.patches.name());
+            let models = if self.instances == 1 { "one model".into() } else { format!("{} models", self.instances) };
             note += &format!(
-                " None of the figures is of what was measured: they are of factors {factors}, {path}, {patches} patches of one \
-                 model, moving vertices, all in the picture, one pass."
+                " None of the figures is of what was measured: they are of factors {factors}, {path}, {patches} patches of {models}, \
+                 moving vertices, all in the picture, one pass."
             );
         }
         PresetOut { name: self.name.to_owned(), title: self.title.to_owned(), note }

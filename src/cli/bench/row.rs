@@ -2,7 +2,7 @@
 
 use super::super::cull;
 use super::super::described::described;
-use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, CullBy, Motion, Normals, Series, Subject};
+use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Creases, CullBy, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use ash_subdiv::renderer::Cull;
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,11 @@ fn moving() -> String {
     Motion::Moving.name().to_owned()
 }
 
+/// Likewise.
+fn direct() -> String {
+    Creases::Direct.name().to_owned()
+}
+
 described! {
     /// Contestant of a row.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -58,6 +63,9 @@ described! {
         /// Depth of an adaptive surface.
         #[serde(default)]
         pub adaptive: Option<u32>,
+        /// How it follows creases.
+        #[serde(default = "direct")]
+        pub creases: String,
         /// And by what, if that is not what usually does.
         pub cull: String,
     }
@@ -193,6 +201,7 @@ impl Who {
             path: contestant.path.name().to_owned(),
             normals: contestant.normals.name().to_owned(),
             adaptive: contestant.depth,
+            creases: contestant.creases.name().to_owned(),
             cull: cull::name(cull) + &by,
         }
     }
@@ -202,6 +211,11 @@ impl Who {
         let Self { scheme, construction, path, .. } = self;
         let named = [scheme, construction, path].into_iter().filter(|s| *s != NONE).cloned();
         named.chain(self.drawn()).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The surface that is drawn, whatever the way.
+    pub(super) fn surface(&self) -> String {
+        [self.scheme.clone()].into_iter().chain(self.leaves()).collect::<Vec<_>>().join(" ")
     }
 
     /// Whether it is one of what no change of this program makes faster or slower.
@@ -214,11 +228,17 @@ impl Who {
         [self.path.clone()].into_iter().chain(self.drawn()).collect::<Vec<_>>().join(", ")
     }
 
-    fn drawn(&self) -> impl Iterator<Item = String> {
+    /// What makes an adaptive surface another.
+    fn leaves(&self) -> impl Iterator<Item = String> + use<> {
         let depth = self.adaptive.map(|depth| format!("adaptive {depth}"));
+        let creases = (self.creases != Creases::Direct.name()).then(|| format!("{} creases", self.creases));
+        depth.into_iter().chain(creases)
+    }
+
+    fn drawn(&self) -> impl Iterator<Item = String> {
         let normals = (self.normals != Normals::Own.name()).then(|| "shared normals".to_owned());
         let cull = (self.cull != NONE).then(|| self.cull.clone());
-        depth.into_iter().chain(normals).chain(cull)
+        self.leaves().chain(normals).chain(cull)
     }
 }
 

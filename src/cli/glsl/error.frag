@@ -1,13 +1,12 @@
-// How far the surface is from the limit surface, as a colour. Rust twin: `ErrorMap` in src/cli/error_map.rs.
+// How far the surface is from the limit surface, as a colour. Rust twin: `ErrorMap` in src/cli/paint/errors.rs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "draw/draw.glsl"
 #include "draw/output.glsl"
+#include "tiles.glsl"
 
 layout(location = 0) in vec3 world_position;
 layout(location = 1) centroid in vec3 world_normal;
-// The tile of the patch, from 0 on, plus where on the patch: from 0.25 to 0.75 in both directions.
-layout(location = 2) centroid in vec2 place;
 
 layout(set = 2, binding = 0, std430) readonly restrict buffer Errors {
     uint side;     // samples along each side of a tile
@@ -36,12 +35,9 @@ float error_at(uint tile, vec2 at) {
 }
 
 void main() {
-    vec2 tile = floor(place);
-    float value = error_at(uint(tile.y) * errors.columns + uint(tile.x), 2.0 * (place - tile) - 0.5);
+    float value = error_at(painted_patch(errors.columns), painted_at());
     float step = 255.0 * clamp(value / errors.top, 0.0, 1.0);
     uint below = min(uint(step), 254u);
     vec3 error = mix(errors.colours[below], errors.colours[below + 1u], step - float(below)).rgb;
-    // Just enough light to see the shape: none is taken away where the surface faces the eye.
-    float facing = abs(dot(normalize(world_normal), normalize(view.eye.xyz - world_position)));
-    write_colour(error * mix(0.35, 1.0, facing), 1.0);
+    write_colour(shaded(error, world_position, world_normal, view.eye.xyz), 1.0);
 }

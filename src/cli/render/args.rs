@@ -80,6 +80,9 @@ pub(in super::super) struct RenderArgs {
     /// error-normal (radians); if not given, a round number that 99 % of all samples are below.
     #[arg(long, value_name = "ERROR", value_parser = parse::positive)]
     pub(super) error_max: Option<f32>,
+    /// Stripes of --shading reflection-lines, from straight up to straight down; 12 if not given. More show smaller bends.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) stripes: Option<u32>,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = parse::size)]
     pub(super) size: [u32; 2],
@@ -97,6 +100,9 @@ pub(in super::super) struct RenderArgs {
     pub(super) device: DeviceArgs,
 }
 
+/// Stripes if no other number is given.
+pub(super) const STRIPES: u32 = 12;
+
 const EXAMPLES: &str = "\
 .
 
@@ -105,6 +111,8 @@ Examples:
   subdiv render model.obj --shading wireframe --factor 3.5 --spacing odd -o wires.png
   subdiv render scene.glb --mesh-name Head --background transparent --yaw 40 -o head.png
   subdiv render model.obj --scheme acc --shading error-normal --error-max 0.1 -o errors.png
+  subdiv render model.obj --adaptive 4 --shading levels -o levels.png
+  subdiv render model.obj --adaptive 4 --factor 32 --shading reflection-lines -o stripes.png
   subdiv render model.obj --level 2 --shading wireframe -o subdivided.png
   subdiv render --shape creature --displacement scales --displacement-scale 0.01 --pixels 4 -o scales.png
   subdiv render --shape cloth --eye 3,4,5 --target 0,0,0 --fov 25 --size 1920x1080 -o cloth.png";

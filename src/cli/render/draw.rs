@@ -2,7 +2,8 @@
 
 use super::super::displacement::texture;
 use super::super::error::CliError;
-use super::super::error_map::{ErrorMap, ErrorSet};
+use super::super::paint::{Painting, PaintingSet};
+use super::args::STRIPES;
 use super::{RenderArgs, StatisticsOut};
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors};
@@ -16,7 +17,7 @@ pub(super) struct Picture<'p> {
     pub size: [u32; 2],
     pub samples: u32,
     pub view: View,
-    pub map: Option<&'p ErrorMap>,
+    pub painting: Option<&'p Painting>,
     pub texels: Option<&'p Texels>,
 }
 
@@ -57,13 +58,13 @@ impl RenderArgs {
         }))
     }
 
-    fn renderer_options(&self, model: &ModelOptions, errors: Option<&ErrorSet>, visible_lists: bool) -> Options {
+    fn renderer_options(&self, model: &ModelOptions, painting: Option<&PaintingSet>, visible_lists: bool) -> Options {
         Options {
-            styles: self.shading.styles(),
-            texcoords: errors.is_some(),
+            styles: self.shading.styles(self.displacement.is_given()),
+            texcoords: painting.is_some(),
             evaluations: vec![model.evaluation],
             visible_lists,
-            set_layouts: errors.iter().map(|errors| errors.layout.raw()).collect(),
+            set_layouts: painting.iter().map(|painting| painting.layout.raw()).collect(),
             ..Options::default()
         }
     }
@@ -82,9 +83,9 @@ impl RenderArgs {
         let desc = OffscreenDesc { samples, color: self.shading.format(), ..OffscreenDesc::new(width, height) };
         let target = Offscreen::new(headless, &desc)?;
         let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
-        let errors = picture.map.map(|map| ErrorSet::new(headless.context(), map)).transpose()?;
+        let painting = picture.painting.map(|painting| PaintingSet::new(headless.context(), painting)).transpose()?;
         let culls = self.factor.cull.cull() != Cull::NONE && model_options.construction == Construction::Cached;
-        let options = self.renderer_options(model_options, errors.as_ref(), culls);
+        let options = self.renderer_options(model_options, painting.as_ref(), culls);
         let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
         // SAFETY: the layout outlives the renderer, whose shaders fit it; every submission is waited for, so the renderer
         // is dropped when idle.
@@ -100,6 +101,7 @@ impl RenderArgs {
         let item = DrawItem {
             cull: self.factor.cull.cull(),
             displacement: self.displacement.amount(mesh),
+            words: [self.stripes.unwrap_or(STRIPES), 0, 0, 0],
             ..DrawItem::new(model, self.factor.factor())
         };
         let draws = self.shading.draws(item);
@@ -111,7 +113,7 @@ impl RenderArgs {
         let record = |cmd| {
             // SAFETY: inside rendering that fits the target, after the frame was prepared; the set outlives the submission.
             unsafe {
-                errors.iter().for_each(|errors| errors.cmd_bind(headless, cmd, &renderer));
+                painting.iter().for_each(|painting| painting.cmd_bind(headless, cmd, &renderer));
                 match &visible {
                     Some(visible) => renderer.cmd_draw_visible(cmd, 0, visible),
                     None => renderer.cmd_draw(cmd, 0, &picture.view, &draws),

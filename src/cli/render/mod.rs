@@ -5,17 +5,16 @@ mod draw;
 
 use super::described::described;
 use super::error::CliError;
-use super::error_map::ErrorMap;
 use super::info::Patches;
-use super::legend::Legend;
 use super::output::{self, Progress, write_file};
+use super::paint::{ErrorMap, Legend, LevelMap, Painting};
 use super::picture::unpremultiply;
+use super::shading::Shading;
 use super::source::report_notices;
 pub(super) use args::RenderArgs;
 use ash::vk;
 use ash_subdiv::gpu::DeviceProperties;
 use ash_subdiv::headless::{HeadlessError, Texels, save_png};
-use ash_subdiv::measure::Quantity;
 use ash_subdiv::renderer::{DisplacementId, Evaluation, Factor, ModelTables};
 use ash_subdiv::{ControlMesh, ModelOptions};
 use draw::Picture;
@@ -62,6 +61,16 @@ described! {
     }
 }
 
+impl ErrorOut {
+    /// Of errors, if they are what is painted.
+    fn of(painting: &Painting) -> Option<Self> {
+        match *painting {
+            Painting::Errors(ErrorMap { top, largest, .. }) => Some(Self { top, largest }),
+            Painting::Levels(_) => None,
+        }
+    }
+}
+
 pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let file = args.output.display().to_string();
     let ending = args.output.extension().map(|ending| ending.to_ascii_lowercase());
@@ -69,19 +78,20 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
     }
     let construction = args.construction()?;
-    let legend = if args.shading.quantity().is_some() { Legend::height(args.size)? } else { 0 };
+    args.check_shading()?;
+    let legend = if args.shading.is_painted() { Legend::height(args.size)? } else { 0 };
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load()?;
-    let map = args.error_map(&mesh, &progress)?;
+    let painting = args.painting(&mesh, &progress)?;
     progress.now("building tables");
     let evaluation = args.factor.level.map_or(args.evaluation.evaluation, |_| Evaluation::Subdivision);
     let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(construction) };
     let texels = args.displacement.texels()?;
     options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
-    let drawn = map.as_ref().map_or(&mesh, |map| &map.mesh);
-    options.refine = if map.is_some() { 0 } else { options.refine };
+    let drawn = painting.as_ref().map_or(&mesh, Painting::mesh);
+    options.refine = if painting.is_some() { 0 } else { options.refine };
     let tables = ModelTables::new(drawn, &options)?;
-    if map.is_none() {
+    if painting.is_none() {
         report_notices(tables.notices(), &progress);
     }
     let patches = Patches::of(&tables);
@@ -91,15 +101,15 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     progress.now("drawing");
     let (samples, device, mut pixels, statistics) = args.device.run(|headless| {
         let samples = args.check_limits(headless.properties())?;
-        let picture = Picture { size, samples, view, map: map.as_ref(), texels: texels.as_ref() };
+        let picture = Picture { size, samples, view, painting: painting.as_ref(), texels: texels.as_ref() };
         let statistics = args.statistics(headless, &picture, drawn, &options)?;
         let pixels = args.draw(headless, &picture, tables, drawn, &options)?;
         Ok((samples, headless.properties().name.clone(), pixels, statistics))
     })?;
     progress.now("writing the picture");
-    args.save(&mut pixels, map.as_ref())?;
+    args.save(&mut pixels, painting.as_ref())?;
     drop(progress);
-    let error = map.map(|ErrorMap { top, largest, .. }| ErrorOut { top, largest });
+    let error = painting.as_ref().and_then(ErrorOut::of);
     if !json {
         return args.print(patches, samples, &device, error);
     }
@@ -123,14 +133,14 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
 }
 
 impl RenderArgs {
-    /// Writes the picture to its file, with the legend of errors.
-    fn save(&self, pixels: &mut Vec<u8>, map: Option<&ErrorMap>) -> Result<(), CliError> {
+    /// Writes the picture to its file, with the legend of what is painted.
+    fn save(&self, pixels: &mut Vec<u8>, painting: Option<&Painting>) -> Result<(), CliError> {
         let [width, height] = self.size;
         if self.background.is_transparent() {
             unpremultiply(pixels, self.shading.format() == vk::Format::R8G8B8A8_SRGB);
         }
-        if let Some(map) = map {
-            self.legend(map).add(self.size, self.background, pixels)?;
+        if let Some(painting) = painting {
+            painting.legend(self.mesh.scheme.name()).add(self.size, self.background, pixels)?;
         }
         write_file(&self.output, |part| match save_png(part, vk::Extent2D { width, height }, pixels) {
             Err(HeadlessError::Picture { message, .. }) => Err(message),
@@ -151,41 +161,54 @@ impl RenderArgs {
         })
     }
 
-    /// The errors to be shown, if any.
-    fn error_map(&self, mesh: &ControlMesh, progress: &Progress) -> Result<Option<ErrorMap>, CliError> {
-        let Some(quantity) = self.shading.quantity() else {
-            return match self.error_max {
-                None => Ok(None),
-                Some(_) => {
-                    let shading = self.shading.name();
-                    let message = format!(
-                        "--error-max: --shading {shading} shows no error: choose error-position or error-normal"
-                    );
-                    Err(CliError::Usage(message))
-                }
-            };
-        };
-        if self.factor.level.is_some() {
-            let message = "--level: the error is that of patches: leave one of both out";
-            return Err(CliError::Usage(message.into()));
-        }
-        if self.displacement.is_given() {
-            let message = "--displacement: the error of a displaced surface is not known: leave one of both out";
-            return Err(CliError::Usage(message.into()));
+    /// What is to be painted on the surface, if anything.
+    fn painting(&self, mesh: &ControlMesh, progress: &Progress) -> Result<Option<Painting>, CliError> {
+        if !self.shading.is_painted() {
+            return Ok(None);
         }
         progress.now("measuring");
         let surface = self.mesh.cpu_surface(mesh, progress)?;
-        let [low, high] = mesh.bounds();
-        Ok(Some(ErrorMap::new(&surface, quantity, low.distance(high), self.error_max)?))
+        Ok(Some(match (self.shading.quantity(), surface.adaptive()) {
+            (Some(quantity), _) => {
+                let [low, high] = mesh.bounds();
+                Painting::Errors(ErrorMap::new(&surface, quantity, low.distance(high), self.error_max)?)
+            }
+            (None, Some(plan)) => Painting::Levels(LevelMap::new(&surface, plan)?),
+            (None, None) => {
+                let message = "--shading levels: no face is refined: name a depth with --adaptive";
+                return Err(CliError::Usage(message.into()));
+            }
+        }))
     }
 
-    fn legend(&self, map: &ErrorMap) -> Legend {
-        let what = match self.shading.quantity() {
-            Some(Quantity::Normal) => "normal error, radians",
-            _ => "position error / diagonal",
-        };
-        let title = format!("{}: {what}", self.mesh.scheme.name());
-        Legend { title, top: map.top, exceeded: map.largest > map.top }
+    /// Checks that the other arguments go with the shading.
+    fn check_shading(&self) -> Result<(), CliError> {
+        let shading = self.shading.name();
+        let usage = |message: String| Err(CliError::Usage(message));
+        if self.shading.quantity().is_none() && self.error_max.is_some() {
+            return usage(format!(
+                "--error-max: --shading {shading} shows no error: choose error-position or error-normal"
+            ));
+        }
+        if self.shading != Shading::ReflectionLines && self.stripes.is_some() {
+            return usage(format!("--stripes: --shading {shading} has none: choose reflection-lines"));
+        }
+        if self.shading.is_painted() && self.factor.level.is_some() {
+            let what = if self.shading == Shading::Levels { "levels are those" } else { "the error is that" };
+            return usage(format!("--level: {what} of patches: leave one of both out"));
+        }
+        if self.shading.is_painted() && self.displacement.is_given() {
+            return usage(
+                match self.shading {
+                    Shading::Levels => {
+                        "--displacement: levels are not painted on a displaced surface: leave one of both out"
+                    }
+                    _ => "--displacement: the error of a displaced surface is not known: leave one of both out",
+                }
+                .into(),
+            );
+        }
+        Ok(())
     }
 
     /// Points around which everything is that the picture shows.

@@ -220,8 +220,15 @@ fn presets_set_published_figures_beside() {
     // This is none of the sword, the head and the frog, and so beside each.
     assert_eq!((lines.len(), &lines[0]["construction"], &lines[0]["figure"]), (3, &json!("cached"), &json!(965.0)));
     assert_eq!(lines[0]["ms"], converted["rows"][0]["gpu_ms"]["median"]);
-    let none = json(&format!("bench {SMALL} --shape cube --preset ni2008-table5 --factors 1 --paths tessellation"));
-    assert_eq!((&none["options"]["instances"], none.get("published")), (&json!(9), None));
+    let one_pass = json(&format!("bench {SMALL} --shape cube --preset ni2008-table5 --paths geometry --factors 1,7"));
+    let lines = one_pass["published"].as_array().unwrap();
+    let figures: Vec<_> = lines.iter().map(|line| line["figure"].as_f64().unwrap()).collect();
+    assert_eq!((figures, &lines[0]["construction"]), (vec![389.0, 43.0, 108.0, 15.0, 44.0, 4.0], &json!("stencil")));
+    assert!((lines[1]["published_ratio"].as_f64().unwrap() - 389.0 / 43.0).abs() < 1e-12);
+    let nine = json(&format!("bench {SMALL} --shape cube --preset ni2008-nine --paths geometry-two-pass"));
+    assert_eq!((&nine["options"]["instances"], &nine["published"][0]["figure"]), (&json!(9), &json!(50.0)));
+    let none = json(&format!("bench {SMALL} --shape cube --preset ni2008-nine --paths tessellation"));
+    assert_eq!((none.get("published"), none["preset"]["note"].as_str().unwrap().contains("of 9 models")), (None, true));
 
     // Ratios are to the first figure that there is a row for; without any, a user is told.
     let few = format!("bench {SMALL} --shape cube --preset loop2009-table1 --paths tessellation");
@@ -256,4 +263,50 @@ fn presets_set_published_figures_beside() {
     ));
     let lines = instanced["published"].as_array().unwrap();
     assert_eq!((lines.len(), &lines[0]["figure"], &lines[1]["figure"]), (2, &json!(365.0), &json!(348.0)));
+}
+
+#[test]
+fn time_and_bytes_stand_beside_those_of_the_least_sharpness() {
+    let few = "--factors 1 --paths tessellation,bilinear --sharpness 3,0";
+    let results = json(&format!("bench {SMALL} --preset niessner2012 {few}"));
+    let meshes: Vec<_> = results["meshes"].as_array().unwrap().iter().map(|mesh| &mesh["name"]).collect();
+    assert_eq!(meshes, ["machine-part, sharpness 0", "machine-part, sharpness 3"]);
+    assert_eq!(results["meshes"][1]["sharpness"], 3.0);
+    let rows = results["rows"].as_array().unwrap();
+    // One patch a face, three ways to follow creases, the floor.
+    let ways: Vec<_> = rows[5..].iter().map(|row| (&row["adaptive"], row["creases"].as_str().unwrap())).collect();
+    let (none, two) = (&Value::Null, &json!(2));
+    assert_eq!(ways, [(none, "direct"), (two, "direct"), (two, "deep"), (two, "refined"), (none, "direct")]);
+    let bytes = |row: usize| rows[row]["bytes"]["total"].as_f64().unwrap();
+    let findings = results["sharpness"].as_array().unwrap();
+    assert_eq!(findings.len(), 4);
+    for (i, finding) in findings.iter().enumerate() {
+        assert_eq!(finding["mesh"], "machine-part, sharpness 3");
+        assert!((finding["bytes"].as_f64().unwrap() - bytes(5 + i) / bytes(i)).abs() < 1e-12, "{finding}");
+        assert!(finding["geometry"]["value"].as_f64().unwrap() > 0.0);
+    }
+    // Followed at hardly any bytes; caps go one level deeper; refined, faces along creases do at least twice as often.
+    assert!(bytes(6) < 1.1 * bytes(1) && bytes(7) > bytes(6) && bytes(8) > 2.0 * bytes(6), "{rows:?}");
+    let folder = folder("bench-sharpness");
+    let report = format!("--report {}", folder.display());
+    let text = String::from_utf8(run(&format!("bench {SMALL} --preset niessner2012 {few} {report}")).stdout).unwrap();
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    for what in ["time", "bytes"] {
+        let caption = format!("machine-part, equal spacing: {what} against sharpness at factor 1</figcaption>");
+        let plot = page.split(&caption).nth(1).unwrap().split("</figure>").next().unwrap();
+        // Five rows at each sharpness.
+        assert_eq!(plot.matches("<polygon").count(), 10);
+        assert!(plot.contains("2^sharpness 8,"), "{plot}");
+    }
+    assert!(text.contains("\ntime and bytes, to the least sharpness ") && text.contains("Nießner, Loop, Greiner 2012"));
+    fails(
+        &format!("bench {SMALL} --shape torus --sharpness 2"),
+        1,
+        "torus: it has no creases of finite sharpness: name a mesh that has",
+    );
+    fails(
+        "bench --sharpness 10",
+        2,
+        "invalid value '10' for '--sharpness <SHARPNESS>': it must be a number from 0 to less than 10",
+    );
 }

@@ -42,6 +42,7 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
                 "compute_invocations",
                 "construction",
                 "construction_ms",
+                "creases",
                 "cull",
                 "factor",
                 "fence_ms",
@@ -170,6 +171,7 @@ fn bench_records_crowds() {
         [
             "adaptive",
             "construction",
+            "creases",
             "crowd",
             "cull",
             "draw_ms",
@@ -194,7 +196,7 @@ fn bench_records_crowds() {
     assert!(page.contains("What the host takes to record a frame"));
     assert!(!page.contains("Plots") && !page.contains("<h2>Rows"));
     let csv = fs::read_to_string(report.join("results.csv")).unwrap();
-    let columns = "mesh,scheme,construction,path,normals,adaptive,cull,crowd,models,";
+    let columns = "mesh,scheme,construction,path,normals,adaptive,creases,cull,crowd,models,";
     assert!(csv.starts_with(columns) && csv.lines().count() == 7, "{csv}");
     fails("bench --recording 0", 2, "invalid value '0' for '--recording <MODELS>': 0 is not in 1..=100000");
 }
@@ -295,7 +297,7 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --preset x",
         2,
-        "invalid value 'x' for '--preset <NAME>' [possible values: loop2009-table1, loop2009-table2, ni2008-table4, ni2008-table5, antal2007]",
+        "invalid value 'x' for '--preset <NAME>' [possible values: loop2009-table1, loop2009-table2, ni2008-table4, ni2008-table5, ni2008-nine, antal2007, niessner2012]",
     );
     fails(
         "bench --paths magic",

@@ -1,7 +1,7 @@
 //! `--report`: one page.
 
 use super::{SMALL, measured};
-use crate::{fails, folder, length, run};
+use crate::{fails, folder, json, length, run};
 use serde_json::Value;
 use std::fs;
 use std::path::PathBuf;
@@ -51,7 +51,7 @@ fn plots_say_which_setting_they_are_of() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
     let mut captions: Vec<&str> =
-        page.split("<figcaption>").filter_map(|rest| rest.split("</figcaption>").next()).collect();
+        page.split("<figcaption>").skip(1).filter_map(|rest| rest.split("</figcaption>").next()).collect();
     let plots = captions.iter().filter(|caption| caption.contains(" spacing, ")).count();
     // Errors in 16 settings, growth in 8, passes in 8.
     assert_eq!(plots, 16 + 8 + 8, "{captions:?}");
@@ -65,6 +65,57 @@ fn plots_say_which_setting_they_are_of() {
     ] {
         assert!(captions.iter().any(|all| all.starts_with(caption)), "{caption} in {captions:?}");
     }
+}
+
+/// A report begins with the rows that none beats in both time and error, of adaptive surfaces too; the others are folded away.
+#[test]
+fn reports_open_with_the_fastest_for_each_accuracy() {
+    let folder = folder("bench-front");
+    let few = "--shape cube --factors 4 --schemes gregory,acc --constructions two-stage,cached --adaptive 0,3";
+    let output = run(&format!("bench {SMALL} {few} --paths tessellation,instanced --report {}", folder.display()));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let results: Value = serde_json::from_slice(&fs::read(folder.join("results.json")).unwrap()).unwrap();
+    let errors = &results["meshes"][0]["normal_error"];
+    let keys = ["acc", "gregory", "gregory adaptive 0", "gregory adaptive 3"];
+    assert_eq!(crate::keys(errors), keys);
+    let error = |key: &str| errors[key].as_f64().unwrap();
+    // At depth 0 the cube is its end caps; level 3 is much closer. What `error` says is the same.
+    assert!((error(keys[2]) / error(keys[1]) - 1.0).abs() < 1e-9 && error(keys[3]) < 0.1 * error(keys[1]));
+    let report = json("error --shape cube --scheme gregory --depths 3 --nearest 0");
+    let of_error = |what: &str| report["schemes"]["gregory depth 3"][what].as_f64().unwrap();
+    assert!((error(keys[3]) / of_error("normal_rms") - 1.0).abs() < 1e-9, "{report}");
+    let position = results["meshes"][0]["position_error"][keys[3]].as_f64().unwrap();
+    assert!((position / of_error("position_rms") - 1.0).abs() < 1e-9, "{report}");
+
+    let rows: Vec<(f64, f64, String)> = results["rows"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| {
+            let [scheme, construction, path] = ["scheme", "construction", "path"].map(|key| row[key].as_str().unwrap());
+            let (depth, surface) = match row["adaptive"].as_u64() {
+                Some(depth) => (format!(" adaptive {depth}"), format!("{scheme} adaptive {depth}")),
+                None => (String::new(), scheme.to_owned()),
+            };
+            let label = format!("{scheme} {construction} {path}{depth}");
+            (row["geometry_ms"]["median"].as_f64().unwrap(), error(&surface), label)
+        })
+        .collect();
+    let is_best = |(ms, error, _): &&(f64, f64, String)| {
+        !rows.iter().any(|other| (other.0 <= *ms && other.1 < *error) || (other.0 < *ms && other.1 <= *error))
+    };
+    let mut best: Vec<_> = rows.iter().filter(is_best).collect();
+    best.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    let body = page.split("<h1>").nth(1).unwrap();
+    let answer = body.split("<h2>").nth(1).unwrap();
+    assert!(answer.starts_with("The fastest for each accuracy"), "{answer}");
+    let told = answer.split("<tbody>").nth(1).unwrap().split("</tbody>").next().unwrap();
+    let places: Vec<_> = best.iter().map(|(_, _, label)| told.find(&format!(" {label}</th>"))).collect();
+    assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{best:?} in {told}");
+    assert_eq!(told.matches("<tr>").count(), best.len(), "{best:?} in {told}");
+    assert!(answer.contains(&format!("<b>{}</b> is the fastest", best[0].2)), "{answer}");
+    assert!(body.contains(&format!("<details><summary>All {} rows", rows.len())));
 }
 
 #[test]

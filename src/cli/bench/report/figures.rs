@@ -1,7 +1,7 @@
 //! Plots of the report, and the style of each contestant in all of them.
 
 use super::super::super::error::CliError;
-use super::super::findings::{any_passes, any_size};
+use super::super::findings::{any_passes, any_sharpness, any_size};
 use super::super::results::Results;
 use super::super::row::{NONE, Row, Setting, Who};
 use super::super::unique;
@@ -11,11 +11,11 @@ use ash_subdiv::measure::statistics::growth;
 use ash_subdiv::{Construction, Scheme};
 use maud::{Markup, PreEscaped, html};
 
-const GEOMETRY: &str = "ms a frame, geometry alone";
+pub(super) const GEOMETRY: &str = "ms a frame, geometry alone";
 const PIXELS: &str = "ms a frame, with pixels";
 
 /// Colours tell schemes apart, marks paths, dashes constructions, widths those with shared normals (wide) and culling (thin).
-fn style(who: &Who) -> LineStyle {
+pub(super) fn style(who: &Who) -> LineStyle {
     let scheme = Scheme::ALL.iter().position(|scheme| scheme.name() == who.scheme);
     let colour = scheme.map_or(FLOOR, |index| COLOURS[index % COLOURS.len()]);
     let construction = Construction::ALL.iter().position(|construction| construction.name() == who.construction);
@@ -31,7 +31,7 @@ fn style(who: &Who) -> LineStyle {
 }
 
 /// A line for each contestant among these rows.
-fn lines<'r>(rows: &[&'r Row], point: impl Fn(&'r Row) -> Option<(f64, f64)>) -> Vec<Line> {
+pub(super) fn lines<'r>(rows: &[&'r Row], point: impl Fn(&'r Row) -> Option<(f64, f64)>) -> Vec<Line> {
     let mut lines: Vec<(&Who, Line)> = Vec::new();
     for &row in rows {
         let Some(at) = point(row) else { continue };
@@ -62,18 +62,23 @@ pub(super) fn plots(results: &Results) -> Result<Markup, CliError> {
     let mut figures = Figures { results, factors: unique(rows, |row| row.factor), drawn: Vec::new() };
     for setting in unique(rows, |row| &row.setting) {
         figures.by_factor(setting)?;
-        figures.errors(setting)?;
     }
     figures.by_size()?;
     figures.by_passes()?;
+    figures.by_sharpness()?;
     let legend = unique(rows, |row| &row.who);
+    if figures.drawn.is_empty() {
+        return Ok(html! {});
+    }
     Ok(html! {
         h2 { "Plots" }
+        details { summary { (figures.drawn.len()) " plots of all rows" }
         ul.legend {
             @for who in legend { li { (swatch(style(who))) " " (who.label()) } }
         }
         div.plots {
             @for (caption, svg) in &figures.drawn { figure.plot { figcaption { (caption) } (PreEscaped(svg)) } }
+        }
         }
     })
 }
@@ -104,24 +109,6 @@ impl<'r> Figures<'r> {
             self.add(format!("{title}: {what}"), &plot)?;
         }
         Ok(())
-    }
-
-    /// Error against time: the fewer milliseconds and the smaller the error, the better.
-    fn errors(&mut self, setting: &Setting) -> Result<(), CliError> {
-        let Some(mesh) = self.results.meshes.iter().find(|mesh| mesh.name == setting.mesh) else { return Ok(()) };
-        let own = |row: &Row| row.who.normals == Normals::Own.name();
-        let error = |row: &Row| mesh.normal_error.get(&row.who.scheme).copied().filter(|&e| e > 0.0 && own(row));
-        let factor = self.factors[self.factors.len() / 2];
-        let rows = self.results.rows.iter().filter(|row| row.setting == *setting && row.factor == factor);
-        let lines = lines(&rows.collect::<Vec<_>>(), |row| Some((row.geometry_ms.median, error(row)?)));
-        if lines.is_empty() {
-            return Ok(());
-        }
-        let title = self.title(setting);
-        let caption =
-            format!("{title}: error against time at factor {factor}; the thin line joins what none beats in both");
-        let y = "error of the normal, rms, rad";
-        self.add(caption, &Plot { x: GEOMETRY, marks: &[], y, lines: &lines, front: true })
     }
 
     /// Rows at one factor that are the same in what `same` leaves of their settings, where `x` is not the same of all.
@@ -161,6 +148,28 @@ impl<'r> Figures<'r> {
         Ok(())
     }
 
+    /// Against the power of two of sharpness: what doubles with each step is a line at 45 degrees.
+    fn by_sharpness(&mut self) -> Result<(), CliError> {
+        let meshes = &self.results.meshes;
+        let power = |row: &Row| {
+            let mesh = meshes.iter().find(|mesh| mesh.name == row.setting.mesh);
+            mesh.and_then(|mesh| mesh.sharpness).map_or(0.0, |sharpness| f64::from(sharpness).exp2())
+        };
+        for (setting, factor, rows) in
+            self.of_several(|setting| any_sharpness(setting, meshes), |row| power(row).to_bits())
+        {
+            let marks = unique(&rows, |row| power(row));
+            let title = self.title(&setting);
+            let times = lines(&rows, |row| Some((power(row), row.geometry_ms.median)));
+            let bytes = lines(&rows, |row| Some((power(row), row.total_bytes() as f64 / 1024.0)));
+            for (what, y, lines) in [("time", GEOMETRY, times), ("bytes", "KiB", bytes)] {
+                let caption = format!("{title}: {what} against sharpness at factor {factor}");
+                self.add(caption, &Plot { x: "2^sharpness", marks: &marks, y, lines: &lines, front: false })?;
+            }
+        }
+        Ok(())
+    }
+
     fn by_passes(&mut self) -> Result<(), CliError> {
         let passes = |row: &Row| u64::from(row.setting.passes);
         let marks: Vec<f64> = self.results.options.passes.iter().map(|&passes| passes.into()).collect();
@@ -173,7 +182,7 @@ impl<'r> Figures<'r> {
     }
 }
 
-fn swatch(LineStyle { colour, dash, mark, width }: LineStyle) -> Markup {
+pub(super) fn swatch(LineStyle { colour, dash, mark, width }: LineStyle) -> Markup {
     let colour = format!("#{:02x}{:02x}{:02x}", colour.0, colour.1, colour.2);
     let dash = dash.map(|[dash, gap]| format!("{dash} {gap}"));
     let corners: Vec<String> = mark.corners.iter().map(|(x, y)| format!("{},{}", 17 + x, 6 + y)).collect();

@@ -1,6 +1,7 @@
 //! The report: one page that needs nothing but itself, and the numbers beside it.
 
 mod figures;
+mod front;
 mod page;
 mod plots;
 mod thumbnail;

@@ -7,7 +7,7 @@ use super::super::findings::Findings;
 use super::super::recorded::Recorded;
 use super::super::results::Results;
 use super::super::row::{Interval, Row, Times};
-use super::figures;
+use super::{figures, front};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -28,17 +28,19 @@ pub(super) fn page(results: &Results, csv: &[u8], json: &str) -> Result<String, 
             }
             body {
                 h1 { "subdiv bench" }
+                (front::front(results)?)
+                h2 { "Conditions" }
                 (facts(results))
                 h2 { "Meshes" }
                 div.meshes { @for mesh in &results.meshes { (picture(mesh)) } }
-                (figures::plots(results)?)
                 (findings(&results.findings))
                 (recording(&results.recording))
                 (changes(results))
                 (published(results))
+                (figures::plots(results)?)
                 @if !results.rows.is_empty() {
                     h2 { "Rows" }
-                    (rows(results))
+                    details { summary { "All " (results.rows.len()) " rows" } (rows(results)) }
                 }
                 @if !results.left_out.is_empty() {
                     h3 { "Left out" }

@@ -1,9 +1,9 @@
-//! Legend of an error map, written below the picture.
+//! Legend of a map, written below the picture.
 
-use super::canvas::{Canvas, FONT, drawing_error, load_font};
-use super::error::CliError;
-use super::output::short;
-use super::parse::Colour;
+use super::super::canvas::{Canvas, FONT, drawing_error, load_font};
+use super::super::error::CliError;
+use super::super::output::short;
+use super::super::parse::Colour;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -20,18 +20,29 @@ pub(super) fn colour(number: usize) -> Colour {
     Colour([colour.r, colour.g, colour.b, 255])
 }
 
-/// A scale from zero to `top`.
-pub(super) struct Legend {
-    /// Quantity that is shown, with its unit.
-    pub title: String,
-    pub top: f64,
-    /// Whether there are values above the top.
-    pub exceeded: bool,
+/// What the colours of a map mean.
+pub(in super::super) enum Legend {
+    /// A scale from zero to `top`.
+    Scale {
+        /// Quantity that is shown, with its unit.
+        title: String,
+        top: f64,
+        /// Whether there are values above the top.
+        exceeded: bool,
+    },
+    /// Names of colours, from left to right.
+    Swatches { title: String, swatches: Vec<Swatch> },
+}
+
+/// A name, and the colours that have it.
+pub(in super::super) struct Swatch {
+    pub name: String,
+    pub colours: Vec<Colour>,
 }
 
 impl Legend {
     /// Rows of a picture that the legend takes.
-    pub(super) fn height(size: [u32; 2]) -> Result<u32, CliError> {
+    pub(in super::super) fn height(size: [u32; 2]) -> Result<u32, CliError> {
         let [width, height] = size;
         if width < SMALLEST[0] || height < SMALLEST[1] {
             let [w, h] = SMALLEST;
@@ -42,7 +53,7 @@ impl Legend {
     }
 
     /// Adds the legend below a picture; `size` includes it.
-    pub(super) fn add(&self, size: [u32; 2], background: Colour, rgba: &mut Vec<u8>) -> Result<(), CliError> {
+    pub(in super::super) fn add(&self, size: [u32; 2], background: Colour, rgba: &mut Vec<u8>) -> Result<(), CliError> {
         let [width, height] = size;
         while rgba.len() < 4 * width as usize * height as usize {
             rgba.extend(background.0);
@@ -66,18 +77,36 @@ impl Legend {
         let margin = font;
         let (left, right) = (margin, width - margin);
         let first_row = height - rows(size) as i32;
-        text(left, first_row + font / 4, HPos::Left, self.title.clone())?;
         let (bar, bar_end) = (first_row + 7 * font / 4, first_row + 11 * font / 4);
-        for x in left..right {
-            let number = (x - left) as usize * (COLOURS - 1) / (right - left - 1) as usize;
-            let [r, g, b, _] = colour(number).0;
-            root.draw(&Rectangle::new([(x, bar), (x, bar_end)], RGBColor(r, g, b).filled()))?;
-        }
         let labels = bar_end + font / 4;
-        text(left, labels, HPos::Left, "0".into())?;
-        text((left + right) / 2, labels, HPos::Center, short(self.top / 2.0))?;
-        let sign = if self.exceeded { "≥ " } else { "" };
-        text(right, labels, HPos::Right, format!("{sign}{}", short(self.top)))?;
+        let bar = |[from, to]: [i32; 2], Colour([r, g, b, _]): Colour| {
+            root.draw(&Rectangle::new([(from, bar), (to, bar_end)], RGBColor(r, g, b).filled()))
+        };
+        match self {
+            Self::Scale { title, top, exceeded } => {
+                text(left, first_row + font / 4, HPos::Left, title.clone())?;
+                for x in left..right {
+                    let number = (x - left) as usize * (COLOURS - 1) / (right - left - 1) as usize;
+                    bar([x, x], colour(number))?;
+                }
+                text(left, labels, HPos::Left, "0".into())?;
+                text((left + right) / 2, labels, HPos::Center, short(top / 2.0))?;
+                let sign = if *exceeded { "≥ " } else { "" };
+                text(right, labels, HPos::Right, format!("{sign}{}", short(*top)))?;
+            }
+            Self::Swatches { title, swatches } => {
+                text(left, first_row + font / 4, HPos::Left, title.clone())?;
+                let at = |i: usize, count: usize, [from, to]: [i32; 2]| from + (to - from) * i as i32 / count as i32;
+                for (i, Swatch { name, colours }) in swatches.iter().enumerate() {
+                    let [from, to] = [i, i + 1].map(|i| at(i, swatches.len(), [left, right + 2]));
+                    let to = to - 2;
+                    for (k, &colour) in colours.iter().enumerate() {
+                        bar([k, k + 1].map(|k| at(k, colours.len(), [from, to])), colour)?;
+                    }
+                    text((from + to) / 2, labels, HPos::Center, name.clone())?;
+                }
+            }
+        }
         root.present()
     }
 }
