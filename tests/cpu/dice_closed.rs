@@ -1,0 +1,1 @@
+//! Tessellations have no holes, whatever the depths.
