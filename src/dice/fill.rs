@@ -220,10 +220,12 @@ impl<T: Real> Plan<T> {
                 rest_of_triangles.split_off_mut(..(next.1 - facet.triangles) as usize).unwrap_or_default();
             parts.push((facet, of_quads, of_triangles));
         }
-        parts.into_par_iter().with_min_len(MIN_LEN).for_each_init(
-            super::faces::FaceWriter::default,
-            |writer, (facet, quads, triangles)| writer.write(facet, quads, triangles),
-        );
+        parts
+            .into_par_iter()
+            .with_min_len(MIN_LEN)
+            .for_each_init(super::faces::FaceWriter::default, |writer, (facet, quads, triangles)| {
+                writer.write(facet, quads, triangles)
+            });
         Ok(())
     }
 }

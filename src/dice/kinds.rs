@@ -4,8 +4,8 @@
 //! points. Of any other kind the four quarters have kinds in turn, whose points are sums of the points; around an extraordinary
 //! vertex the same kind comes again at every level, so there are few of them however deep facets go.
 
-use super::sums::Sums;
 use super::real::Real;
+use super::sums::Sums;
 use crate::adaptive::{fill, grid, is_boundary};
 use crate::blend::{Blend, Row};
 use crate::limit::{Local, corner_masks, dart_edge, is_semi_sharp_at, refine};

@@ -132,13 +132,7 @@ impl Layout {
     }
 
     /// Tells facets the vertices that others write, and copies where they take from.
-    fn join(
-        &mut self,
-        topology: &Topology,
-        corners: &Corners,
-        places: &[u32],
-        splits: &impl Fn(u32) -> Split,
-    ) {
+    fn join(&mut self, topology: &Topology, corners: &Corners, places: &[u32], splits: &impl Fn(u32) -> Split) {
         let owned = self.owned;
         for facet in &mut self.facets {
             facet.copies += owned;
@@ -164,7 +158,8 @@ impl Layout {
         for facet in &self.facets {
             for k in (0..4).filter(|&k| facet.corners[k].0 == Role::Copy) {
                 let [position, normal] = corners.sources[&(4 * facet.facet + k as u32)];
-                sources.push(Source { position: written(&self.facets, position), normal: written(&self.facets, normal) });
+                sources
+                    .push(Source { position: written(&self.facets, position), normal: written(&self.facets, normal) });
             }
             for k in (0..4).filter(|&k| facet.sides[k].0 == Role::Copy) {
                 let h = 4 * facet.facet + k as u32;
@@ -178,8 +173,7 @@ impl Layout {
             }
         }
         self.sources = sources;
-        self.blunt =
-            corners.blunt.iter().map(|fan| (written(&self.facets, fan[0]), fan.clone())).collect();
+        self.blunt = corners.blunt.iter().map(|fan| (written(&self.facets, fan[0]), fan.clone())).collect();
     }
 }
 

@@ -74,9 +74,7 @@ impl DiceOptions {
         check_length("largest step between neighbours", self.max_step.into())?;
         match &self.depth {
             Depth::Fixed(depth) => check_depth(*depth),
-            Depth::Each(depths) if depths.len() != facets => {
-                Err(DiceError::DepthCount { given: depths.len(), facets })
-            }
+            Depth::Each(depths) if depths.len() != facets => Err(DiceError::DepthCount { given: depths.len(), facets }),
             Depth::Each(depths) => depths.iter().try_for_each(|&depth| check_depth(depth)),
             Depth::EdgeLength(length) => check_length("edge length", *length),
             Depth::Pixels { pixels, camera } => {

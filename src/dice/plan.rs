@@ -148,10 +148,9 @@ fn seams(topology: &Topology) -> Vec<bool> {
     let Some(texcoords) = &topology.mesh().data().texcoords else { return Vec::new() };
     let index = |h: u32| texcoords.indices[h as usize];
     let is_seam = |h: u32| {
-        topology.twin(h).is_some_and(|twin| {
-            index(h) != index(topology.next(twin)) || index(topology.next(h)) != index(twin)
-        })
+        topology
+            .twin(h)
+            .is_some_and(|twin| index(h) != index(topology.next(twin)) || index(topology.next(h)) != index(twin))
     };
     (0..topology.mesh().corner_count() as u32).into_par_iter().map(is_seam).collect()
 }
-

@@ -26,11 +26,7 @@ pub(super) struct Corners {
 }
 
 impl Corners {
-    pub(super) fn new(
-        topology: &Topology,
-        depths: &[Option<u32>],
-        splits: &impl Fn(u32) -> Split,
-    ) -> Self {
+    pub(super) fn new(topology: &Topology, depths: &[Option<u32>], splits: &impl Fn(u32) -> Split) -> Self {
         let count = topology.mesh().corner_count();
         let mut corners = Self {
             roles: vec![Role::Other; count],

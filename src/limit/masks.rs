@@ -18,11 +18,7 @@ pub(crate) struct CornerMasks<T> {
 /// The masks at the corner of a face, `vertex(v)` being the value at mesh vertex `v`.
 ///
 /// Nothing at the vertex may be semi-sharp, and the faces around it must be quads.
-pub(crate) fn corner_masks<T: Blend>(
-    topology: &Topology,
-    half_edge: u32,
-    vertex: impl Fn(u32) -> T,
-) -> CornerMasks<T> {
+pub(crate) fn corner_masks<T: Blend>(topology: &Topology, half_edge: u32, vertex: impl Fn(u32) -> T) -> CornerMasks<T> {
     let place = topology.place(half_edge);
     let ring = &topology.rings()[place.ring as usize];
     let j = place.index as usize;
