@@ -1,9 +1,9 @@
 //! Bicubic B-spline patches at the points of a grid: where most vertices of a tessellation come from.
 
-use super::real::{Real, Vector, cross};
+use super::real::{Real, Vector};
 
 /// Points of a row that are computed side by side.
-const LANES: usize = 8;
+const LANES: usize = 4;
 
 type Lanes<T> = [T; LANES];
 
@@ -43,8 +43,10 @@ impl<T: Real> Basis<T> {
         basis
     }
 
+    #[inline(always)]
     fn at(groups: &[[Lanes<T>; 4]], point: usize) -> [T; 4] {
-        std::array::from_fn(|i| groups[point / LANES][i][point % LANES])
+        let (group, lane) = (&groups[point / LANES], point % LANES);
+        [group[0][lane], group[1][lane], group[2][lane], group[3][lane]]
     }
 }
 
@@ -60,23 +62,30 @@ pub(super) struct Net<T> {
 
 impl<T: Real> Net<T> {
     /// Of points relative to `origin`; number `4 i + j` has index i along u and j along v.
+    #[inline(always)]
     pub(super) fn new(points: impl Fn(usize) -> Vector<T>, origin: Vector<f64>) -> Self {
-        let base = origin.map(T::of);
-        // What rounding the origin takes off.
-        let rest: Vector<T> = std::array::from_fn(|axis| T::of(origin[axis] - base[axis].wide()));
         let mut rows = [[T::zero(); 12]; 4];
-        let mut size = T::zero();
         for i in 0..4 {
             for (j, row) in rows.iter_mut().enumerate() {
-                let point = points(4 * i + j);
-                for axis in 0..3 {
-                    row[4 * axis + i] = point[axis] + rest[axis];
-                    size = size.max(point[axis].abs());
-                }
+                let [x, y, z] = points(4 * i + j);
+                (row[i], row[4 + i], row[8 + i]) = (x, y, z);
             }
         }
-        let shrink = if size > T::zero() { (size * size).recip() } else { T::one() };
-        Self { rows, base, shrink: if shrink.is_finite() { shrink } else { T::one() } }
+        let mut largest = [T::zero(); 12];
+        for row in &rows {
+            for (largest, x) in largest.iter_mut().zip(row) {
+                *largest = if x.abs() > *largest { x.abs() } else { *largest };
+            }
+        }
+        let size = largest.into_iter().fold(T::min_positive_value().sqrt(), |a, b| if a > b { a } else { b });
+        let mut base = [T::zero(); 3];
+        for axis in 0..3 {
+            base[axis] = T::of(origin[axis]);
+            // What rounding the origin takes off.
+            let rest = T::of(origin[axis] - base[axis].wide());
+            rows.iter_mut().flat_map(|row| &mut row[4 * axis..4 * axis + 4]).for_each(|x| *x = *x + rest);
+        }
+        Self { rows, base, shrink: (size * size).recip() }
     }
 }
 
@@ -89,16 +98,36 @@ pub(super) struct Window<'g, T> {
     pub stride: usize,
 }
 
+#[inline(always)]
 fn sum<T: Real>(weights: [T; 4], rows: &[[T; 12]; 4]) -> [T; 12] {
-    std::array::from_fn(|k| {
-        (weights[0] * rows[0][k] + weights[1] * rows[1][k]) + (weights[2] * rows[2][k] + weights[3] * rows[3][k])
-    })
+    let mut sum = [T::zero(); 12];
+    for (k, sum) in sum.iter_mut().enumerate() {
+        *sum =
+            (weights[0] * rows[0][k] + weights[1] * rows[1][k]) + (weights[2] * rows[2][k] + weights[3] * rows[3][k]);
+    }
+    sum
 }
 
 #[inline(always)]
 fn along<T: Real>(weights: &[Lanes<T>; 4], points: &[T; 12], axis: usize) -> Lanes<T> {
-    let [a, b, c, d]: [T; 4] = std::array::from_fn(|i| points[4 * axis + i]);
-    std::array::from_fn(|l| (weights[0][l] * a + weights[1][l] * b) + (weights[2][l] * c + weights[3][l] * d))
+    let [a, b, c, d] = [points[4 * axis], points[4 * axis + 1], points[4 * axis + 2], points[4 * axis + 3]];
+    let mut sum = [T::zero(); LANES];
+    for (l, sum) in sum.iter_mut().enumerate() {
+        *sum = (weights[0][l] * a + weights[1][l] * b) + (weights[2][l] * c + weights[3][l] * d);
+    }
+    sum
+}
+
+/// The points of a group, each with its coordinates beside each other.
+#[inline(always)]
+fn write<T: Real>(out: &mut [Vector<T>], [x, y, z]: [Lanes<T>; 3]) {
+    if let Ok(out) = <&mut [Vector<T>; LANES]>::try_from(&mut *out) {
+        for l in 0..LANES {
+            out[l] = [x[l], y[l], z[l]];
+        }
+    } else {
+        out.iter_mut().enumerate().for_each(|(l, out)| *out = [x[l], y[l], z[l]]);
+    }
 }
 
 /// Evaluates a patch at the points of a basis.
@@ -108,22 +137,22 @@ pub(super) fn evaluate<T: Real>(net: &Net<T>, basis: &Basis<T>, window: Window<'
         let start = j * window.stride;
         let positions = &mut window.positions[start..start + basis.len];
         for (values, out) in basis.values.iter().zip(positions.chunks_mut(LANES)) {
-            let p: [Lanes<T>; 3] = std::array::from_fn(|axis| along(values, &points, axis));
-            for (l, out) in out.iter_mut().enumerate() {
-                *out = [p[0][l] + net.base[0], p[1][l] + net.base[1], p[2][l] + net.base[2]];
+            let mut p = [[T::zero(); LANES]; 3];
+            for (axis, p) in p.iter_mut().enumerate() {
+                *p = along(values, &points, axis);
+                p.iter_mut().for_each(|x| *x = *x + net.base[axis]);
             }
+            write(out, p);
         }
         if window.normals.is_empty() {
             continue;
         }
         // Scaled, so that the squared length of the cross product is of the order of one.
-        let across = sum(Basis::at(&basis.slopes, j), &net.rows).map(|x| x * net.shrink);
+        let mut across = sum(Basis::at(&basis.slopes, j), &net.rows);
+        across.iter_mut().for_each(|x| *x = *x * net.shrink);
         let normals = &mut window.normals[start..start + basis.len];
         for ((values, slopes), out) in basis.values.iter().zip(&basis.slopes).zip(normals.chunks_mut(LANES)) {
-            let n = unit_normals(values, slopes, &points, &across);
-            for (l, out) in out.iter_mut().enumerate() {
-                *out = [n[0][l], n[1][l], n[2][l]];
-            }
+            write(out, unit_normals(values, slopes, &points, &across));
         }
     }
 }
@@ -135,15 +164,20 @@ fn unit_normals<T: Real>(
     points: &[T; 12],
     across: &[T; 12],
 ) -> [Lanes<T>; 3] {
-    let u: [Lanes<T>; 3] = std::array::from_fn(|axis| along(slopes, points, axis));
-    let v: [Lanes<T>; 3] = std::array::from_fn(|axis| along(values, across, axis));
+    let u = [along(slopes, points, 0), along(slopes, points, 1), along(slopes, points, 2)];
+    let v = [along(values, across, 0), along(values, across, 1), along(values, across, 2)];
     let mut n = [[T::zero(); LANES]; 3];
     for l in 0..LANES {
-        let normal = cross([u[0][l], u[1][l], u[2][l]], [v[0][l], v[1][l], v[2][l]]);
-        let squared = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+        n[0][l] = u[1][l] * v[2][l] - u[2][l] * v[1][l];
+        n[1][l] = u[2][l] * v[0][l] - u[0][l] * v[2][l];
+        n[2][l] = u[0][l] * v[1][l] - u[1][l] * v[0][l];
+    }
+    for l in 0..LANES {
+        let squared = (n[0][l] * n[0][l] + n[1][l] * n[1][l]) + n[2][l] * n[2][l];
+        // Where the tangents are parallel nothing is left but zero.
         let scale = if squared > T::min_positive_value() { squared.sqrt().recip() } else { T::zero() };
-        for axis in 0..3 {
-            n[axis][l] = normal[axis] * scale;
+        for n in &mut n {
+            n[l] = n[l] * scale;
         }
     }
     n

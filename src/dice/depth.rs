@@ -1,6 +1,8 @@
 //! How deep each facet is.
 
+use super::bounds::Bounds;
 use super::options::{Camera, Depth, DiceOptions};
+use crate::mesh::MeshError;
 use crate::topology::Topology;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,7 +11,11 @@ use rayon::prelude::*;
 const NEAR: f64 = 1e-4;
 
 /// How often each facet, a face of `topology`, is halved: `None` of those that are not drawn.
-pub(super) fn halvings(topology: &Topology, drawn: &[bool], options: &DiceOptions) -> Vec<Option<u32>> {
+pub(super) fn halvings(
+    topology: &Topology,
+    drawn: &[bool],
+    options: &DiceOptions,
+) -> Result<Vec<Option<u32>>, MeshError> {
     let mesh = topology.mesh();
     let by_length = |length: &(dyn Fn(u32) -> f64 + Sync), most: f64| -> Vec<u32> {
         let of_facet = |facet: u32| {
@@ -30,13 +36,23 @@ pub(super) fn halvings(topology: &Topology, drawn: &[bool], options: &DiceOption
             },
             *length,
         ),
+        Depth::Tolerance(distance) => {
+            let facets: Vec<u32> = (0..).zip(drawn).filter(|(_, drawn)| **drawn).map(|(facet, _)| facet).collect();
+            let deepest = options.max_depth - 1;
+            let bounds = Bounds::new(topology, &facets, deepest)?;
+            let least = |index| (0..deepest).find(|&n| bounds.bound(index, n) <= *distance).unwrap_or(deepest);
+            let of_facets: Vec<u32> = (0..facets.len()).into_par_iter().map(least).collect();
+            let mut depths = vec![0; mesh.face_count()];
+            facets.into_iter().zip(of_facets).for_each(|(facet, depth)| depths[facet as usize] = depth);
+            depths
+        }
         Depth::Pixels { pixels, camera } => {
             let seen = Seen::new(camera, mesh.data().positions.iter().map(|&p| p.into()));
             by_length(&|h| if seen.is_outside(topology, h / 4) { 0.0 } else { seen.length(ends(h)) }, *pixels)
         }
     };
     limit_steps(topology, drawn, &mut depths, options.max_step);
-    depths.into_iter().zip(drawn).map(|(depth, drawn)| drawn.then_some(depth)).collect()
+    Ok(depths.into_iter().zip(drawn).map(|(depth, drawn)| drawn.then_some(depth)).collect())
 }
 
 /// Makes facets deeper that differ from a deeper neighbour by more than a step.

@@ -16,6 +16,8 @@ pub enum DiceError {
     TooLarge { what: &'static str, count: u64, max: u64 },
     #[error("{what} are given for {given} vertices, but there are {count}")]
     Count { what: &'static str, given: usize, count: usize },
+    #[error("the mesh has no texture coordinates, by which a height map is read: add some")]
+    NoTexcoords,
     #[error("the mesh has no face that is drawn: all of them are holes, or touch a boundary that is not drawn")]
     NothingDrawn,
     #[error(transparent)]

@@ -53,10 +53,12 @@ impl<T: Real> Surface<'_, T> {
         arena.positions.resize(side * side, zero);
         arena.normals.resize(if with_normals { side * side } else { 0 }, zero);
         let (kind, points) = self.patches.facet(facet);
-        let origin = self.vertices[points[0] as usize].map(|x| T::of(x).wide());
+        let [x, y, z] = self.vertices[points[0] as usize];
+        let [x, y, z] = [T::of(x).wide(), T::of(y).wide(), T::of(z).wide()];
+        let origin = [x, y, z];
         let relative = |point: u32| {
-            let point = self.vertices[point as usize];
-            std::array::from_fn(|axis| T::of(point[axis] - origin[axis]))
+            let point = &self.vertices[point as usize];
+            [T::of(point[0] - x), T::of(point[1] - y), T::of(point[2] - z)]
         };
         if kind == PLAIN {
             return self.regular(&Net::new(|i| relative(points[i]), origin), depth, [0, 0], arena);

@@ -66,6 +66,8 @@ pub(super) struct Builder {
     numbers: FxHashMap<Key, u32>,
     /// Kinds with the depths for which they are made.
     done: HashSet<(u32, u32)>,
+    /// The same for all lesser depths.
+    all: HashSet<(u32, u32)>,
 }
 
 struct Draft {
@@ -106,6 +108,21 @@ impl Builder {
         for k in 0..4 {
             let quarter = self.refine(kind)?[k].kind;
             self.deepen(quarter, depth - 1)?;
+        }
+        Ok(())
+    }
+
+    /// Makes all corners and steps of refinement of facets that are halved up to `depth` times.
+    pub(super) fn deepen_all(&mut self, kind: u32, depth: u32) -> Result<(), MeshError> {
+        if self.drafts[kind as usize].regular.is_some() || !self.all.insert((kind, depth)) {
+            return Ok(());
+        }
+        self.deepen(kind, 0)?;
+        if depth > 0 {
+            for k in 0..4 {
+                let quarter = self.refine(kind)?[k].kind;
+                self.deepen_all(quarter, depth - 1)?;
+            }
         }
         Ok(())
     }

@@ -21,7 +21,9 @@
 //! ```
 
 mod bicubic;
+mod bounds;
 mod depth;
+mod displace;
 mod error;
 mod evaluate;
 mod faces;

@@ -26,6 +26,9 @@ pub enum Depth {
         /// The camera, which need not be the one of the picture.
         camera: Camera,
     },
+    /// As deep as keeps all faces within this distance of the limit surface, in the units of the mesh: a bound, see
+    /// [`Plan::error_bound`](super::Plan::error_bound).
+    Tolerance(f64),
 }
 
 /// What measures pixels.
@@ -76,6 +79,7 @@ impl DiceOptions {
             Depth::Fixed(depth) => check_depth(*depth),
             Depth::Each(depths) if depths.len() != facets => Err(DiceError::DepthCount { given: depths.len(), facets }),
             Depth::Each(depths) => depths.iter().try_for_each(|&depth| check_depth(depth)),
+            Depth::Tolerance(distance) => check_length("tolerance", *distance),
             Depth::EdgeLength(length) => check_length("edge length", *length),
             Depth::Pixels { pixels, camera } => {
                 check_length("edge length in pixels", *pixels)?;

@@ -26,12 +26,15 @@ pub(super) struct Patches<T> {
 }
 
 impl<T: Real> Patches<T> {
-    /// Of facets that are faces of the mesh.
-    pub(super) fn new(topology: &Topology, facets: &[Facet]) -> Result<Self, MeshError> {
-        let part = |facet: &Facet| {
-            let mut corners = 4 * facet.facet..4 * facet.facet + 4;
-            let is_plain = corners.all(|h| is_plain(topology, h));
-            (!is_plain).then(|| Local::cut(topology, facet.facet, 0, DVec3::ZERO))
+    /// Of facets that are faces of the mesh. `deepen` makes what the facet with an index, of a kind, is evaluated with.
+    pub(super) fn new(
+        topology: &Topology,
+        facets: &[u32],
+        deepen: impl Fn(&mut Builder, usize, u32) -> Result<(), MeshError>,
+    ) -> Result<Self, MeshError> {
+        let part = |&facet: &u32| {
+            let is_plain = (4 * facet..4 * facet + 4).all(|h| is_plain(topology, h));
+            (!is_plain).then(|| Local::cut(topology, facet, 0, DVec3::ZERO))
         };
         let parts: Vec<Option<Local>> = facets.par_iter().with_min_len(256).map(part).collect();
         let mut builder = Builder::default();
@@ -41,17 +44,16 @@ impl<T: Real> Patches<T> {
             starts: vec![0],
             points: Vec::with_capacity(16 * facets.len()),
         };
-        for (facet, part) in facets.iter().zip(parts) {
+        for (index, part) in parts.into_iter().enumerate() {
             patches.of_facets.push(match part {
                 Some(part) => {
                     patches.points.extend(part.vertices);
                     let kind = builder.number(part.data)?;
-                    builder.deepen(kind, facet.depth)?;
-                    facet.finer_copies().try_for_each(|k| builder.deepen(kind, facet.edges[k]))?;
+                    deepen(&mut builder, index, kind)?;
                     kind
                 }
                 None => {
-                    patches.points.extend(grid(topology, [0, 1, 2, 3].map(|k| 4 * facet.facet + k)));
+                    patches.points.extend(grid(topology, [0, 1, 2, 3].map(|k| 4 * facets[index] + k)));
                     PLAIN
                 }
             });
@@ -59,6 +61,16 @@ impl<T: Real> Patches<T> {
         }
         patches.kinds = builder.finish();
         Ok(patches)
+    }
+
+    /// Of facets with all that they write.
+    pub(super) fn of_layout(topology: &Topology, facets: &[Facet]) -> Result<Self, MeshError> {
+        let numbers: Vec<u32> = facets.iter().map(|facet| facet.facet).collect();
+        Self::new(topology, &numbers, |builder, index, kind| {
+            let facet = &facets[index];
+            builder.deepen(kind, facet.depth)?;
+            facet.finer_copies().try_for_each(|k| builder.deepen(kind, facet.edges[k]))
+        })
     }
 
     /// The kind of a facet by its index, and the vertices that are its points.

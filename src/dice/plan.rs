@@ -1,6 +1,7 @@
 //! All about a tessellation that does not depend on positions.
 
 use super::bicubic::Basis;
+use super::bounds::Bounds;
 use super::depth::halvings;
 use super::error::DiceError;
 use super::layout::{Facet, Layout, Split};
@@ -59,7 +60,7 @@ impl<T: Real> Plan<T> {
         if !drawn.contains(&true) {
             return Err(DiceError::NothingDrawn);
         }
-        let depths = halvings(&refined, &drawn, options);
+        let depths = halvings(&refined, &drawn, options)?;
         let seams = seams(topology);
         let split = |h: u32| {
             let is_inside = refined.twin(h).is_some_and(|twin| drawn[twin as usize / 4]);
@@ -73,7 +74,7 @@ impl<T: Real> Plan<T> {
             Split { crease, seam: is_inside && edge.is_some_and(|edge| seams.get(edge as usize) == Some(&true)) }
         };
         let layout = Layout::new(&refined, &depths, split)?;
-        let patches = Patches::new(&refined, &layout.facets)?;
+        let patches = Patches::of_layout(&refined, &layout.facets)?;
         let deepest = depths.iter().flatten().copied().max().unwrap_or(0);
         let bases = (0..=deepest).map(Basis::new).collect();
         let texcoords = Texcoords::new(&refined, &layout.facets)?;
@@ -114,6 +115,25 @@ impl<T: Real> Plan<T> {
             histogram[depth] += 1;
         }
         histogram
+    }
+
+    /// A distance within which all faces are of the limit surface, and the surface of the faces, for the control vertices of
+    /// which the plan was made.
+    ///
+    /// It is a bound from second differences of control points: `(uu + 2 uv + vv) / 8` of them, a quarter of that for each
+    /// halving, wherever the surface is a B-spline patch (Filip, Magedson, Markot 1986), and from control points around what is
+    /// left next to extraordinary vertices and sharp features. Distances are between points with the same parameters, so the
+    /// true distance is less, above all where the parameters run unevenly. Displacement and texture coordinates do not count, nor
+    /// does rounding.
+    ///
+    /// # Errors
+    /// [`DiceError::Mesh`] if the refined mesh is too large.
+    pub fn error_bound(&self) -> Result<f64, DiceError> {
+        let facets: Vec<u32> = self.facets().iter().map(|facet| facet.facet).collect();
+        let deepest = self.bases.len() as u32 - 1;
+        let bounds = Bounds::new(&self.refined, &facets, deepest)?;
+        let of_facet = |(index, facet): (usize, &Facet)| bounds.bound(index, facet.depth);
+        Ok(self.facets().par_iter().enumerate().map(of_facet).reduce(|| 0.0, f64::max))
     }
 
     /// The vertex whose position a vertex has: itself unless it is a copy along a crease or a seam.

@@ -17,20 +17,24 @@ pub trait Real: num_traits::Float + Default + Debug + Send + Sync + sealed::Seal
 }
 
 impl Real for f32 {
+    #[inline(always)]
     fn of(x: f64) -> Self {
         x as f32
     }
 
+    #[inline(always)]
     fn wide(self) -> f64 {
         self.into()
     }
 }
 
 impl Real for f64 {
+    #[inline(always)]
     fn of(x: f64) -> Self {
         x
     }
 
+    #[inline(always)]
     fn wide(self) -> f64 {
         self
     }
@@ -39,12 +43,14 @@ impl Real for f64 {
 /// Three coordinates.
 pub(super) type Vector<T> = [T; 3];
 
+#[inline]
 pub(super) fn cross<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+#[inline]
 pub(super) fn subtract<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
-    std::array::from_fn(|i| a[i] - b[i])
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// The vector made one long, unless it is zero.

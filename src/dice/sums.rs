@@ -30,15 +30,16 @@ impl<T: Real> Sums<T> {
     }
 
     /// Output `i` for these inputs.
+    #[inline]
     pub(super) fn get(&self, i: usize, inputs: &[Vector<T>]) -> Vector<T> {
         let terms = self.offsets[i] as usize..self.offsets[i + 1] as usize;
-        let mut sum = [T::zero(); 3];
+        let [mut x, mut y, mut z] = [T::zero(); 3];
         for (&index, &weight) in self.indices[terms.clone()].iter().zip(&self.weights[terms]) {
-            let point = inputs[index as usize];
-            for axis in 0..3 {
-                sum[axis] = sum[axis] + weight * point[axis];
-            }
+            let point = &inputs[index as usize];
+            x = x + weight * point[0];
+            y = y + weight * point[1];
+            z = z + weight * point[2];
         }
-        sum
+        [x, y, z]
     }
 }

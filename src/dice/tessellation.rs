@@ -11,12 +11,12 @@ use glam::DVec3;
 
 /// The limit surface as a mesh, in arrays that are filled again when control vertices move.
 pub struct Tessellation<T = f32> {
-    plan: Plan<T>,
-    positions: Vec<[T; 3]>,
-    normals: Vec<[T; 3]>,
-    texcoords: Option<Vec<[f32; 2]>>,
-    quads: Vec<[u32; 4]>,
-    triangles: Vec<[u32; 3]>,
+    pub(super) plan: Plan<T>,
+    pub(super) positions: Vec<[T; 3]>,
+    pub(super) normals: Vec<[T; 3]>,
+    pub(super) texcoords: Option<Vec<[f32; 2]>>,
+    pub(super) quads: Vec<[u32; 4]>,
+    pub(super) triangles: Vec<[u32; 3]>,
 }
 
 impl<T: Real> Tessellation<T> {

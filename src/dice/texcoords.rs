@@ -26,7 +26,7 @@ impl<T: Real> Texcoords<T> {
             return Ok(Some(Self::Linear(corners.map(|c| [at(&c[0]), at(&c[1]), at(&c[2]), at(&c[3])]).collect())));
         }
         let values = Topology::new(&value_mesh(topology, texcoords)?);
-        let patches = Patches::new(&values, facets)?;
+        let patches = Patches::of_layout(&values, facets)?;
         Ok(Some(Self::Smooth { patches, values: values.mesh().data().positions.clone() }))
     }
 }

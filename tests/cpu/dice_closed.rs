@@ -3,7 +3,7 @@
 use crate::common::random::{Random, random_creased_mesh, random_mesh};
 use ash_subdiv::dice::{Camera, Depth, DiceOptions, Place, Tessellation};
 use ash_subdiv::topology::Topology;
-use ash_subdiv::{ControlMesh, View, shape};
+use ash_subdiv::{ControlMesh, MeshData, View, shape};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 
@@ -148,4 +148,58 @@ fn creases_and_seams_leave_no_hole() {
         assert!(!tessellation.triangles().is_empty(), "{name}");
         assert_eq!(fault(&mesh, &tessellation), None, "{name}");
     }
+}
+
+#[test]
+fn displacement_opens_no_crack() {
+    for name in ["machine-part", "creature"] {
+        let mesh = shape(name).unwrap();
+        let mut tessellation = Tessellation::new(&Topology::new(&mesh), &DiceOptions::fixed(2)).unwrap();
+        let before = tessellation.positions().to_vec();
+        let diagonal = mesh.diagonal();
+        tessellation.displace(|[u, v]| 0.002 * diagonal * f64::from((9.0 * u).sin() * (7.0 * v).cos())).unwrap();
+        assert_ne!(before, tessellation.positions(), "{name}");
+        assert_eq!(fault(&mesh, &tessellation), None, "{name}");
+        assert!(tessellation.normals().iter().all(|&n| (DVec3::from(n).length() - 1.0).abs() < 1e-9), "{name}");
+        tessellation.update(&mesh.data().positions).unwrap();
+        assert_eq!(before, tessellation.positions(), "{name}");
+    }
+    let bare = MeshData { texcoords: None, ..shape("cube").unwrap().into_data() };
+    let topology = Topology::new(&ControlMesh::new(bare).unwrap());
+    let mut bare = Tessellation::<f64>::new(&topology, &DiceOptions::fixed(1)).unwrap();
+    let error = bare.displace(|_| 1.0).unwrap_err();
+    assert_eq!(error.to_string(), "the mesh has no texture coordinates, by which a height map is read: add some");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let topology = Topology::new(&shape("cube").unwrap());
+    let refuse = |options: DiceOptions| Tessellation::<f32>::size_of(&topology, &options).unwrap_err().to_string();
+    let of = |depth| DiceOptions { depth, ..DiceOptions::default() };
+    let bad_depth =
+        |depth| format!("depth {depth}: a facet is halved at least once and at most 10 times: choose 1 to 10");
+    assert_eq!(refuse(DiceOptions::fixed(0)), bad_depth(0));
+    assert_eq!(refuse(DiceOptions { max_depth: 11, ..of(Depth::EdgeLength(1.0)) }), bad_depth(11));
+    assert_eq!(refuse(of(Depth::Tolerance(0.0))), "tolerance 0: give a number above zero");
+    assert_eq!(refuse(of(Depth::EdgeLength(f64::NAN))), "edge length NaN: give a number above zero");
+    let few = "depths are given for 3 facets, but the mesh has 24, one a face corner";
+    assert_eq!(refuse(of(Depth::Each(vec![1; 3]))), few);
+    let mut tessellation = Tessellation::<f32>::new(&topology, &DiceOptions::fixed(1)).unwrap();
+    let error = tessellation.update(&[[0.0; 3]; 7]).unwrap_err();
+    assert_eq!(error.to_string(), "control positions are given for 7 vertices, but there are 8");
+    let sizes = tessellation.plan().sizes();
+    assert_eq!([sizes.vertices, sizes.positions, sizes.quads, sizes.triangles], [26, 26, 24, 0]);
+}
+
+/// What is asked for by hand is what is made: an edge has the depth of its deeper side.
+#[test]
+fn coarse_facets_beside_fine_ones_are_stitched_with_triangles() {
+    let topology = Topology::new(&shape("cube").unwrap());
+    let mut depths = vec![1; 24];
+    depths[0] = 3;
+    let options = DiceOptions { depth: Depth::Each(depths), max_step: 10, ..DiceOptions::default() };
+    let tessellation = Tessellation::<f32>::new(&topology, &options).unwrap();
+    // One facet of 4 x 4, four neighbours with an edge in four pieces each: five triangles; the others as they were.
+    assert_eq!((tessellation.quads().len(), tessellation.triangles().len()), (16 + 19, 4 * 5));
+    assert_eq!(tessellation.plan().depth_histogram(), [0, 23, 0, 1]);
 }
