@@ -10,6 +10,7 @@ mod errors;
 mod measures;
 mod pictures;
 mod seams;
+mod tessellate;
 
 use serde_json::Value;
 use std::fs;
