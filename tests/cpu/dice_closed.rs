@@ -202,4 +202,8 @@ fn coarse_facets_beside_fine_ones_are_stitched_with_triangles() {
     // One facet of 4 x 4, four neighbours with an edge in four pieces each: five triangles; the others as they were.
     assert_eq!((tessellation.quads().len(), tessellation.triangles().len()), (16 + 19, 4 * 5));
     assert_eq!(tessellation.plan().depth_histogram(), [0, 23, 0, 1]);
+    // Without more of a step than one, the four neighbours are halved once more; only they meet the deeper one.
+    let DiceOptions { depth, .. } = options;
+    let graded = Tessellation::<f32>::new(&topology, &DiceOptions { depth, ..DiceOptions::default() }).unwrap();
+    assert_eq!(graded.plan().depth_histogram(), [0, 19, 4, 1]);
 }
