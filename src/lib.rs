@@ -126,6 +126,7 @@ mod blend;
 #[cfg(feature = "headless")]
 pub mod capture;
 mod constants;
+pub mod dice;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
