@@ -39,7 +39,7 @@ impl Plan {
         }
         let is_near = |face| half_edges(face).any(|h| touches[topology.vertex(h) as usize]);
         let faces = draws.into_iter().enumerate().map(|(face, draws)| draws && is_near(face)).collect();
-        Self::of_faces(topology, scheme, &AdaptiveOptions { depth: 1, sharp_depth: None }, faces)
+        Self::of_faces(topology, scheme, &AdaptiveOptions { depth: 1, ..AdaptiveOptions::default() }, faces)
     }
 
     /// Plans the faces for which `own` holds.
