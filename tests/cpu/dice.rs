@@ -4,7 +4,7 @@ use crate::common::limit::{mesh_and_limit, names};
 use crate::limit_surface::everything;
 use ash_subdiv::dice::{Depth, DiceOptions, Place, Real, Tessellation};
 use ash_subdiv::limit::{LimitSurface, refine};
-use ash_subdiv::mesh::{CreaseMethod, FaceVaryingRule};
+use ash_subdiv::mesh::{Corner, CreaseMethod, FaceVaryingRule, SHARPNESS_INFINITE};
 use ash_subdiv::topology::{RingKind, Topology};
 use ash_subdiv::{ControlMesh, MeshData, shape, shapes};
 use glam::DVec3;
@@ -147,4 +147,22 @@ fn texture_coordinates_follow_the_rule() {
         }
         assert_eq!(checked, places.len());
     }
+}
+
+/// The tips of cones, where every face has a normal of its own.
+#[test]
+fn corners_have_the_mean_normal_of_their_faces() {
+    let cube = shape("cube").unwrap();
+    let corners = (0..8).map(|vertex| Corner { vertex, sharpness: SHARPNESS_INFINITE }).collect();
+    let mesh = ControlMesh::new(MeshData { corners, ..cube.into_data() }).unwrap();
+    let tessellation = Tessellation::<f64>::new(&Topology::new(&mesh), &DiceOptions::fixed(2)).unwrap();
+    let mut found = 0;
+    for (position, normal) in tessellation.positions().iter().zip(tessellation.normals()) {
+        let (position, normal) = (DVec3::from(*position), DVec3::from(*normal));
+        if mesh.data().positions.iter().any(|&p| DVec3::from(p) == position) {
+            assert!(normal.distance(position.normalize()) < 1e-12, "{position}: {normal}");
+            found += 1;
+        }
+    }
+    assert_eq!(found, 8);
 }
