@@ -6,7 +6,9 @@ use crate::mesh::MeshError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DiceError {
-    #[error("depth {depth}: a facet is halved at least once and at most {MAX_DEPTH} times: choose 1 to {MAX_DEPTH}")]
+    #[error(
+        "depth {depth}: a mesh is subdivided once at least, and {MAX_DEPTH} times at most: choose 1 to {MAX_DEPTH}"
+    )]
     BadDepth { depth: u32 },
     #[error("depths are given for {given} facets, but the mesh has {facets}, one a face corner")]
     DepthCount { given: usize, facets: usize },

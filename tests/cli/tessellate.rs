@@ -81,7 +81,7 @@ fn what_cannot_be_tessellated_is_told() {
     let of = |options: &str| format!("tessellate --shape cube {options}");
     fails(&of(&format!("-o {txt}")), 2, &format!("--output {txt}: name a file that ends in .obj, .ply or .glb"));
     fails(&of(&format!("--quads -o {glb}")), 2, &format!("--quads: {glb} has triangles only: choose .obj or .ply"));
-    let message = "depth 0: a facet is halved at least once and at most 10 times: choose 1 to 10";
+    let message = "depth 0: a mesh is subdivided once at least, and 10 times at most: choose 1 to 10";
     fails(&of(&format!("--depth 0 -o {glb}")), 1, message);
     let message =
         "the tessellation has 6291458 vertices and 251658288 bytes, more than --max-vertices 1000: ask for less depth";

@@ -177,7 +177,7 @@ fn what_makes_no_sense_is_refused() {
     let refuse = |options: DiceOptions| Tessellation::<f32>::size_of(&topology, &options).unwrap_err().to_string();
     let of = |depth| DiceOptions { depth, ..DiceOptions::default() };
     let bad_depth =
-        |depth| format!("depth {depth}: a facet is halved at least once and at most 10 times: choose 1 to 10");
+        |depth| format!("depth {depth}: a mesh is subdivided once at least, and 10 times at most: choose 1 to 10");
     assert_eq!(refuse(DiceOptions::fixed(0)), bad_depth(0));
     assert_eq!(refuse(DiceOptions { max_depth: 11, ..of(Depth::EdgeLength(1.0)) }), bad_depth(11));
     assert_eq!(refuse(of(Depth::Tolerance(0.0))), "tolerance 0: give a number above zero");

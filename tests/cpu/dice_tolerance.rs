@@ -50,7 +50,7 @@ fn measure(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> f64 {
         };
         points.map(of_point).into_iter().fold(0.0, f64::max)
     };
-    let step = faces.len() / 1000 + 1;
+    let step = faces.len() / 400 + 1;
     faces.par_iter().step_by(step).map(of_face).reduce(|| 0.0, f64::max)
 }
 
