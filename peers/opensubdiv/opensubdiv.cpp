@@ -409,7 +409,12 @@ int OsdBaseVertex() { return 0; }
 )";
 
 char const *const kFragment = R"(
-in block { OutputVertex v; } inpt;
+in block {
+    OutputVertex v;
+#ifdef OSD_PATCH_ENABLE_SINGLE_CREASE
+    vec2 vSegments;
+#endif
+} inpt;
 layout(location = 0) out vec4 color;
 void main() {
     vec3 n = normalize(inpt.v.normal);
@@ -442,8 +447,9 @@ struct Program {
     GLint primitive_id_base = -1;
 };
 
-Program build_program(Far::PatchDescriptor::Type type) {
+Program build_program(Far::PatchDescriptor::Type type, Args const &args) {
     using Source = Osd::GLSLPatchShaderSource;
+    g_single_crease = args.single_crease && type == Far::PatchDescriptor::REGULAR;
     Program program;
     program.id = glCreateProgram();
     for (GLuint shader : {compile(GL_VERTEX_SHADER, Source::GetVertexShaderSource(type)),
@@ -611,7 +617,6 @@ void write_picture(std::string const &path, int size) {
 int main(int argc, char **argv) {
     Args const args = parse_args(argc, argv);
     setvbuf(stdout, nullptr, _IOLBF, 0);
-    g_single_crease = args.single_crease;
     create_context();
 
     Mesh const mesh = read_obj(args.file);
@@ -642,7 +647,7 @@ int main(int argc, char **argv) {
     std::map<int, Program> programs;
     for (auto const &array : gl_patches->GetPatchArrays()) {
         auto const type = array.GetDescriptor().GetType();
-        if (!programs.count(type)) programs[type] = build_program(type);
+        if (!programs.count(type)) programs[type] = build_program(type, args);
         std::printf("patches type=%s count=%d points=%d\n", type == Far::PatchDescriptor::REGULAR ? "regular" : "gregory",
                     array.GetNumPatches(), array.GetDescriptor().GetNumControlVertices());
     }

@@ -53,9 +53,12 @@ fn leaves(mesh: &ControlMesh, depth: u32) -> BTreeMap<[usize; 2], [DVec3; 2]> {
     let surface = CpuSurface::with_options(mesh, &TableOptions { adaptive, ..TableOptions::default() }).unwrap();
     let limit = LimitSurface::new(mesh).unwrap();
     let mut leaves = BTreeMap::new();
-    for leaf in &surface.adaptive().unwrap().leaves {
-        let [u, v] = [leaf.u, leaf.v].map(|i| (f64::from(i) + 0.5) / f64::from(1 << leaf.level));
-        let sample = limit.evaluate(leaf.face, -1, u, v);
+    let plan = surface.adaptive().unwrap();
+    for leaf in &plan.leaves {
+        let of_root = plan.roots[leaf.root as usize].level;
+        let [u, v] = [leaf.u, leaf.v].map(|i| (f64::from(i) + 0.5) / f64::from(1 << (leaf.level - of_root)));
+        let sub = if of_root == 0 { -1 } else { leaf.part as i32 };
+        let sample = limit.evaluate(leaf.face, sub, u, v);
         leaves.entry([leaf.level as usize, kind(leaf.kind)]).or_insert([sample.position, sample.normal]);
     }
     leaves
@@ -63,13 +66,23 @@ fn leaves(mesh: &ControlMesh, depth: u32) -> BTreeMap<[usize; 2], [DVec3; 2]> {
 
 #[test]
 fn leaves_have_the_colours_of_their_level_and_kind() {
-    let folder = folder("levels");
-    let mesh = shape("machine-part").unwrap();
+    let seen = colours_of_leaves("machine-part", &[&[0, 1], &[0, 1], &[0, 2]]);
+    assert!(seen[&[0, 1]] > seen[&[0, 0]] && seen[&[1, 1]] > seen[&[1, 0]], "creases are light: {seen:?}");
+    assert!(seen[&[2, 2]] < seen[&[2, 0]], "end caps are dark: {seen:?}");
+    // Faces that are no quads are cut in wedges.
+    colours_of_leaves("polygons", &[&[], &[0], &[0], &[0, 2]]);
+}
+
+/// The brightness of each level and kind of the leaves of a shape, which are as deep as this is long, and of these kinds.
+fn colours_of_leaves(name: &str, expected: &[&[usize]]) -> BTreeMap<[usize; 2], u32> {
+    let folder = folder(&format!("levels-{name}"));
+    let mesh = shape(name).unwrap();
     let [low, high] = mesh.bounds();
-    let leaves = leaves(&mesh, 2);
-    let mut kinds = vec![Vec::new(); 3];
+    let depth = expected.len() - 1;
+    let leaves = leaves(&mesh, depth as u32);
+    let mut kinds = vec![Vec::new(); expected.len()];
     leaves.keys().for_each(|&[level, kind]| kinds[level].push(kind));
-    assert_eq!(kinds, [vec![0, 1], vec![0, 1], vec![0, 2]]);
+    assert_eq!(kinds, expected);
     let mut seen = BTreeMap::new();
     let evaluations: Vec<_> = Evaluation::ALL.into_iter().filter(|&e| e != Evaluation::Subdivision).collect();
     for (i, (&[level, kind], &[position, normal])) in leaves.iter().enumerate() {
@@ -78,7 +91,7 @@ fn leaves_have_the_colours_of_their_level_and_kind() {
         let (eye, target, up) = (words(eye), words(position), words(normal.any_orthonormal_vector()));
         let evaluation = evaluations[i % evaluations.len()].name();
         let arguments = format!(
-            "--shape machine-part --adaptive 2 --shading levels --evaluation {evaluation} --size {}x{} --samples 1 \
+            "--shape {name} --adaptive {depth} --shading levels --evaluation {evaluation} --size {}x{} --samples 1 \
              --factor 32 --eye {eye} --target {target} --up {up} --fov 5",
             SIZE[0], SIZE[1]
         );
@@ -89,8 +102,7 @@ fn leaves_have_the_colours_of_their_level_and_kind() {
         assert!(worst <= 5, "level {level}, kind {kind}, {evaluation}: {colour:?}, in the legend {expected:?}");
         seen.insert([level, kind], colour.iter().map(|&c| u32::from(c)).sum::<u32>());
     }
-    assert!(seen[&[0, 1]] > seen[&[0, 0]] && seen[&[1, 1]] > seen[&[1, 0]], "creases are light: {seen:?}");
-    assert!(seen[&[2, 2]] < seen[&[2, 0]], "end caps are dark: {seen:?}");
+    seen
 }
 
 /// A flat mirror: each pixel's ray is reflected here, too.

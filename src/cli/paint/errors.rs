@@ -67,9 +67,11 @@ impl ErrorMap {
 
     /// Bytes that the shader reads.
     pub(super) fn bytes(&self) -> Vec<u8> {
-        let header = [self.side, self.tiles.columns, (self.top as f32).to_bits(), 0];
+        let Tiles { columns, words, .. } = &self.tiles;
+        let header = [self.side, *columns, (self.top as f32).to_bits(), words.len() as u32];
         let colours: Vec<[f32; 4]> = (0..COLOURS).map(|number| legend::colour(number).linear()).collect();
-        [bytemuck::cast_slice(&header), bytemuck::cast_slice(&colours), bytemuck::cast_slice(&self.values)].concat()
+        let [header, words]: [&[u8]; 2] = [bytemuck::cast_slice(&header), bytemuck::cast_slice(words)];
+        [header, bytemuck::cast_slice(&colours), words, bytemuck::cast_slice(&self.values)].concat()
     }
 }
 

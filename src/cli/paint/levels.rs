@@ -6,6 +6,8 @@ use super::tiles::Tiles;
 use ash_subdiv::MeshError;
 use ash_subdiv::adaptive::{LEAF, LeafKind, MAX_DEPTH, Plan};
 use ash_subdiv::table::CpuSurface;
+#[cfg(doc)]
+use ash_subdiv::table::Prepared;
 
 /// Kinds of leaves: regular, single crease, end cap.
 const KINDS: usize = 3;
@@ -32,7 +34,8 @@ const TONES: [(Colour, f32); KINDS] =
 /// The quadtree of each patch, with the levels and kinds of its leaves. GLSL twin: `src/cli/glsl/levels.frag`.
 pub(in super::super) struct LevelMap {
     pub(super) tiles: Tiles,
-    roots: Vec<u32>,
+    /// Of each patch the two that it is evaluated by: as [`Prepared::roots`].
+    roots: Vec<[u32; 2]>,
     nodes: Vec<u32>,
     /// Whether there are leaves of each colour.
     is_seen: [bool; KINDS * COLOURS.len()],
@@ -49,17 +52,17 @@ impl LevelMap {
         let colour = |&node: &u32| if is_leaf(node) { number(node & !LEAF) as u32 | LEAF } else { node };
         let mut is_seen = [false; KINDS * COLOURS.len()];
         (0..plan.leaves.len() as u32).for_each(|leaf| is_seen[number(leaf)] = true);
-        // All faces are quads, which have one root each.
-        let roots = surface.plan().patches().iter().map(|patch| plan.face_roots[patch.face as usize]);
+        let roots = surface.plan().patches().iter().map(|patch| surface.prepared().roots(plan, patch));
         let (roots, nodes) = (roots.collect(), plan.nodes.iter().map(colour).collect());
         Ok(Self { tiles: Tiles::new(surface)?, roots, nodes, is_seen })
     }
 
     /// Bytes that the shader reads.
     pub(super) fn bytes(&self) -> Vec<u8> {
-        let header = [self.tiles.columns, self.roots.len() as u32, 0, 0];
+        let Tiles { columns, words, .. } = &self.tiles;
+        let header = [*columns, self.roots.len() as u32, words.len() as u32, 0];
         let colours: Vec<[f32; 4]> = (0..KINDS * COLOURS.len()).map(|number| colour(number).linear()).collect();
-        let words = [&self.roots[..], &self.nodes].concat();
+        let words = [words, self.roots.as_flattened(), &self.nodes].concat();
         [bytemuck::cast_slice(&header), bytemuck::cast_slice(&colours), bytemuck::cast_slice(&words)].concat()
     }
 
