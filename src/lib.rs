@@ -33,6 +33,7 @@
 //! | 7 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
 //! | 6 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
 //! | 5 | [`table`] | what the GPU reads | Vulkan |
+//! | 5 | [`dice`] | the limit surface as a mesh, on the CPU | Vulkan, files |
 //! | 4 | [`limit`] | Catmull-Clark refinement and its limit surface | patch schemes |
 //! | 4 | [`patch`] | construction and evaluation of patches, generic over the value | Vulkan |
 //! | 3 | `blend` (public in [`patch`]) | weighted sums: values, one-rings with tangent frames, Bezier curves, the regular patch | schemes |
@@ -126,6 +127,7 @@ mod blend;
 #[cfg(feature = "headless")]
 pub mod capture;
 mod constants;
+pub mod dice;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
@@ -162,4 +164,6 @@ mod pages {
     pub struct Drawing;
     #[doc = include_str!("../docs/meshes.md")]
     pub struct Meshes;
+    #[doc = include_str!("../docs/tessellate.md")]
+    pub struct Tessellate;
 }

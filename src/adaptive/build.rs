@@ -26,7 +26,7 @@ impl Plan {
         Self::of_faces(topology, scheme, options, draws_face(topology))
     }
 
-    /// Plans faces of five and more corners and those that touch them, at depth 0. Others have no roots.
+    /// Plans faces of five and more corners and those that touch them, at depth 1, where all are quads. Others have no roots.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -39,7 +39,7 @@ impl Plan {
         }
         let is_near = |face| half_edges(face).any(|h| touches[topology.vertex(h) as usize]);
         let faces = draws.into_iter().enumerate().map(|(face, draws)| draws && is_near(face)).collect();
-        Self::of_faces(topology, scheme, &AdaptiveOptions::default(), faces)
+        Self::of_faces(topology, scheme, &AdaptiveOptions { depth: 1, ..AdaptiveOptions::default() }, faces)
     }
 
     /// Plans the faces for which `own` holds.

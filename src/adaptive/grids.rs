@@ -4,7 +4,7 @@ use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::Topology;
 
 /// In the place of a vertex.
-pub(super) const NONE: u32 = u32::MAX;
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// Number of a control point: index i along u, j along v.
 const fn at(i: usize, j: usize) -> usize {
@@ -21,13 +21,13 @@ const AROUND: [[usize; 4]; 4] = [
 ];
 
 /// Whether the surface ends along an edge, or is infinitely sharp.
-pub(super) fn is_boundary(topology: &Topology, half_edge: u32) -> bool {
+pub(crate) fn is_boundary(topology: &Topology, half_edge: u32) -> bool {
     // Boundaries are infinitely sharp.
     topology.sharpness(half_edge) >= SHARPNESS_INFINITE
 }
 
 /// The vertices of the grid around a regular face with these half-edges, [`NONE`] beyond its boundaries.
-pub(super) fn grid(topology: &Topology, half_edges: [u32; 4]) -> [u32; 16] {
+pub(crate) fn grid(topology: &Topology, half_edges: [u32; 4]) -> [u32; 16] {
     let mut grid = [NONE; 16];
     for (h, [corner, before_plus, before_minus, opposite]) in half_edges.into_iter().zip(AROUND) {
         grid[corner] = topology.mesh_vertex(h);
@@ -52,7 +52,7 @@ pub(super) fn grid(topology: &Topology, half_edges: [u32; 4]) -> [u32; 16] {
 
 /// Fills a grid beyond its boundaries (a bit each, as in [`Leaf::boundary`](super::Leaf::boundary)): `ghost(b, i)` is the
 /// point `2 b - i`.
-pub(super) fn fill(grid: &mut [u32], boundary: u32, mut ghost: impl FnMut(u32, u32) -> u32) {
+pub(crate) fn fill(grid: &mut [u32], boundary: u32, mut ghost: impl FnMut(u32, u32) -> u32) {
     let line = |edge: u32, across: usize, along: usize| match edge {
         0 => at(along, across),
         1 => at(3 - across, along),

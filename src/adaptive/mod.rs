@@ -43,5 +43,6 @@ mod rows;
 pub use counts::LevelCounts;
 pub use error::AdaptiveError;
 pub use feature::Reason;
+pub(crate) use grids::{fill, grid, is_boundary};
 pub use options::{AdaptiveOptions, MAX_DEPTH};
 pub use plan::{LEAF, Leaf, LeafKind, Plan, RefinedCell, Root};

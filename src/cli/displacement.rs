@@ -52,6 +52,11 @@ impl DisplacementArgs {
         }
     }
 
+    /// Whether the map is asked for as one of vectors.
+    pub(super) fn has_vectors(&self) -> bool {
+        self.displacement_vectors
+    }
+
     /// Distance that the map moves a point along an axis, at most.
     pub(super) fn reach(&self, mesh: &ControlMesh, texels: &Texels) -> f64 {
         let [scale, bias] = self.amount(mesh);

@@ -12,6 +12,7 @@
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
+//! | `interrupt` | signals that end the program while it writes |
 //! | `parse` | values of options |
 //! | `error` | what goes to the user, and the exit code |
 
@@ -27,6 +28,7 @@ mod error_rows;
 mod errors;
 mod evaluation;
 mod info;
+mod interrupt;
 mod leaves;
 mod memory;
 mod obj;
@@ -43,6 +45,7 @@ mod screen;
 mod shading;
 mod shapes;
 mod source;
+mod tessellate;
 mod watertight;
 
 use clap::{Parser, Subcommand};
@@ -69,6 +72,7 @@ Examples:
   subdiv info model.glb --json
   subdiv error model.obj
   subdiv watertight model.glb
+  subdiv tessellate model.obj --tolerance 0.01 -o smooth.glb
   subdiv bench model.obj --report report
   subdiv sample model.obj --grid 9 --cpu --json > samples.json
 
@@ -93,6 +97,8 @@ enum Command {
     Watertight(watertight::WatertightArgs),
     /// Measure the drawn triangles against the exact surface on the screen, with factors by the view and with one for all.
     Screen(screen::ScreenArgs),
+    /// Write the limit surface as a mesh: as fine as asked, closed, with normals and texture coordinates. Needs no device.
+    Tessellate(Box<tessellate::TessellateArgs>),
     /// List the built-in shapes, or write one as OBJ.
     Shapes(shapes::ShapesArgs),
     /// List the Vulkan devices, what they can do and what they lack.
@@ -112,6 +118,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Error(args) => errors::run(&args, cli.json),
         Command::Watertight(args) => watertight::run(&args, cli.json),
         Command::Screen(args) => screen::run(&args, cli.json),
+        Command::Tessellate(args) => tessellate::run(&args, cli.json),
         Command::Shapes(args) => shapes::run(&args, cli.json),
         Command::Devices => devices::run(cli.json),
     });

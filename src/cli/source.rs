@@ -89,6 +89,12 @@ impl SourceArgs {
         path.or_else(|| self.shape.clone()).unwrap_or_default()
     }
 
+    /// Whether it is a glTF file.
+    pub(super) fn is_gltf(&self) -> bool {
+        let extension = self.mesh.as_ref().and_then(|path| path.extension());
+        extension.is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
+    }
+
     /// Options of the model, with this scheme and construction.
     pub(super) fn model_options(&self, scheme: Scheme, construction: Construction) -> ModelOptions {
         let name = self.shape.clone().unwrap_or_else(|| "mesh".into());

@@ -20,6 +20,20 @@ pub struct Texels {
 }
 
 impl Texels {
+    /// The first channel between texels, as a sampler reads it: linear, and repeated beyond the edges.
+    pub fn sample(&self, [u, v]: [f32; 2]) -> f32 {
+        let along = |t: f32, count: u32| {
+            let at = (t - t.floor()) * count as f32 - 0.5;
+            let first = at.floor();
+            let wrap = |i: f32| i.rem_euclid(count as f32) as usize;
+            (wrap(first), wrap(first + 1.0), at - first)
+        };
+        let ((x0, x1, s), (y0, y1, t)) = (along(u, self.width), along(v, self.height));
+        let texel = |x: usize, y: usize| self.values[(y * self.width as usize + x) * self.channels as usize];
+        let row = |y: usize| (1.0 - s) * texel(x0, y) + s * texel(x1, y);
+        (1.0 - t) * row(y0) + t * row(y1)
+    }
+
     /// Reads a picture: heights (its red channel) or vectors. Integers become numbers from 0 to 1; EXR files (feature `exr`)
     /// are read as they are.
     ///

@@ -56,7 +56,7 @@ pub(super) fn refine_texcoords(
 }
 
 /// A mesh with the faces of the mesh itself, whose vertices are the values at its vertices.
-fn value_mesh(topology: &Topology, coarse: &FaceVarying<[f32; 2]>) -> Result<ControlMesh, MeshError> {
+pub(crate) fn value_mesh(topology: &Topology, coarse: &FaceVarying<[f32; 2]>) -> Result<ControlMesh, MeshError> {
     let mesh = topology.mesh();
     let data = mesh.data();
     // Two vertices may have the same value; that does not connect them.

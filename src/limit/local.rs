@@ -8,20 +8,23 @@ use std::collections::{HashMap, HashSet};
 /// The part of a mesh on which the surface over one face depends, as a mesh of its own.
 ///
 /// The face is face 0. What the rules make of the rim of the part is not the surface's; none of it reaches face 0.
-pub(super) struct Local {
+pub(crate) struct Local {
     /// To be added to the positions. They are relative to a vertex of the face, so that they keep their precision
     /// however small the face has become.
-    pub(super) origin: DVec3,
-    pub(super) data: MeshData,
+    pub(crate) origin: DVec3,
+    pub(crate) data: MeshData,
+    /// The vertices of the whole mesh, by the number that they have in the part.
+    pub(crate) vertices: Vec<u32>,
 }
 
 impl Local {
     /// Cuts out `face` with its neighbourhood. Its corner `first` becomes corner 0.
-    pub(super) fn cut(topology: &Topology, face: u32, first: usize, origin: DVec3) -> Self {
+    pub(crate) fn cut(topology: &Topology, face: u32, first: usize, origin: DVec3) -> Self {
         let mesh = topology.mesh();
         let faces = neighbourhood(topology, face);
         let centre = mesh.position(mesh.face(face)[0]);
         let mut numbers = HashMap::new();
+        let mut vertices = Vec::new();
         let mut data = MeshData {
             boundary: mesh.data().boundary,
             crease_method: mesh.data().crease_method,
@@ -32,6 +35,7 @@ impl Local {
             for &vertex in mesh.face(face) {
                 let number = numbers.len() as u32;
                 if *numbers.entry(vertex).or_insert(number) == number {
+                    vertices.push(vertex);
                     data.positions.push((mesh.position(vertex) - centre).into());
                     let sharpness = topology.vertex_sharpness(vertex);
                     data.corners.extend((sharpness > 0.0).then_some(Corner { vertex: number, sharpness }));
@@ -50,7 +54,7 @@ impl Local {
         }
         let size = data.face_sizes[0] as usize;
         data.face_vertices[..size].rotate_left(first);
-        Self { origin: origin + centre, data }
+        Self { origin: origin + centre, data, vertices }
     }
 }
 

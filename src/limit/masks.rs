@@ -6,30 +6,49 @@ use crate::topology::{Ring, RingKind, Topology};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Position, tangents along the two edges of the face, and normal at the corner of a face.
+/// The limit at the corner of a face, as sums of the vertices around it.
+pub(crate) struct CornerMasks<T> {
+    pub position: T,
+    /// Tangents along the two edges of the face, the plus edge first.
+    pub edges: [T; 2],
+    /// The normal is along their cross product; `None` where there is no tangent plane.
+    pub plane: Option<[T; 2]>,
+}
+
+/// The masks at the corner of a face, `vertex(v)` being the value at mesh vertex `v`.
 ///
 /// Nothing at the vertex may be semi-sharp, and the faces around it must be quads.
-pub(super) fn corner_limit(topology: &Topology, half_edge: u32) -> LimitSample {
+pub(crate) fn corner_masks<T: Blend>(topology: &Topology, half_edge: u32, vertex: impl Fn(u32) -> T) -> CornerMasks<T> {
     let place = topology.place(half_edge);
     let ring = &topology.rings()[place.ring as usize];
     let j = place.index as usize;
-    let values = RingValues::new(topology, ring, |v| topology.mesh().position(v));
+    let values = RingValues::new(topology, ring, vertex);
     let mut frame = values.frame();
     if let Some(sharp) = dart_edge(topology, ring) {
         frame = dart_frame(&values, sharp);
     } else if ring.kind == RingKind::Crease && ring.faces >= 3 {
         frame.b = cross_tangent(&values);
     }
-    let tangent = |j| 3.0 * values.edge_vector(&frame, j);
-    let (du, dv) = (tangent(j), tangent(j + 1));
-    let normal = match (ring.kind, ring.faces) {
+    let tangent = |j| T::sum([(3.0, &values.edge_vector(&frame, j))]);
+    let edges = [tangent(j), tangent(j + 1)];
+    let plane = match (ring.kind, ring.faces) {
         // The tangents need not span the plane: at a smooth boundary around one face they are parallel.
-        (RingKind::Smooth, 3..) | (RingKind::Crease, _) => frame.a.cross(frame.b),
+        (RingKind::Smooth, 3..) | (RingKind::Crease, _) => Some([frame.a.clone(), frame.b.clone()]),
         // Two faces inside the surface: no tangent plane.
-        (RingKind::Smooth, _) => DVec3::ZERO,
-        (RingKind::Corner, _) => du.cross(dv),
+        (RingKind::Smooth, _) => None,
+        (RingKind::Corner, _) => Some(edges.clone()),
     };
-    LimitSample { position: frame.p, du, dv, normal: normal.normalize_or_zero() }
+    CornerMasks { position: frame.p, edges, plane }
+}
+
+/// Position, tangents along the two edges of the face, and normal at the corner of a face.
+///
+/// As for [`corner_masks`].
+pub(super) fn corner_limit(topology: &Topology, half_edge: u32) -> LimitSample {
+    let CornerMasks { position, edges: [du, dv], plane } =
+        corner_masks(topology, half_edge, |v| topology.mesh().position(v));
+    let normal = plane.map_or(DVec3::ZERO, |[a, b]| a.cross(b));
+    LimitSample { position, du, dv, normal: normal.normalize_or_zero() }
 }
 
 /// The sharp edge of a dart.
@@ -41,7 +60,7 @@ pub(crate) fn dart_edge(topology: &Topology, ring: &Ring) -> Option<usize> {
 }
 
 /// The exact tangent across a crease with three or more faces on this side, where Biermann et al.'s is that of another rule.
-fn cross_tangent(values: &RingValues<DVec3>) -> DVec3 {
+fn cross_tangent<T: Blend>(values: &RingValues<T>) -> T {
     let faces = values.diagonals.len();
     let turn = PI / faces as f64;
     let (cos, cos_half) = (turn.cos(), (turn / 2.0).cos());
@@ -52,14 +71,19 @@ fn cross_tangent(values: &RingValues<DVec3>) -> DVec3 {
     let at_diagonal = |i| sin(i) + sin(i + 1);
     let sum = (1..faces).map(at_edge).sum::<f64>() + (0..faces).map(at_diagonal).sum::<f64>();
     let at_end = (at_diagonal(0) / 4.0 + at_edge(1) / 16.0 - sum / 8.0) / (lambda - 0.25);
-    let mut tangent = -(2.0 * at_end + sum) * values.centre + at_end * (values.edges[0] + values.edges[faces]);
+    let weight = 1.0 / (9.0 * faces as f64);
+    let mut tangent = T::sum([
+        (-(2.0 * at_end + sum) * weight, &values.centre),
+        (at_end * weight, &values.edges[0]),
+        (at_end * weight, &values.edges[faces]),
+    ]);
     for j in 1..faces {
-        tangent += at_edge(j) * values.edges[j];
+        tangent.add_scaled(at_edge(j) * weight, &values.edges[j]);
     }
     for i in 0..faces {
-        tangent += at_diagonal(i) * values.diagonals[i];
+        tangent.add_scaled(at_diagonal(i) * weight, &values.diagonals[i]);
     }
-    tangent / (9.0 * faces as f64)
+    tangent
 }
 
 /// Limit and tangents at the end of a single sharp edge: `a` along the sharp edge, `b` to its left.

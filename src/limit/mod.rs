@@ -13,8 +13,10 @@ mod stencils;
 mod step;
 mod surface;
 
+pub(crate) use face_varying::value_mesh;
 pub(crate) use fan::{Fan, FanRows, Fans};
-pub(crate) use masks::{dart_edge, dart_frame};
+pub(crate) use local::Local;
+pub(crate) use masks::{corner_masks, dart_edge, dart_frame};
 pub(crate) use part::{Part, refine_part};
 pub use refine::{Refined, refine};
 pub use sample::LimitSample;
@@ -22,3 +24,4 @@ pub(crate) use sharpness::{EdgeProfile, LEVELS, is_semi_sharp};
 pub(crate) use stencils::RowsMut;
 pub use stencils::Stencils;
 pub use surface::LimitSurface;
+pub(crate) use surface::is_semi_sharp_at;

@@ -261,7 +261,7 @@ impl Irregular {
 }
 
 /// Whether the vertex that a half-edge starts from, or an edge there, has a sharpness that refinement will use up.
-fn is_semi_sharp_at(topology: &Topology, half_edge: u32) -> bool {
+pub(crate) fn is_semi_sharp_at(topology: &Topology, half_edge: u32) -> bool {
     let edges = topology.fan(half_edge).0;
     is_semi_sharp(topology.vertex_sharpness(topology.mesh_vertex(half_edge)))
         || edges.into_iter().any(|h| is_semi_sharp(topology.sharpness(h)))

@@ -8,6 +8,7 @@ mod gltf;
 mod obj;
 mod read;
 mod shapes;
+pub mod write;
 
 pub(crate) use control_mesh::MAX_CORNERS;
 pub use control_mesh::{

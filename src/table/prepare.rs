@@ -58,6 +58,9 @@ pub enum Notice {
         /// The first of them, a vertex of the prepared mesh.
         first: u32,
     },
+    /// No face is drawn: all are holes, or touch a boundary where that keeps faces from being drawn
+    /// ([`BoundaryRule::None`](crate::mesh::BoundaryRule::None)).
+    NothingDrawn,
     /// Creases or corners of finite sharpness that patches cannot follow.
     SemiSharp {
         /// Those drawn infinitely sharp: from [`SHARP_FROM`] up.
@@ -89,6 +92,10 @@ impl fmt::Display for Notice {
             Self::Darts { count, first } => write!(
                 f,
                 "{count} ends of creases lie within the surface (the first at vertex {first}): patches around them only come near it; refine the mesh first to come closer"
+            ),
+            Self::NothingDrawn => write!(
+                f,
+                "no face is drawn: all are holes, or touch a boundary where the rule for boundaries is to draw none of those"
             ),
             Self::SemiSharp { sharp, smooth } => write!(
                 f,
@@ -235,7 +242,8 @@ impl Prepared {
         let refined = self.refined_faces.clone();
         let rounded = semi_sharp(self.mesh()).filter(|_| self.rounds_sharpness);
         let darts = darts(&self.topology).filter(|_| self.rounds_sharpness);
-        refined.into_iter().chain(split).chain(fell_back).chain(darts).chain(rounded).collect()
+        let nothing = plan.patches().is_empty().then_some(Notice::NothingDrawn);
+        nothing.into_iter().chain(refined).chain(split).chain(fell_back).chain(darts).chain(rounded).collect()
     }
 }
 

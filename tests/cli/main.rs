@@ -11,6 +11,7 @@ mod measures;
 mod pictures;
 mod seams;
 mod shadings;
+mod tessellate;
 
 use serde_json::Value;
 use std::fs;

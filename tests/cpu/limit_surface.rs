@@ -37,7 +37,7 @@ fn a_regular_mesh_is_its_bicubic_patches() {
 
 /// Boxes with everything: quads, triangles and a pentagon, boundary, creases and corners of finite and infinite
 /// sharpness, a dart.
-fn everything(method: CreaseMethod) -> ControlMesh {
+pub fn everything(method: CreaseMethod) -> ControlMesh {
     let mut random = Random(3);
     let mut data = MeshData { crease_method: method, boundary: BoundaryRule::EdgeOnly, ..MeshData::default() };
     let n = 6;

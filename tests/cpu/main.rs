@@ -6,6 +6,9 @@ mod adaptive_neighbours;
 mod adaptive_twin;
 #[path = "../common/mod.rs"]
 mod common;
+mod dice;
+mod dice_closed;
+mod dice_tolerance;
 mod edge_normals;
 mod error;
 mod exactness;

@@ -71,8 +71,6 @@ fn contents_that_are_wrong() {
     let path = folder("contents").join("bad.obj");
     std::fs::write(&path, "v 0 0 0\nv 1 0\n").unwrap();
     assert_error(&path, &ReadOptions::default(), "line 2: \"v\" needs 3 numbers, but has 2");
-    std::fs::write(&path, b"v 0 0 0\n# \xff\n").unwrap();
-    assert_error(&path, &ReadOptions::default(), "line 2: the text is not UTF-8: save the file in that encoding");
     let options = ReadOptions { mesh: Some("a".into()), ..ReadOptions::default() };
     let expected = "\"a\" can't be chosen: an OBJ file is read as one mesh; leave the name out";
     assert_error(&path, &options, expected);

@@ -254,6 +254,14 @@ fn holes_and_faces_at_a_free_boundary_are_not_drawn() {
     assert_eq!(drawn(MeshData { boundary: BoundaryRule::None, ..grid(4, 3) }), [5, 6]);
     assert_eq!(drawn(MeshData { boundary: BoundaryRule::None, holes: vec![6], ..grid(4, 3) }), [5]);
     assert_eq!(drawn(MeshData { boundary: BoundaryRule::None, ..grid(2, 2) }), [0; 0]);
+    // And it is said that there is nothing to see.
+    let notices = |data: MeshData| {
+        let mesh = ControlMesh::new(data).unwrap();
+        prepare(&mesh, 0).unwrap().notices(&plan(&mesh))
+    };
+    assert_eq!(notices(MeshData { boundary: BoundaryRule::None, ..grid(2, 2) }), [Notice::NothingDrawn]);
+    assert_eq!(notices(MeshData { holes: vec![0, 1, 2, 3], ..grid(2, 2) }), [Notice::NothingDrawn]);
+    assert_eq!(notices(MeshData { holes: vec![0, 1, 2], ..grid(2, 2) }), []);
     // The same faces where the mesh is refined.
     let mesh = ControlMesh::new(MeshData { boundary: BoundaryRule::None, ..grid(4, 3) }).unwrap();
     for (refine, children) in [(1, 4), (2, 16)] {

@@ -222,8 +222,9 @@ impl RenderArgs {
         let hull = self.mesh.hull(mesh)?;
         let Some(texels) = texels else { return Ok(hull) };
         // Wherever displacement moves them.
-        let reach = DVec3::splat(self.displacement.reach(mesh, texels));
-        Ok(hull.into_iter().flat_map(|point| [point - reach, point + reach]).collect())
+        let reach = self.displacement.reach(mesh, texels);
+        let corner = |bits: u32| DVec3::from([0, 1, 2].map(|axis| if bits >> axis & 1 == 0 { -reach } else { reach }));
+        Ok(hull.into_iter().flat_map(|point| (0..8).map(move |bits| point + corner(bits))).collect())
     }
 
     /// Checks size and samples against the device; gives the samples.

@@ -91,7 +91,12 @@ fn fetch(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
         let engine = base64::engine::GeneralPurpose::new(&base64::alphabet::STANDARD, config);
         return engine.decode(encoded).map_err(|error| format!("the data URI is not valid base64: {error}"));
     }
-    let name = percent_decoded(uri).ok_or_else(|| format!("\"{uri}\" is not a valid URI: write it again"))?;
+    // Some exporters write names as they are, with a `%` in them.
+    let decoded = percent_decoded(uri).filter(|decoded| {
+        let is_there = |name: &str| folder.is_some_and(|folder| folder.join(name).is_file());
+        is_there(decoded) || !is_there(uri)
+    });
+    let name = decoded.unwrap_or_else(|| uri.to_owned());
     let relative = Path::new(&name);
     if uri.contains("://") || relative.has_root() {
         return Err(format!("\"{uri}\" is not a relative file name: put the file next to this one"));

@@ -56,20 +56,33 @@ pub struct GltfOptions {
 const NGONS: &str = "FB_ngon_encoding";
 
 /// Extensions that a file may require: they are understood here, or do not concern the shape.
+const DRACO: &str = "KHR_draco_mesh_compression";
 const EXTENSIONS: [&str; 2] = [NGONS, "KHR_mesh_quantization"];
-const EXTENSIONS_OF_LOOKS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"];
+/// Of looks, animations and metadata, none of which change the shape.
+const EXTENSIONS_OF_LOOKS: [&str; 10] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "MSFT_texture_",
+    "KHR_lights_",
+    "EXT_lights_",
+    "KHR_xmp",
+    "KHR_animation_",
+    "KHR_audio",
+    "MSFT_packing_",
+];
 
 impl ControlMesh {
     /// Reads a glTF 2.0 or GLB file: all triangles of the default scene, or of the mesh that `options` name.
     ///
     /// * Polygons are those that the extension `FB_ngon_encoding` marks: triangles in a row that share their first
-    ///   corner and go on where the last ended. Without it, triangles, strips and fans give triangles. Points and lines
-    ///   are passed over.
+    ///   corner and go on where the last ended. Without it, triangles, strips and fans give triangles. Points, lines
+    ///   and triangles with two corners at one place are passed over.
     /// * Vertices of one mesh whose positions are equal in every bit become one vertex, so that seams of texture
     ///   coordinates or normals are no boundaries of the surface. `TEXCOORD_0` and `NORMAL` are kept a face corner;
     ///   where only some primitives have them, the others get (0, 0) and (0, 0, 0).
-    /// * The transforms of the nodes are applied; one that mirrors turns the faces round. Skins and morph targets are
-    ///   not applied.
+    /// * The transforms of the nodes are applied; one that mirrors turns the faces round; that of a node with a skin
+    ///   is not applied, as the format has it. Skins and morph targets are not either.
     ///
     /// Vertices that no face uses do not count. Faces that repeat a vertex after welding are errors.
     ///
@@ -101,10 +114,12 @@ fn check_extensions(root: &json::Root) -> Result<(), MeshError> {
         |name: &str| EXTENSIONS.contains(&name) || EXTENSIONS_OF_LOOKS.iter().any(|looks| name.starts_with(looks));
     match root.extensions_required.iter().find(|name| !known(name)) {
         None => Ok(()),
-        Some(name) => Err(format_error(format!(
-            "the file requires the extension {name}, which is not supported: export it without"
-        ))),
+        Some(name) => Err(unsupported(name)),
     }
+}
+
+fn unsupported(extension: &str) -> MeshError {
+    format_error(format!("the file requires the extension {extension}, which is not supported: export it without"))
 }
 
 /// Gathers the faces of one instance after the other.
@@ -165,8 +180,12 @@ impl Builder {
         for (name, accessor) in [("TEXCOORD_0", &texcoords), ("NORMAL", &normals)] {
             accessor.as_ref().map_or(Ok(()), |accessor| check_count(name, accessor, &positions))?;
         }
+        let has = |name| primitive.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(name));
+        if has(DRACO) && !positions.is_backed() {
+            return Err(unsupported(DRACO));
+        }
         let indices = indices(root, buffers, primitive, &positions)?;
-        let ngons = primitive.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(NGONS));
+        let ngons = has(NGONS);
 
         let linear = DMat3::from_mat4(instance.transform);
         let mirrored = linear.determinant() < 0.0;
@@ -174,8 +193,15 @@ impl Builder {
         let mut locals: HashMap<u32, Local> = HashMap::new();
         polygons::for_each_face(&indices, mode, ngons, |corners| {
             let first = self.data.face_vertices.len();
+            corners.iter().try_for_each(|&corner| check_index(corner, &positions))?;
+            // A triangle with two corners at one place draws nothing, as engines have them at the poles of spheres.
+            let place = |corner: u32| -> [u64; 3] { positions.get(corner as usize).map(|x| (x + 0.0).to_bits()) };
+            if let &[a, b, c] = corners
+                && (place(a) == place(b) || place(b) == place(c) || place(c) == place(a))
+            {
+                return Ok(());
+            }
             for &corner in corners {
-                check_index(corner, &positions)?;
                 let local = *locals.entry(corner).or_insert_with(|| {
                     let vertex = self.weld(positions.get(corner as usize), instance, welded);
                     let texcoord = texcoords.as_ref().map_or([0.0; 2], |texcoords| texcoords.get(corner as usize));

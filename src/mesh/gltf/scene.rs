@@ -41,6 +41,8 @@ pub(super) fn instances(root: &json::Root) -> Result<Vec<Instance<'_>>, MeshErro
         if let Some(mesh) = node.mesh {
             let missing = || format_error(format!("mesh {mesh} does not exist, but node {index} names it"));
             let mesh = root.meshes.get(mesh.value()).ok_or_else(missing)?;
+            // What is skinned is where its joints are.
+            let transform = if node.skin.is_some() { DMat4::IDENTITY } else { transform };
             instances.push(Instance { mesh, transform, node: node.name.as_deref() });
         }
         stack.extend(node.children.iter().flatten().rev().map(|&child| (child, transform)));

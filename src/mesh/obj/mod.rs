@@ -69,14 +69,22 @@ impl ControlMesh {
 
     /// As [`ControlMesh::from_obj_str`], from the bytes of a file.
     ///
+    /// Text in UTF-8, in UTF-16 if it begins with a byte order mark, or in any encoding that has ASCII's statements and numbers: names and
+    /// comments are passed over.
+    ///
     /// # Errors
-    /// Also where the bytes are not UTF-8.
+    /// As [`ControlMesh::from_obj_str`].
     pub fn from_obj_bytes(bytes: &[u8], options: &ObjOptions) -> Result<Self, MeshError> {
-        let text = std::str::from_utf8(bytes).map_err(|error| {
-            let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
-            MeshError::Syntax { line, message: "the text is not UTF-8: save the file in that encoding".into() }
-        })?;
-        Self::from_obj_str(text, options)
+        let utf_16 = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
+            let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
+            String::from_utf16_lossy(&units).into()
+        };
+        let text = match bytes {
+            [0xff, 0xfe, rest @ ..] => utf_16(rest, u16::from_le_bytes),
+            [0xfe, 0xff, rest @ ..] => utf_16(rest, u16::from_be_bytes),
+            _ => String::from_utf8_lossy(bytes),
+        };
+        Self::from_obj_str(&text, options)
     }
 }
 

@@ -12,7 +12,9 @@ pub(super) fn for_each_statement(
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut joined = String::new();
     let mut first = None;
-    for (index, line) in text.lines().enumerate() {
+    // Lines end as Unix, Windows or old Macs have it.
+    let lines = text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
+    for (index, line) in lines.enumerate() {
         let line = line.split_once('#').map_or(line, |(statement, _)| statement).trim();
         if let Some(part) = line.strip_suffix('\\') {
             first.get_or_insert(index + 1);

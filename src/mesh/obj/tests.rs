@@ -305,8 +305,28 @@ fn errors_of_tags() {
 }
 
 #[test]
-fn text_that_is_not_utf_8() {
-    let error = ControlMesh::from_obj_bytes(b"v 0 0 0\n# gr\xfcn\n", &ObjOptions::default()).unwrap_err();
-    assert_eq!(error.to_string(), "line 2: the text is not UTF-8: save the file in that encoding");
-    assert_eq!(ControlMesh::from_obj_bytes(QUAD.as_bytes(), &ObjOptions::default()), Ok(read(QUAD)));
+fn text_in_any_encoding() {
+    let read_bytes = |bytes: &[u8]| ControlMesh::from_obj_bytes(bytes, &ObjOptions::default());
+    assert_eq!(read_bytes(QUAD.as_bytes()), Ok(read(QUAD)));
+    // Latin-1, in a comment and in a name.
+    let latin = [b"# gr\xfcn\no B\xe4r\n", QUAD.as_bytes()].concat();
+    assert_eq!(read_bytes(&latin), Ok(read(QUAD)));
+    let units = || std::iter::once(0xfeff).chain(QUAD.encode_utf16());
+    let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();
+    assert_eq!([read_bytes(&little), read_bytes(&big)], [Ok(read(QUAD)), Ok(read(QUAD))]);
+    let error = read_bytes(b"v 0 0 0\nv 1 0 \xb2\n").unwrap_err().to_string();
+    assert!(
+        error.starts_with("line 2: ") && error.ends_with("is not a finite number: write it like 1.5 or -2e3"),
+        "{error}"
+    );
+}
+
+#[test]
+fn lines_end_as_they_do_anywhere() {
+    for end in ["\r", "\r\n", "\n"] {
+        assert_eq!(read(&QUAD.replace('\n', end)), read(QUAD), "{end:?}");
+        let error = ControlMesh::from_obj_str(&format!("# one{end}v 1 2{end}"), &ObjOptions::default()).unwrap_err();
+        assert_eq!(error.to_string(), "line 2: \"v\" needs 3 numbers, but has 2");
+    }
 }

@@ -22,7 +22,8 @@ impl Renderer {
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
-    /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or [adaptive](crate::renderer::ModelOptions::adaptive), or, with
+    /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or [adaptive](crate::renderer::ModelOptions::adaptive), has
+    /// faces of five and more corners ([`ModelOptions::refine`](crate::renderer::ModelOptions::refine)) or, with
     /// [`Options::visible_lists`](crate::renderer::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). The
     /// device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue, and every one is: uploads
     /// and changes are recorded once, and later frames count on them. A frame that turns out to have nothing to draw into, such

@@ -45,7 +45,14 @@ fn parts_that_are_not_geometry_do_not_matter() {
     let mut file = File::square();
     file.json["materials"] = json!("broken");
     file.json["textures"] = json!([{ "extensions": { "EXT_texture_webp": {} } }]);
-    file.json["extensionsRequired"] = json!(["EXT_texture_webp", "KHR_texture_basisu", "KHR_lights_punctual"]);
+    file.json["extensionsRequired"] = json!([
+        "EXT_texture_webp",
+        "KHR_texture_basisu",
+        "KHR_lights_punctual",
+        "MSFT_texture_dds",
+        "KHR_xmp_json_ld",
+        "KHR_animation_pointer",
+    ]);
     assert_eq!(file.read().face_sizes, [4]);
 }
 
@@ -58,6 +65,19 @@ fn required_extensions() {
     file.json["extensionsRequired"] = json!([NGONS, "KHR_draco_mesh_compression"]);
     let expected = "the file requires the extension KHR_draco_mesh_compression, which is not supported: \
                     export it without";
+    file.assert_error(expected);
+}
+
+#[test]
+fn compressed_geometry_is_named_where_it_is_not_required() {
+    let mut file = File::square();
+    for accessor in file.json["accessors"].as_array_mut().unwrap() {
+        accessor.as_object_mut().unwrap().remove("bufferView");
+    }
+    file.primitive_mut()["extensions"] = json!({ "KHR_draco_mesh_compression": { "bufferView": 0, "attributes": {} } });
+    file.json["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+    let expected =
+        "the file requires the extension KHR_draco_mesh_compression, which is not supported: export it without";
     file.assert_error(expected);
 }
 
@@ -88,7 +108,10 @@ fn buffers_in_files() {
     std::fs::write(folder.join("a b/ü.bin"), File::square().buffer).unwrap();
     let options = GltfOptions { folder: Some(folder.clone()), ..GltfOptions::default() };
     let read = |uri: &str| ControlMesh::from_gltf_bytes(&with_uri(uri), &options);
-    for uri in ["a%20b/%C3%BC.bin", "a b/ü.bin"] {
+    // Blender 3.4 wrote names as they are.
+    std::fs::write(folder.join("50% square.bin"), File::square().buffer).unwrap();
+    std::fs::write(folder.join("%41.bin"), File::square().buffer).unwrap();
+    for uri in ["a%20b/%C3%BC.bin", "a b/ü.bin", "50% square.bin", "50%25%20square.bin", "%41.bin"] {
         assert_eq!(read(uri).unwrap().into_data(), File::square().read());
     }
     let error = |uri: &str| read(uri).unwrap_err().to_string();
@@ -98,7 +121,7 @@ fn buffers_in_files() {
     assert_eq!(error("/dev/zero"), format!("buffer 0: \"/dev/zero\" {relative}"));
     assert_eq!(error("http://a/b"), format!("buffer 0: \"http://a/b\" {relative}"));
     for uri in ["a%2", "a%", "a%zz", "a%ff"] {
-        assert_eq!(error(uri), format!("buffer 0: \"{uri}\" is not a valid URI: write it again"));
+        assert_eq!(error(uri), format!("buffer 0: there is no file \"{uri}\" next to this one"));
     }
     std::fs::remove_dir_all(folder).unwrap();
     let expected = "buffer 0: \"b.bin\" can't be found from memory: read the file by its path";
@@ -161,9 +184,9 @@ fn attributes_and_indices_that_do_not_fit_the_positions() {
 
 #[test]
 fn meshes_that_are_wrong() {
-    let welded = [SQUARE[0], SQUARE[1], SQUARE[2], SQUARE[0]];
-    let repeated = "face 1 names vertex 0 twice: remove the repeated vertex, or split the face there";
-    File::new(&welded, &[0, 1, 2, 0, 2, 3]).assert_error(repeated);
+    let mut pinched = File::new(&[SQUARE[0], SQUARE[1], SQUARE[2], SQUARE[0]], &[0, 1, 2, 0, 2, 3]);
+    pinched.primitive_mut()["extensions"] = json!({ NGONS: {} });
+    pinched.assert_error("face 0 names vertex 0 twice: remove the repeated vertex, or split the face there");
     let turned = "faces 0 and 1 both run along the edge 0-2 in the same direction: \
                   turn one of them round so that all faces are counter-clockwise from outside";
     File::new(&SQUARE, &[0, 1, 2, 3, 2, 0]).assert_error(turned);

@@ -54,6 +54,14 @@ fn strips_fans_and_modes_without_surface() {
 }
 
 #[test]
+fn triangles_that_draw_nothing_are_passed_over() {
+    // With a corner twice, with two corners at one place, and the only ones at a place.
+    let pole = [SQUARE[0], SQUARE[1], SQUARE[2], SQUARE[0], [9., 9., 9.]];
+    let data = File::new(&pole, &[0, 1, 2, 0, 2, 3, 1, 1, 2, 4, 4, 1]).read();
+    assert_eq!((data.face_vertices, data.positions.len()), (vec![0, 1, 2], 3));
+}
+
+#[test]
 fn lines_beside_triangles_are_passed_over() {
     let mut file = File::square();
     let mut lines = file.primitive(&SQUARE, &[0, 1]);

@@ -30,6 +30,14 @@ fn transforms_of_the_hierarchy() {
 }
 
 #[test]
+fn transforms_of_skinned_nodes_are_not_applied() {
+    let node = json!({ "translation": [100, 0, 0], "scale": [2, 2, 2], "mesh": 0, "skin": 0 });
+    let mut file = scene(json!([{ "translation": [0, 7, 0], "children": [1] }, node]), json!([0]));
+    file.json["skins"] = json!([{ "joints": [0] }]);
+    assert_eq!(file.read().positions, File::square().read().positions);
+}
+
+#[test]
 fn mirrored_faces_are_turned_round() {
     let file = |scale: Value| {
         let mut file = scene(json!([{ "scale": scale, "mesh": 0 }]), json!([0]));

@@ -1,0 +1,241 @@
+//! How far faces are from the limit surface at most.
+
+use super::kinds::Shape;
+use super::patches::{PLAIN, Patches};
+use super::real::Vector;
+use super::sums::Sums;
+use crate::mesh::MeshError;
+use crate::topology::Topology;
+use glam::DVec3;
+
+/// Levels of refinement within the last cells around extraordinary vertices and sharp features. What is left after them counts
+/// with its whole size, about a thousandth of the cell's.
+const LEVELS: u32 = 10;
+
+/// How often B-spline patches are split to know their normals better.
+const SPLITS: u32 = 2;
+
+/// Bounds of the facets of a mesh.
+pub(super) struct Bounds {
+    patches: Patches<f64>,
+    vertices: Vec<Vector<f64>>,
+}
+
+/// A cell of a facet, with its points.
+#[derive(Clone, Copy)]
+struct Cell<'p> {
+    kind: u32,
+    points: &'p [Vector<f64>],
+}
+
+/// The bilinear surface between the corners of a cell.
+struct Bilinear {
+    corner: DVec3,
+    u: DVec3,
+    v: DVec3,
+    twist: DVec3,
+    normal: DVec3,
+}
+
+/// How far two points are from each other at most: along the normal of a face, and altogether.
+#[derive(Clone, Copy, Default)]
+struct Stray {
+    height: f64,
+    distance: f64,
+}
+
+impl Stray {
+    fn max(self, other: Self) -> Self {
+        Self { height: self.height.max(other.height), distance: self.distance.max(other.distance) }
+    }
+}
+
+impl Bilinear {
+    fn new([a, b, c, d]: [DVec3; 4]) -> Self {
+        let normal = (c - a).cross(d - b).normalize_or_zero();
+        Self { corner: a, u: b - a, v: d - a, twist: (a - b) + (c - d), normal }
+    }
+
+    /// How much triangles between the corners lean to the normal: what lies sideways counts by as much.
+    fn lean(&self) -> f64 {
+        let sides = [self.u, self.v, self.u + self.twist, self.v + self.twist];
+        self.measure(self.twist).height / sides.map(DVec3::length).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    fn measure(&self, difference: DVec3) -> Stray {
+        let distance = difference.length();
+        // Without a normal there is no height.
+        let height = if self.normal == DVec3::ZERO { distance } else { difference.dot(self.normal).abs() };
+        Stray { height, distance }
+    }
+
+    fn at(&self, u: f64, v: f64) -> DVec3 {
+        self.corner + u * self.u + v * self.v + u * v * self.twist
+    }
+}
+
+impl Bounds {
+    /// Of facets that are halved `deepest` times at most.
+    pub(super) fn new(topology: &Topology, facets: &[u32], deepest: u32) -> Result<Self, MeshError> {
+        let deepen = |builder: &mut super::kinds::Builder, _, kind| builder.deepen_all(kind, deepest + LEVELS);
+        let patches = Patches::new(topology, facets, deepen)?;
+        Ok(Self { patches, vertices: topology.mesh().data().positions.clone() })
+    }
+
+    /// The bound of a facet, by its index, that is halved so often.
+    pub(super) fn bound(&self, index: usize, depth: u32) -> f64 {
+        let (kind, points) = self.patches.facet(index);
+        let points: Vec<Vector<f64>> = points.iter().map(|&vertex| self.vertices[vertex as usize]).collect();
+        if kind == PLAIN {
+            return bend(&std::array::from_fn(|i| points[i].into()), depth, SPLITS);
+        }
+        self.of_cell(Cell { kind, points: &points }, depth)
+    }
+
+    fn of_cell(&self, cell: Cell, depth: u32) -> f64 {
+        match &self.patches.kinds[cell.kind as usize].shape {
+            Shape::Regular(rows) => bend(&std::array::from_fn(|i| rows.get(i, cell.points).into()), depth, SPLITS),
+            Shape::Irregular { corners: Some(rows), .. } if depth == 0 => self.of_last(cell, rows),
+            _ => {
+                let mut most = 0.0f64;
+                self.for_each_quarter(cell, |quarter, _| most = most.max(self.of_cell(quarter, depth - 1)));
+                most
+            }
+        }
+    }
+
+    /// Of a cell that is one face, or cut into triangles.
+    fn of_last(&self, cell: Cell, rows: &Sums<f64>) -> f64 {
+        let [a, b, c, d] = [0, 3, 6, 9].map(|i| DVec3::from(rows.get(i, cell.points)));
+        let flat = Bilinear::new([a, b, c, d]);
+        let stray = self.stray(cell, &flat, [0.0, 0.0], 1.0, LEVELS);
+        let twist = flat.measure(flat.twist);
+        // Corners of triangles may be on the surface anywhere along the cell's edges, so it counts twice how far they are from
+        // the bilinear surface; a quarter of the twist is what this is from triangles.
+        let distance = 2.0 * stray.distance + twist.distance / 4.0;
+        let lean = flat.lean();
+        distance.min(2.0 * (stray.height + lean * stray.distance) + twist.height / 4.0)
+    }
+
+    /// How far the surface of a cell, which begins at `at`, is from a bilinear one.
+    fn stray(&self, cell: Cell, flat: &Bilinear, at: [f64; 2], size: f64, levels: u32) -> Stray {
+        let from = |point: Vector<f64>, u: f64, v: f64| {
+            flat.measure(DVec3::from(point) - flat.at(at[0] + size * u, at[1] + size * v))
+        };
+        match &self.patches.kinds[cell.kind as usize].shape {
+            Shape::Regular(rows) => {
+                let of_point = |i: usize| from(rows.get(i, cell.points), (i / 4) as f64 - 1.0, (i % 4) as f64 - 1.0);
+                (0..16).map(of_point).fold(Stray::default(), Stray::max)
+            }
+            Shape::Irregular { refined: Some(_), .. } if levels > 0 => {
+                let mut most = Stray::default();
+                let half = size / 2.0;
+                self.for_each_quarter(cell, |quarter, [i, j]| {
+                    let at = [at[0] + half * i, at[1] + half * j];
+                    most = most.max(self.stray(quarter, flat, at, half, levels - 1));
+                });
+                most
+            }
+            Shape::Irregular { .. } => {
+                let middle = flat.at(at[0] + size / 2.0, at[1] + size / 2.0);
+                let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+                let extent =
+                    corners.map(|[u, v]| from(middle.into(), u, v)).into_iter().fold(Stray::default(), Stray::max);
+                let points = cell.points.iter().map(|&point| from(point, 0.5, 0.5)).fold(Stray::default(), Stray::max);
+                Stray { height: extent.height + points.height, distance: extent.distance + points.distance }
+            }
+        }
+    }
+
+    /// The quarters of a cell, each with its place.
+    fn for_each_quarter(&self, cell: Cell, mut visit: impl FnMut(Cell, [f64; 2])) {
+        let Shape::Irregular { refined: Some(refined), .. } = &self.patches.kinds[cell.kind as usize].shape else {
+            unreachable!("kinds are made for all depths")
+        };
+        let fine: Vec<Vector<f64>> = (0..refined.points.len()).map(|i| refined.points.get(i, cell.points)).collect();
+        for (quarter, place) in refined.quarters.iter().zip([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) {
+            let points: Vec<Vector<f64>> = quarter.points.iter().map(|&point| fine[point as usize]).collect();
+            visit(Cell { kind: quarter.kind, points: &points }, place);
+        }
+    }
+}
+
+/// Four B-spline control points of a curve become five of its halves.
+fn halve(p: [DVec3; 4]) -> [DVec3; 5] {
+    let middle = |i: usize| 0.5 * (p[i] + p[i + 1]);
+    let corner = |i: usize| 0.125 * (p[i - 1] + 6.0 * p[i] + p[i + 1]);
+    [middle(0), corner(1), middle(1), corner(2), middle(2)]
+}
+
+/// The control points of the quarters of a B-spline patch.
+fn quarters(points: &[DVec3; 16]) -> [[DVec3; 16]; 4] {
+    let along_v: [[DVec3; 5]; 4] = std::array::from_fn(|i| halve(std::array::from_fn(|j| points[4 * i + j])));
+    let along_u: [[DVec3; 5]; 5] = std::array::from_fn(|j| halve(std::array::from_fn(|i| along_v[i][j])));
+    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[i, j]| std::array::from_fn(|k| along_u[j + k % 4][i + k / 4]))
+}
+
+/// The distance between a B-spline patch that is halved `depth` times and the faces of its cells, by second differences of its
+/// control points: along the normals of such faces if these are known well enough, else altogether.
+fn bend(points: &[DVec3; 16], depth: u32, splits: u32) -> f64 {
+    if depth > 0 && splits > 0 {
+        return quarters(points).iter().map(|quarter| bend(quarter, depth - 1, splits - 1)).fold(0.0, f64::max);
+    }
+    let at = |i: usize, j: usize| points[4 * i + j];
+    let second = |measure: &dyn Fn(DVec3) -> f64| {
+        let [mut uu, mut uv, mut vv] = [0.0f64; 3];
+        for i in 0..4 {
+            for j in 0..2 {
+                uu = uu.max(measure(at(j, i) - 2.0 * at(j + 1, i) + at(j + 2, i)));
+                vv = vv.max(measure(at(i, j) - 2.0 * at(i, j + 1) + at(i, j + 2)));
+            }
+        }
+        for i in 0..3 {
+            for j in 0..3 {
+                uv = uv.max(measure(at(i, j) - at(i + 1, j) - at(i, j + 1) + at(i + 1, j + 1)));
+            }
+        }
+        [uu, uv, vv]
+    };
+    let bound = |[uu, uv, vv]: [f64; 3]| (uu + 2.0 * uv + vv) / 8.0;
+    let distance = bound(second(&DVec3::length));
+    if depth == 0 {
+        let along_u = |i: usize, j: usize| at(i, j) + 4.0 * at(i + 1, j) + at(i + 2, j);
+        let corner = |[i, j]: [usize; 2]| (along_u(i, j) + 4.0 * along_u(i, j + 1) + along_u(i, j + 2)) / 36.0;
+        let flat = Bilinear::new([[0, 0], [1, 0], [1, 1], [0, 1]].map(corner));
+        let heights = second(&|difference| flat.measure(difference).height);
+        return distance.min(bound(heights) + flat.lean() * distance);
+    }
+    let along_normals = Cone::new(points)
+        .map(|cone| bound(second(&|d| (d.dot(cone.axis).abs() + cone.sine * d.length()).min(d.length()))));
+    along_normals.unwrap_or(distance) / f64::from(1 << (2 * depth))
+}
+
+/// All normals of a patch, and of faces with points of it.
+struct Cone {
+    axis: DVec3,
+    /// Of the greatest angle to the axis.
+    sine: f64,
+}
+
+impl Cone {
+    /// Tangents are sums of first differences of control points with weights above zero, so normals are of their cross products.
+    /// `None` if these are not all on one side.
+    fn new(points: &[DVec3; 16]) -> Option<Self> {
+        let at = |i: usize, j: usize| points[4 * i + j];
+        let mut along = [[DVec3::ZERO; 2]; 12];
+        for i in 0..3 {
+            for j in 0..4 {
+                along[4 * i + j] = [at(i + 1, j) - at(i, j), at(j, i + 1) - at(j, i)];
+            }
+        }
+        let axis = (at(2, 2) - at(1, 1)).cross(at(1, 2) - at(2, 1)).try_normalize()?;
+        let mut least_cosine = 1.0f64;
+        for [du, _] in along {
+            for [_, dv] in along {
+                least_cosine = least_cosine.min(du.cross(dv).normalize_or_zero().dot(axis));
+            }
+        }
+        let is_narrow = least_cosine > 0.0;
+        is_narrow.then(|| Self { axis, sine: (1.0 - least_cosine * least_cosine).max(0.0).sqrt() })
+    }
+}

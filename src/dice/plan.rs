@@ -1,0 +1,176 @@
+//! All about a tessellation that does not depend on positions.
+
+use super::bicubic::Basis;
+use super::bounds::Bounds;
+use super::depth::halvings;
+use super::error::DiceError;
+use super::layout::{Facet, Layout, Split};
+use super::options::DiceOptions;
+use super::patches::Patches;
+use super::place::{Place, place};
+use super::real::Real;
+use super::texcoords::Texcoords;
+use crate::limit::{Stencils, refine};
+use crate::mesh::SHARPNESS_INFINITE;
+use crate::topology::Topology;
+use rayon::prelude::*;
+
+/// Sizes of a tessellation's arrays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Sizes {
+    /// Vertices, those that share their position with another included.
+    pub vertices: usize,
+    /// Vertices with a position of their own; they come first.
+    pub positions: usize,
+    /// Faces with four corners.
+    pub quads: usize,
+    /// Faces with three corners.
+    pub triangles: usize,
+    /// Bytes of a [`Tessellation`](super::Tessellation)'s arrays.
+    pub bytes: u64,
+}
+
+/// Which facet is how deep, who writes which vertex, and the sums that make vertices: what stays when control vertices move.
+pub struct Plan<T> {
+    /// The mesh refined once, whose faces are the facets.
+    pub(super) refined: Topology,
+    /// The corner of a coarse face in which each facet lies, by face: sizes of the coarse faces.
+    pub(super) face_offsets: Vec<u32>,
+    pub(super) stencils: Stencils,
+    pub(super) control_vertices: usize,
+    pub(super) layout: Layout,
+    pub(super) patches: Patches<T>,
+    pub(super) bases: Vec<Basis<T>>,
+    pub(super) texcoords: Option<Texcoords<T>>,
+}
+
+impl<T: Real> Plan<T> {
+    /// Plans a mesh. Depths come from its positions.
+    ///
+    /// # Errors
+    /// [`DiceError`]: options that make no sense, and tessellations that are too large.
+    pub fn new(topology: &Topology, options: &DiceOptions) -> Result<Self, DiceError> {
+        let mesh = topology.mesh();
+        options.check(mesh.corner_count())?;
+        let coarse = refine(topology)?;
+        let refined = Topology::new(&coarse.mesh);
+        let mut drawn = vec![true; coarse.mesh.face_count()];
+        coarse.mesh.data().holes.iter().for_each(|&hole| drawn[hole as usize] = false);
+        if !drawn.contains(&true) {
+            return Err(DiceError::NothingDrawn);
+        }
+        let depths = halvings(&refined, &drawn, options)?;
+        let seams = seams(topology);
+        let split = |h: u32| {
+            let is_inside = refined.twin(h).is_some_and(|twin| drawn[twin as usize / 4]);
+            let crease = is_inside && refined.sharpness(h) >= SHARPNESS_INFINITE;
+            // Only the edges around the corner of a facet are parts of edges of the mesh.
+            let edge = match h % 4 {
+                0 => Some(h / 4),
+                3 => Some(topology.prev(h / 4)),
+                _ => None,
+            };
+            Split { crease, seam: is_inside && edge.is_some_and(|edge| seams.get(edge as usize) == Some(&true)) }
+        };
+        let layout = Layout::new(&refined, &depths, split)?;
+        let patches = Patches::of_layout(&refined, &layout.facets)?;
+        let deepest = depths.iter().flatten().copied().max().unwrap_or(0);
+        let bases = (0..=deepest).map(Basis::new).collect();
+        let texcoords = Texcoords::new(&refined, &layout.facets)?;
+        Ok(Self {
+            face_offsets: mesh.face_offsets().to_vec(),
+            stencils: coarse.stencils,
+            control_vertices: mesh.vertex_count(),
+            refined,
+            layout,
+            patches,
+            bases,
+            texcoords,
+        })
+    }
+
+    /// Sizes of all arrays.
+    pub fn sizes(&self) -> Sizes {
+        let layout = &self.layout;
+        let (vertices, quads, triangles) = (layout.vertices(), layout.quads as usize, layout.triangles as usize);
+        let vectors = 6 * size_of::<T>() as u64 + if self.texcoords.is_some() { 8 } else { 0 };
+        let bytes = vertices as u64 * vectors + 16 * quads as u64 + 12 * triangles as u64;
+        Sizes { vertices, positions: layout.owned as usize, quads, triangles, bytes }
+    }
+
+    /// Whether there are texture coordinates.
+    pub fn has_texcoords(&self) -> bool {
+        self.texcoords.is_some()
+    }
+
+    /// Facets by depth: entry d counts those at depth d.
+    pub fn depth_histogram(&self) -> Vec<usize> {
+        let mut histogram = Vec::new();
+        for facet in &self.layout.facets {
+            let depth = facet.depth as usize + 1;
+            if histogram.len() <= depth {
+                histogram.resize(depth + 1, 0);
+            }
+            histogram[depth] += 1;
+        }
+        histogram
+    }
+
+    /// A distance within which all faces are of the limit surface, and the surface of the faces, for the control vertices of
+    /// which the plan was made.
+    ///
+    /// It is a bound from second differences of control points: `(uu + 2 uv + vv) / 8` of them, a quarter of that for each
+    /// halving, wherever the surface is a B-spline patch (Filip, Magedson, Markot 1986), and from control points around what is
+    /// left next to extraordinary vertices and sharp features. Distances are between points with the same parameters, so the
+    /// true distance is less, above all where the parameters run unevenly. Displacement and texture coordinates do not count, nor
+    /// does rounding.
+    ///
+    /// # Errors
+    /// [`DiceError::Mesh`] if the refined mesh is too large.
+    pub fn error_bound(&self) -> Result<f64, DiceError> {
+        let facets: Vec<u32> = self.facets().iter().map(|facet| facet.facet).collect();
+        let deepest = self.bases.len() as u32 - 1;
+        let bounds = Bounds::new(&self.refined, &facets, deepest)?;
+        let of_facet = |(index, facet): (usize, &Facet)| bounds.bound(index, facet.depth);
+        Ok(self.facets().par_iter().enumerate().map(of_facet).reduce(|| 0.0, f64::max))
+    }
+
+    /// The vertex whose position a vertex has: itself unless it is a copy along a crease or a seam.
+    pub fn position_of(&self, vertex: u32) -> u32 {
+        match vertex.checked_sub(self.layout.owned) {
+            Some(copy) => self.layout.sources[copy as usize].position,
+            None => vertex,
+        }
+    }
+
+    /// Where on the control mesh each vertex is.
+    pub fn places(&self) -> Vec<Place> {
+        let mut places = vec![Place::default(); self.layout.vertices()];
+        for facet in &self.layout.facets {
+            let corner = facet.facet;
+            let face = self.face_offsets.partition_point(|&offset| offset <= corner) - 1;
+            let [start, end] = [face, face + 1].map(|face| self.face_offsets[face]);
+            facet.for_each_written(|vertex, uv| {
+                places[vertex as usize] = place(face as u32, corner - start, end - start, uv);
+            });
+        }
+        places
+    }
+
+    pub(super) fn facets(&self) -> &[Facet] {
+        &self.layout.facets
+    }
+}
+
+/// The half-edges along which the texture coordinates of the faces on both sides differ, if there are any.
+fn seams(topology: &Topology) -> Vec<bool> {
+    let Some(texcoords) = &topology.mesh().data().texcoords else { return Vec::new() };
+    let index = |h: u32| texcoords.indices[h as usize];
+    let is_seam = |h: u32| {
+        topology
+            .twin(h)
+            .is_some_and(|twin| index(h) != index(topology.next(twin)) || index(topology.next(h)) != index(twin))
+    };
+    (0..topology.mesh().corner_count() as u32).into_par_iter().map(is_seam).collect()
+}

@@ -1,0 +1,135 @@
+//! `subdiv tessellate`.
+
+use super::{fails, folder, json, keys, run, subdiv};
+use std::fs;
+use std::path::Path;
+
+/// Files in a folder, hidden ones too.
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn surfaces_are_written_closed() {
+    let folder = folder("surfaces_are_written_closed");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let out = json(&format!("tessellate --shape creature --tolerance 0.02 --quads -o {}", path("a.obj")));
+    let expected = [
+        "bytes",
+        "depth_histogram",
+        "faces",
+        "file",
+        "largest_error",
+        "mesh",
+        "quads",
+        "seconds",
+        "triangles",
+        "vertices",
+    ];
+    assert_eq!(keys(&out), expected);
+    assert!(out["largest_error"].as_f64().unwrap() <= 0.02 && out["triangles"].as_u64().unwrap() > 0, "{out}");
+    assert_eq!(out["bytes"], fs::metadata(folder.join("a.obj")).unwrap().len());
+    // One surface without a boundary, as the program itself reads it.
+    let read = json(&format!("info {}", path("a.obj")));
+    assert_eq!((&read["boundary_edges"], &read["faces"]), (&0.into(), &out["faces"]));
+    let characteristic = |info: &serde_json::Value| {
+        let [v, e, f] = ["vertices", "edges", "faces"].map(|key| info[key].as_i64().unwrap());
+        v - e + f
+    };
+    assert_eq!(characteristic(&read), characteristic(&json("info --shape creature")));
+
+    let out = json(&format!("tessellate --shape creature --depth 1 -o {}", path("new/a.glb")));
+    assert_eq!((&out["faces"], &out["quads"]), (&(1320 * 8).into(), &0.into()));
+    let read = json(&format!("info {}", path("new/a.glb")));
+    assert_eq!((&read["boundary_edges"], &read["faces"]), (&0.into(), &out["faces"]));
+
+    let out = json(&format!("tessellate --shape torus --depth 2 -o {}", path("a.ply")));
+    let ply = fs::read(folder.join("a.ply")).unwrap();
+    let header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", out["vertices"]);
+    assert!(ply.starts_with(header.as_bytes()), "{}", String::from_utf8_lossy(&ply[..200]));
+    assert_eq!(files(&folder), ["a.obj", "a.ply", "new"]);
+}
+
+#[test]
+fn cameras_and_height_maps_take_part() {
+    let folder = folder("cameras_and_height_maps_take_part");
+    let path = folder.join("a.ply").display().to_string();
+    let faces =
+        |options: &str| json(&format!("tessellate --shape creature {options} -o {path}"))["faces"].as_u64().unwrap();
+    let far = faces("--pixels 8 --size 300x300");
+    assert!(far < faces("--pixels 4 --size 300x300"));
+    assert!(far < faces("--pixels 8 --size 600x600"));
+    // What the camera does not see stays coarse.
+    assert!(faces("--pixels 8 --size 600x600 --zoom 8") < faces("--pixels 1 --size 600x600"));
+    assert!(faces("--edge-length 0.2") < faces("--edge-length 0.1"));
+
+    let flat = json(&format!("tessellate --shape creature --depth 2 -o {path}"));
+    let before = fs::read(&path).unwrap();
+    let scaly = json(&format!("tessellate --shape creature --depth 2 --displacement scales -o {path}"));
+    assert_eq!((&flat["faces"], &flat["bytes"]), (&scaly["faces"], &scaly["bytes"]));
+    assert!(scaly["largest_error"].is_null() && before != fs::read(&path).unwrap());
+}
+
+#[test]
+fn what_cannot_be_tessellated_is_told() {
+    let folder = folder("what_cannot_be_tessellated_is_told");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let (glb, txt) = (path("a.glb"), path("a.txt"));
+    let of = |options: &str| format!("tessellate --shape cube {options}");
+    fails(&of(&format!("-o {txt}")), 2, &format!("--output {txt}: name a file that ends in .obj, .ply or .glb"));
+    fails(&of(&format!("--quads -o {glb}")), 2, &format!("--quads: {glb} has triangles only: choose .obj or .ply"));
+    let message = "depth 0: a mesh is subdivided once at least, and 10 times at most: choose 1 to 10";
+    fails(&of(&format!("--depth 0 -o {glb}")), 1, message);
+    let message =
+        "the tessellation has 6291458 vertices and 251658288 bytes, more than --max-vertices 1000: ask for less depth";
+    fails(&of(&format!("--depth 10 --max-vertices 1e3 -o {glb}")), 1, message);
+    let message = "--refine: refinement does not change the limit surface: choose a --depth";
+    fails(&of(&format!("--refine 1 -o {glb}")), 2, message);
+    let message = "--adaptive: all of the surface is exact: leave it out";
+    fails(&of(&format!("--adaptive 1 -o {glb}")), 2, message);
+    let message = "--displacement-vectors: only heights are baked in: leave it out";
+    fails(&of(&format!("--displacement scales --displacement-vectors -o {glb}")), 2, message);
+    assert!(files(&folder).is_empty());
+    let output = run(&of(&format!("--tolerance 1e-4 --max-depth 2 -o {glb}")));
+    let note = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.success() && note.starts_with("note: --tolerance 0.0001: at --max-depth 2 the error may be "),
+        "{note}"
+    );
+}
+
+/// A disk that is full, and a user who has had enough, leave what was there before, and nothing else.
+#[cfg(target_os = "linux")]
+#[test]
+fn nothing_half_written_is_left() {
+    use std::os::unix::process::ExitStatusExt;
+    let folder = folder("nothing_half_written_is_left");
+    let path = folder.join("a.obj");
+    fs::write(&path, "from before").unwrap();
+    let command = format!("ulimit -f 64; exec \"$0\" tessellate --shape creature --depth 3 -o {}", path.display());
+    let output =
+        std::process::Command::new("bash").args(["-c", &command, env!("CARGO_BIN_EXE_subdiv")]).output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(error, format!("error: {}: File too large (os error 27)\n", path.display()));
+    assert_eq!(files(&folder), ["a.obj"]);
+
+    let mut child = subdiv()
+        .args(["tessellate", "--shape", "creature", "--depth", "6", "-o"])
+        .arg(&path)
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    // Until it writes.
+    while files(&folder).len() < 2 {
+        assert!(child.try_wait().unwrap().is_none(), "it was too quick");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let status = child.wait().unwrap();
+    assert!(kill.success() && !status.success(), "{status} {:?}", status.signal());
+    assert_eq!(files(&folder), ["a.obj"]);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "from before");
+}
