@@ -13,7 +13,10 @@ use glam::DVec3;
 const LEVELS: u32 = 10;
 
 /// How often B-spline patches are split to know their normals better.
-const SPLITS: u32 = 2;
+const SPLITS: u32 = 3;
+
+/// The quarters of a cell, and its corners.
+const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
 /// Bounds of the facets of a mesh.
 pub(super) struct Bounds {
@@ -37,16 +40,26 @@ struct Bilinear {
     normal: DVec3,
 }
 
-/// How far two points are from each other at most: along the normal of a face, and altogether.
+/// How far a surface is from a bilinear one: from where to where along the normal, and altogether.
 #[derive(Clone, Copy, Default)]
 struct Stray {
-    height: f64,
+    low: f64,
+    high: f64,
     distance: f64,
 }
 
 impl Stray {
-    fn max(self, other: Self) -> Self {
-        Self { height: self.height.max(other.height), distance: self.distance.max(other.distance) }
+    /// Of both.
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            distance: self.distance.max(other.distance),
+        }
+    }
+
+    fn height(&self) -> f64 {
+        self.high - self.low
     }
 }
 
@@ -56,21 +69,46 @@ impl Bilinear {
         Self { corner: a, u: b - a, v: d - a, twist: (a - b) + (c - d), normal }
     }
 
+    fn at(&self, u: f64, v: f64) -> DVec3 {
+        self.corner + u * self.u + v * self.v + u * v * self.twist
+    }
+
     /// How much triangles between the corners lean to the normal: what lies sideways counts by as much.
     fn lean(&self) -> f64 {
         let sides = [self.u, self.v, self.u + self.twist, self.v + self.twist];
-        self.measure(self.twist).height / sides.map(DVec3::length).into_iter().fold(f64::INFINITY, f64::min)
+        self.height(self.twist).abs() / sides.map(DVec3::length).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The cosine of the greatest angle to these normals, or zero. Where the surface turns between faces, its distance is not
+    /// along the normal of one of them, and by so much greater.
+    fn cosine(&self, normals: [DVec3; 4]) -> f64 {
+        normals.map(|normal| normal.normalize_or_zero().dot(self.normal)).into_iter().fold(1.0, f64::min).max(0.0)
+    }
+
+    /// Along the normal; without one nothing is known but the distance.
+    fn height(&self, difference: DVec3) -> f64 {
+        if self.normal == DVec3::ZERO { difference.length() } else { difference.dot(self.normal) }
     }
 
     fn measure(&self, difference: DVec3) -> Stray {
-        let distance = difference.length();
-        // Without a normal there is no height.
-        let height = if self.normal == DVec3::ZERO { distance } else { difference.dot(self.normal).abs() };
-        Stray { height, distance }
+        let height = self.height(difference);
+        Stray { low: height.min(0.0), high: height.max(0.0), distance: difference.length() }
     }
 
-    fn at(&self, u: f64, v: f64) -> DVec3 {
-        self.corner + u * self.u + v * self.v + u * v * self.twist
+    /// Of a B-spline patch, by its control points after it was split so often.
+    fn stray(&self, points: &[DVec3; 16], at: [f64; 2], size: f64, splits: u32) -> Stray {
+        if splits > 0 {
+            let half = size / 2.0;
+            let of_quarter = |(quarter, [i, j]): (&[DVec3; 16], [f64; 2])| {
+                self.stray(quarter, [at[0] + half * i, at[1] + half * j], half, splits - 1)
+            };
+            return quarters(points).iter().zip(PLACES).map(of_quarter).fold(Stray::default(), Stray::with);
+        }
+        let of_point = |i: usize| {
+            let [u, v] = [i / 4, i % 4].map(|i| i as f64 - 1.0);
+            self.measure(points[i] - self.at(at[0] + size * u, at[1] + size * v))
+        };
+        (0..16).map(of_point).fold(Stray::default(), Stray::with)
     }
 }
 
@@ -109,12 +147,15 @@ impl Bounds {
         let [a, b, c, d] = [0, 3, 6, 9].map(|i| DVec3::from(rows.get(i, cell.points)));
         let flat = Bilinear::new([a, b, c, d]);
         let stray = self.stray(cell, &flat, [0.0, 0.0], 1.0, LEVELS);
-        let twist = flat.measure(flat.twist);
-        // Corners of triangles may be on the surface anywhere along the cell's edges, so it counts twice how far they are from
-        // the bilinear surface; a quarter of the twist is what this is from triangles.
-        let distance = 2.0 * stray.distance + twist.distance / 4.0;
-        let lean = flat.lean();
-        distance.min(2.0 * (stray.height + lean * stray.distance) + twist.height / 4.0)
+        // Corners of triangles may be on the surface anywhere along the cell's edges: it counts how far these and what is between
+        // them are from the bilinear surface, and a quarter of the twist, which is how far this is from triangles.
+        let distance = 2.0 * stray.distance + flat.twist.length() / 4.0;
+        let height = stray.height() + 2.0 * flat.lean() * stray.distance + flat.height(flat.twist).abs() / 4.0;
+        let normals = [0, 3, 6, 9].map(|i| {
+            let [a, b] = [i + 1, i + 2].map(|i| DVec3::from(rows.get(i, cell.points)));
+            a.cross(b)
+        });
+        distance.min(height / flat.cosine(normals))
     }
 
     /// How far the surface of a cell, which begins at `at`, is from a bilinear one.
@@ -124,25 +165,26 @@ impl Bounds {
         };
         match &self.patches.kinds[cell.kind as usize].shape {
             Shape::Regular(rows) => {
-                let of_point = |i: usize| from(rows.get(i, cell.points), (i / 4) as f64 - 1.0, (i % 4) as f64 - 1.0);
-                (0..16).map(of_point).fold(Stray::default(), Stray::max)
+                let points = std::array::from_fn(|i| rows.get(i, cell.points).into());
+                // Cells become smaller towards the vertex, and are split less.
+                flat.stray(&points, at, size, (SPLITS + levels).saturating_sub(LEVELS - 1))
             }
             Shape::Irregular { refined: Some(_), .. } if levels > 0 => {
                 let mut most = Stray::default();
                 let half = size / 2.0;
                 self.for_each_quarter(cell, |quarter, [i, j]| {
                     let at = [at[0] + half * i, at[1] + half * j];
-                    most = most.max(self.stray(quarter, flat, at, half, levels - 1));
+                    most = most.with(self.stray(quarter, flat, at, half, levels - 1));
                 });
                 most
             }
             Shape::Irregular { .. } => {
                 let middle = flat.at(at[0] + size / 2.0, at[1] + size / 2.0);
-                let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-                let extent =
-                    corners.map(|[u, v]| from(middle.into(), u, v)).into_iter().fold(Stray::default(), Stray::max);
-                let points = cell.points.iter().map(|&point| from(point, 0.5, 0.5)).fold(Stray::default(), Stray::max);
-                Stray { height: extent.height + points.height, distance: extent.distance + points.distance }
+                let most = |stray: Stray, other: Stray| stray.with(other);
+                let extent = PLACES.map(|[u, v]| from(middle.into(), u, v)).into_iter().fold(Stray::default(), most);
+                let points = cell.points.iter().map(|&point| from(point, 0.5, 0.5)).fold(Stray::default(), most);
+                let (low, high) = (points.low + extent.low, points.high + extent.high);
+                Stray { low, high, distance: extent.distance + points.distance }
             }
         }
     }
@@ -153,7 +195,7 @@ impl Bounds {
             unreachable!("kinds are made for all depths")
         };
         let fine: Vec<Vector<f64>> = (0..refined.points.len()).map(|i| refined.points.get(i, cell.points)).collect();
-        for (quarter, place) in refined.quarters.iter().zip([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) {
+        for (quarter, place) in refined.quarters.iter().zip(PLACES) {
             let points: Vec<Vector<f64>> = quarter.points.iter().map(|&point| fine[point as usize]).collect();
             visit(Cell { kind: quarter.kind, points: &points }, place);
         }
@@ -202,12 +244,19 @@ fn bend(points: &[DVec3; 16], depth: u32, splits: u32) -> f64 {
         let along_u = |i: usize, j: usize| at(i, j) + 4.0 * at(i + 1, j) + at(i + 2, j);
         let corner = |[i, j]: [usize; 2]| (along_u(i, j) + 4.0 * along_u(i, j + 1) + along_u(i, j + 2)) / 36.0;
         let flat = Bilinear::new([[0, 0], [1, 0], [1, 1], [0, 1]].map(corner));
-        let heights = second(&|difference| flat.measure(difference).height);
-        return distance.min(bound(heights) + flat.lean() * distance);
+        let heights = second(&|difference| flat.height(difference).abs());
+        let side = |i: usize, j: usize| at(i + 2, j) - at(i, j);
+        let across = |i: usize, j: usize| at(i, j + 2) - at(i, j);
+        let normals = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[i, j]| {
+            let along = side(i, j) + 4.0 * side(i, j + 1) + side(i, j + 2);
+            along.cross(across(i, j) + 4.0 * across(i + 1, j) + across(i + 2, j))
+        });
+        return distance.min((bound(heights) + flat.lean() * distance) / flat.cosine(normals));
     }
-    let along_normals = Cone::new(points)
-        .map(|cone| bound(second(&|d| (d.dot(cone.axis).abs() + cone.sine * d.length()).min(d.length()))));
-    along_normals.unwrap_or(distance) / f64::from(1 << (2 * depth))
+    let along_normals = |cone: Cone| {
+        bound(second(&|d| d.dot(cone.axis).abs() + cone.sine * d.length())) / (1.0 - cone.sine * cone.sine).sqrt()
+    };
+    Cone::new(points).map_or(distance, |cone| distance.min(along_normals(cone))) / f64::from(1 << (2 * depth))
 }
 
 /// All normals of a patch, and of faces with points of it.

@@ -117,14 +117,13 @@ impl<T: Real> Plan<T> {
         histogram
     }
 
-    /// A distance within which all faces are of the limit surface, and the surface of the faces, for the control vertices of
-    /// which the plan was made.
+    /// A distance within which all faces are of the limit surface, for the control vertices of which the plan was made.
     ///
-    /// It is a bound from second differences of control points: `(uu + 2 uv + vv) / 8` of them, a quarter of that for each
-    /// halving, wherever the surface is a B-spline patch (Filip, Magedson, Markot 1986), and from control points around what is
-    /// left next to extraordinary vertices and sharp features. Distances are between points with the same parameters, so the
-    /// true distance is less, above all where the parameters run unevenly. Displacement and texture coordinates do not count, nor
-    /// does rounding.
+    /// It is a bound from control points: second differences, `(uu + 2 uv + vv) / 8` of them and a quarter of that for each
+    /// halving, wherever the surface is a B-spline patch (Filip, Magedson, Markot 1986), and how far control points around what is
+    /// left next to extraordinary vertices and sharp features are from a face. Between points with the same parameters it
+    /// holds in any case. Where it is less, it is along the normals of faces, whose angles to the surface's count; there the surface
+    /// must not fold back within a face. Displacement, texture coordinates and rounding are not covered.
     ///
     /// # Errors
     /// [`DiceError::Mesh`] if the refined mesh is too large.

@@ -285,6 +285,17 @@ mod tests {
     }
 
     #[test]
+    fn texels_are_read_in_between_and_repeat() {
+        let texels = Texels { width: 2, height: 2, channels: 1, values: vec![0.0, 1.0, 4.0, 5.0] };
+        for (at, value) in [([0.25, 0.25], 0.0), ([0.75, 0.25], 1.0), ([0.25, 0.75], 4.0), ([0.5, 0.5], 2.5)] {
+            assert_eq!(texels.sample(at), value, "{at:?}");
+            assert_eq!(texels.sample([at[0] + 1.0, at[1] - 2.0]), value, "{at:?}");
+        }
+        // Between the last texel and the first.
+        assert_eq!(texels.sample([0.0, 0.25]), 0.5);
+    }
+
+    #[test]
     fn what_cannot_be_a_map_is_told() {
         let float = image::Rgba32FImage::from_raw(1, 2, vec![0.0, 1.0, 2.0, 1.0, f32::NAN, 1.0, 2.0, 1.0]).unwrap();
         let bytes = encoded(&float.into(), ImageFormat::OpenExr);

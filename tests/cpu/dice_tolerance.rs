@@ -30,6 +30,11 @@ fn distance(surface: &LimitSurface, point: DVec3, start: &Place) -> f64 {
 /// The greatest distance from points in some of the faces to the limit surface.
 fn measure(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> f64 {
     let surface = LimitSurface::new(mesh).unwrap();
+    // Where facets are few, no vertex around need have its place on the face that is nearest.
+    let dense = match mesh.face_count() < 20 {
+        true => Tessellation::new(&Topology::new(mesh), &DiceOptions::fixed(7)).unwrap().positions().to_vec(),
+        false => Vec::new(),
+    };
     let places = tessellation.places();
     let faces = tessellation.all_triangles();
     // Vertices have places on one of their faces, so those around are looked at, too.
@@ -46,7 +51,8 @@ fn measure(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> f64 {
             let sum: f64 = weights.iter().sum();
             let point = (0..3).map(|i| weights[i] / sum * corners[i]).sum::<DVec3>();
             let from = |&vertex: &u32| distance(&surface, point, &places[vertex as usize]);
-            starts.iter().map(from).fold(f64::INFINITY, f64::min)
+            let near = starts.iter().map(from).fold(f64::INFINITY, f64::min);
+            dense.iter().map(|&p| point.distance(p.into())).fold(near, f64::min)
         };
         points.map(of_point).into_iter().fold(0.0, f64::max)
     };
