@@ -100,6 +100,7 @@ pub(super) struct Builder {
     pub(super) caps: Caps,
     /// Points of frames that caps share.
     pub(super) frames: Vec<Row>,
+    pub(super) rounded_caps: u32,
 }
 
 impl Builder {
@@ -130,6 +131,7 @@ impl Builder {
             ghost_numbers: HashMap::default(),
             caps: Caps::new(scheme),
             frames: Vec::new(),
+            rounded_caps: 0,
         }
     }
 

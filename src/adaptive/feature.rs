@@ -43,6 +43,8 @@ pub(super) struct Feature {
     sharp: Option<Reason>,
     /// Whether the sectors around the vertex are those of the limit: nothing is of finite sharpness, and there is no dart.
     settled: bool,
+    /// Whether something there is of finite sharpness.
+    finite: bool,
 }
 
 impl Class {
@@ -51,6 +53,15 @@ impl Class {
         let Self::Feature(feature) = self else { return None };
         let lasting = feature.lasting.filter(|_| level < options.depth);
         lasting.or(feature.sharp.filter(|_| level < options.sharp_depth()))
+    }
+
+    /// Whether something at the vertex is of finite sharpness.
+    pub(super) fn is_finite(&self) -> bool {
+        match self {
+            Self::Plain => false,
+            Self::Crease => true,
+            Self::Feature(feature) => feature.finite,
+        }
     }
 
     /// Whether nothing at the vertex is of finite sharpness, and it is no dart.
@@ -159,7 +170,7 @@ pub(super) fn classify(topology: &Topology, half_edge: u32) -> Class {
         _ if fan.pinned || fan.infinite.len() + if fan.open { 2 } else { 0 } > 2 => None,
         _ => Some(Reason::ExtraordinaryVertex),
     };
-    Class::Feature(Feature { lasting, sharp, settled })
+    Class::Feature(Feature { lasting, sharp, settled, finite: fan.has_finite_sharpness() })
 }
 
 /// Whether a look at one ring tells that the vertex from which a half-edge starts is [`Class::Plain`].

@@ -135,6 +135,7 @@ impl Builder {
             face_roots: self.face_roots,
             nodes: self.nodes,
             refined: self.refined,
+            rounded_caps: self.rounded_caps,
         })
     }
 }

@@ -26,6 +26,8 @@ impl Builder {
             let Fate::Leaf(shape) = *fate else { continue };
             let half_edges = level.oriented(face);
             let points = if shape == Shape::Irregular {
+                let is_finite = |&h: &u32| classes[level.topology.vertex(h) as usize].is_finite();
+                self.rounded_caps += u32::from(half_edges.iter().any(is_finite));
                 caps.push(half_edges);
                 POINTS * (self.caps.len() + caps.len() - 1) as u32
             } else {

@@ -55,6 +55,9 @@ pub struct Plan {
     pub grids: Vec<u32>,
     /// The cells that are refined, by level.
     pub refined: Vec<RefinedCell>,
+    /// End caps at whose corners something is of finite sharpness still, which they draw as infinite or none: a greater
+    /// [`AdaptiveOptions::sharp_depth`] leaves fewer.
+    pub rounded_caps: u32,
 }
 
 /// The root of a quadtree.

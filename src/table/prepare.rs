@@ -61,6 +61,11 @@ pub enum Notice {
     /// No face is drawn: all are holes, or touch a boundary where that keeps faces from being drawn
     /// ([`BoundaryRule::None`](crate::mesh::BoundaryRule::None)).
     NothingDrawn,
+    /// End caps of adaptive subdivision at whose level creases or corners are of finite sharpness still.
+    RoundedCaps {
+        /// How many such caps there are.
+        count: u32,
+    },
     /// Creases or corners of finite sharpness that patches cannot follow.
     SemiSharp {
         /// Those drawn infinitely sharp: from [`SHARP_FROM`] up.
@@ -97,6 +102,10 @@ impl fmt::Display for Notice {
                 f,
                 "no face is drawn: all are holes, or touch a boundary where the rule for boundaries is to draw none of those"
             ),
+            Self::RoundedCaps { count } => write!(
+                f,
+                "{count} end caps have creases or corners whose sharpness is not used up at their level, and draw them infinitely sharp or smooth: a greater depth, or depth of sharp features, follows them"
+            ),
             Self::SemiSharp { sharp, smooth } => write!(
                 f,
                 "{} creases and corners have finite sharpness: {sharp} (from {SHARP_FROM} up) are drawn infinitely sharp, {smooth} smooth; refine the mesh first to come closer",
@@ -119,6 +128,8 @@ pub struct Prepared {
     rounds_sharpness: bool,
     /// Vertices split off by refinement.
     split_vertices: usize,
+    /// End caps that round sharpness.
+    rounded_caps: u32,
 }
 
 /// Faces of a prepared mesh that are cut in wedges.
@@ -141,6 +152,7 @@ impl Prepared {
             refined_faces: None,
             rounds_sharpness: true,
             split_vertices: 0,
+            rounded_caps: 0,
         })
     }
 
@@ -207,7 +219,7 @@ impl Prepared {
                 (Arc::new(Topology::new(&mesh)), cells, Some(Cut { whole, faces }))
             }
         };
-        let prepared = Self { topology, cells, cut, ..self };
+        let prepared = Self { topology, cells, cut, rounded_caps: plan.rounded_caps, ..self };
         let is_refined = |face| {
             let (face, corner) = prepared.whole_face(face);
             corner.is_some() || is_refined(&plan, face)
@@ -243,7 +255,17 @@ impl Prepared {
         let rounded = semi_sharp(self.mesh()).filter(|_| self.rounds_sharpness);
         let darts = darts(&self.topology).filter(|_| self.rounds_sharpness);
         let nothing = plan.patches().is_empty().then_some(Notice::NothingDrawn);
-        nothing.into_iter().chain(refined).chain(split).chain(fell_back).chain(darts).chain(rounded).collect()
+        let caps = Some(Notice::RoundedCaps { count: self.rounded_caps });
+        let caps = caps.filter(|_| self.rounded_caps > 0 && !self.rounds_sharpness);
+        nothing
+            .into_iter()
+            .chain(caps)
+            .chain(refined)
+            .chain(split)
+            .chain(fell_back)
+            .chain(darts)
+            .chain(rounded)
+            .collect()
     }
 }
 

@@ -3,10 +3,11 @@
 use crate::common::limit::on_limit;
 use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::limit::LimitSurface;
+use ash_subdiv::mesh::Crease;
 use ash_subdiv::patch::Sample;
-use ash_subdiv::table::{CpuSurface, TableOptions, grid_parameters};
+use ash_subdiv::table::{CpuSurface, Notice, TableOptions, grid_parameters};
 use ash_subdiv::topology::PatchKind;
-use ash_subdiv::{ControlMesh, shape, shapes};
+use ash_subdiv::{ControlMesh, MeshData, shape, shapes};
 use glam::DVec3;
 
 const GRID: u32 = 9;
@@ -84,4 +85,26 @@ fn single_precision_is_enough() {
     for (a, b) in single.iter().flatten().zip(samples(&surface).iter().flatten()) {
         assert!(a.position.as_dvec3().distance(b.position) < 1e-6 * mesh.diagonal());
     }
+}
+
+#[test]
+fn sharpness_that_depth_does_not_use_up_is_told() {
+    // A cube with a crease along one edge, which ends at both its vertices.
+    let cube = shape("cube").unwrap().into_data();
+    let creases = vec![Crease { vertices: [cube.face_vertices[0], cube.face_vertices[1]], sharpness: 4.5 }];
+    let mesh = ControlMesh::new(MeshData { creases, ..cube }).unwrap();
+    let told = |depth, sharp_depth| {
+        let adaptive = Some(AdaptiveOptions { depth, sharp_depth, ..AdaptiveOptions::default() });
+        let options = TableOptions { adaptive, ..TableOptions::default() };
+        CpuSurface::with_options(&mesh, &options).expect("a surface").notices()
+    };
+    let count = |notices: Vec<Notice>| match notices[..] {
+        [] => 0,
+        [Notice::RoundedCaps { count }] => count,
+        ref other => panic!("{other:?}"),
+    };
+    let depths = [(0, None), (2, None), (2, Some(4)), (2, Some(5))];
+    let [none, two, four, five] = depths.map(|(depth, sharp)| count(told(depth, sharp)));
+    assert!(none > 0 && two > 0 && four > 0 && five == 0, "{none} {two} {four} {five}");
+    assert_eq!(surface(&shape("creature").unwrap(), 0).notices(), []);
 }
