@@ -200,11 +200,6 @@ impl<'t> Owners<'t> {
         self.refined[face as usize] << OWNER_SHIFT | wedge | k
     }
 
-    /// The first of some half-edges, in the order of their patches.
-    fn first(&self, half_edges: impl IntoIterator<Item = u32>) -> Option<u32> {
-        half_edges.into_iter().min_by_key(|&h| (self.refined[self.topology.face(h) as usize], h))
-    }
-
     fn is_sharp(&self, h: u32) -> bool {
         self.topology.sharpness(h) >= SHARPNESS_INFINITE
     }
@@ -220,7 +215,8 @@ impl<'t> Owners<'t> {
             return [OWNER_NONE; 2];
         }
         let drawn = [h].into_iter().chain(twin.filter(|&twin| self.refined[self.topology.face(twin) as usize] != NONE));
-        let owner = self.first(drawn).unwrap_or(h);
+        // The lower half-edge, as in every order of the patches.
+        let owner = drawn.min().unwrap_or(h);
         [owner, if self.is_sharp(h) { h } else { owner }].map(|h| self.word(h))
     }
 
@@ -232,7 +228,7 @@ impl<'t> Owners<'t> {
             return [OWNER_NONE; 2];
         }
         let drawn = |h: &u32| self.refined[self.topology.face(*h) as usize] != NONE;
-        let owner = self.first(around.iter().copied().filter(drawn)).unwrap_or(h);
+        let owner = around.iter().copied().filter(drawn).min().unwrap_or(h);
         // The faces on the same side of all sharp edges. Half-edges of a fan follow each other around the vertex.
         let start = fan.iter().position(|&h| self.is_sharp(h)).unwrap_or(0);
         let around = (0..fan.len()).map(|i| fan[(start + i) % fan.len()]);
@@ -244,7 +240,7 @@ impl<'t> Owners<'t> {
             sides.last_mut().expect("one at least").push(each);
         }
         let own = sides.into_iter().find(|side| side.contains(&h)).unwrap_or_default();
-        let of_normal = self.first(own.into_iter().filter(drawn)).unwrap_or(h);
+        let of_normal = own.into_iter().filter(drawn).min().unwrap_or(h);
         [owner, of_normal].map(|h| self.word(h))
     }
 }
