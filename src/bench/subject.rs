@@ -44,7 +44,8 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// A mesh, refined at least `refine` times and once if it has faces of five and more corners, for all to draw the same faces, of which a subset of the patches is drawn.
+    /// A mesh, refined at least `refine` times, of which a subset of the patches is drawn. With faces of five and more corners it is
+    /// refined once at least, for all schemes to draw the same faces.
     ///
     /// # Errors
     /// [`BenchError::NoPatches`] if the subset has no patches; a refined mesh that cannot be addressed.

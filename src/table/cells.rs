@@ -149,7 +149,8 @@ impl Cells {
         Self { of_faces, of_half_edges, curves: curves + corners, is_refined: true, ..self }
     }
 
-    /// Of the mesh that is left of that of `topology`, which nothing refined, when faces of it are cut: `faces` says what its own are.
+    /// Of a mesh some of whose faces are cut. `topology` is of the mesh before, which nothing refined, and `faces` says what each
+    /// face of the new one was there.
     pub(super) fn cut(self, topology: &Topology, faces: &[CutFace]) -> Self {
         let (whole, curves) = edges_as_curves(topology);
         let mesh = topology.mesh();

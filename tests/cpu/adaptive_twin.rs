@@ -107,4 +107,9 @@ fn sharpness_that_depth_does_not_use_up_is_told() {
     let [none, two, four, five] = depths.map(|(depth, sharp)| count(told(depth, sharp)));
     assert!(none > 0 && two > 0 && four > 0 && five == 0, "{none} {two} {four} {five}");
     assert_eq!(surface(&shape("creature").unwrap(), 0).notices(), []);
+    assert_eq!(
+        Notice::RoundedCaps { count: 12 }.to_string(),
+        "12 end caps have creases or corners whose sharpness is not used up at their level, and draw them infinitely \
+         sharp or smooth: a greater depth, or depth of sharp features, follows them"
+    );
 }

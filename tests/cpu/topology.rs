@@ -262,6 +262,10 @@ fn holes_and_faces_at_a_free_boundary_are_not_drawn() {
     assert_eq!(notices(MeshData { boundary: BoundaryRule::None, ..grid(2, 2) }), [Notice::NothingDrawn]);
     assert_eq!(notices(MeshData { holes: vec![0, 1, 2, 3], ..grid(2, 2) }), [Notice::NothingDrawn]);
     assert_eq!(notices(MeshData { holes: vec![0, 1, 2], ..grid(2, 2) }), []);
+    assert_eq!(
+        Notice::NothingDrawn.to_string(),
+        "no face is drawn: all are holes, or touch a boundary where the rule for boundaries is to draw none of those"
+    );
     // The same faces where the mesh is refined.
     let mesh = ControlMesh::new(MeshData { boundary: BoundaryRule::None, ..grid(4, 3) }).unwrap();
     for (refine, children) in [(1, 4), (2, 16)] {

@@ -2,11 +2,13 @@
 
 use crate::common::limit::on_limit;
 use ash_subdiv::limit::LimitSurface;
+use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::patch::Sample;
 use ash_subdiv::table::{CpuSurface, ModelTables, TableOptions, grid_parameters};
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{ControlMesh, MeshData, Scheme, shape};
 use glam::DVec3;
+use std::collections::BTreeSet;
 
 const GRID: u32 = 9;
 
@@ -99,4 +101,30 @@ fn polygons_of_many_corners_are_linear() {
     };
     let [few, many] = [500, 5000].map(bytes);
     assert!(many < 11 * few, "{few} and {many}");
+}
+
+#[test]
+fn wedges_have_edges_and_texture_coordinates_of_their_face() {
+    const CORNERS: usize = 5;
+    let disc = disc(CORNERS as u32);
+    // Of the polygon, which comes first, corner i has (i, i^2): their mean is (2, 6).
+    let values = (0..disc.corner_count()).map(|i| [i as f32, (i * i) as f32]).collect();
+    let indices = (0..disc.corner_count() as u32).collect();
+    let texcoords = Some(FaceVarying { values, indices });
+    let mesh = ControlMesh::new(MeshData { texcoords, ..disc.into_data() }).expect("a manifold");
+    let surface = CpuSurface::new(&mesh, Scheme::Gregory, 0).expect("a surface");
+    let (plan, prepared) = (surface.plan(), surface.prepared());
+    let texcoords = plan.texcoords(prepared.topology()).expect("the mesh has some");
+    let first = plan.groups().iter().find(|group| group.kind == PatchKind::Triangle).expect("wedges").first_corner;
+    for (k, wedge) in texcoords[first..].chunks(3).enumerate() {
+        let corner = |i: usize| [i as f32, (i * i) as f32];
+        assert_eq!(wedge, [corner(k), corner((k + 1) % CORNERS), [2.0, 6.0]], "{k}");
+    }
+
+    // Edges of the mesh are the curves that come first; each spoke is one of its own, whichever wedge asks.
+    let edges = prepared.edges(plan);
+    let curves: Vec<u32> = edges.records.iter().map(|record| record.part.curve).collect();
+    let own: BTreeSet<u32> = curves.iter().copied().filter(|&curve| (curve as usize) < mesh.edge_count()).collect();
+    let all: BTreeSet<u32> = curves.iter().copied().collect();
+    assert_eq!((own.len(), all.len(), curves.len()), (mesh.edge_count(), curves.len(), mesh.edge_count() + CORNERS));
 }

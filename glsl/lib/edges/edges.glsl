@@ -50,12 +50,11 @@ struct SharedSample {
 // case. Rust twin: `share`. Displaced, of the `texcoord` of the patch's corners in whatever stage includes it, too.
 SharedSample share(Surface own, vec3 at) {
     // On which edge, and how far from its corner on the way around the patch.
+    bvec4 on = edges_of(at);
 #ifdef TRIANGLE
-    bvec4 on = bvec4(at.z == 0.0, at.x == 0.0, at.y == 0.0, false);
     float way = on.x ? at.y : on.y ? at.z : at.x;
 #define PICK(of) (on.x ? of(0, 1) : on.y ? of(1, 2) : of(2, 0))
 #else
-    bvec4 on = bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
     precise float left = 1.0 - at.x;
     precise float up = 1.0 - at.y;
     float way = on.x ? at.x : on.y ? at.y : on.z ? left : up;

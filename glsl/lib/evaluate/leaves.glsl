@@ -179,15 +179,6 @@ Spot own_spot(vec3 at) {
 #endif
 }
 
-// The edges on which a point lies.
-bvec4 edges_of(vec3 at) {
-#ifdef TRIANGLE
-    return bvec4(at.z == 0.0, at.x == 0.0, at.y == 0.0, false);
-#else
-    return bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
-#endif
-}
-
 // Edge 0 to 3, or corner 4 to 7, on which a point lies.
 uint edge_or_corner(bvec4 on) {
     uint edge = on.x ? 0u : on.y ? 1u : on.z ? 2u : 3u;

@@ -153,6 +153,15 @@ vec3 blend(vec3 plus, float a, vec3 change, float b) {
     return between;
 }
 
+// The edges of the patch on which a point of it lies: edge k leads from corner k to the next.
+bvec4 edges_of(vec3 at) {
+#ifdef TRIANGLE
+    return bvec4(at.z == 0.0, at.x == 0.0, at.y == 0.0, false);
+#else
+    return bvec4(at.y == 0.0, at.x == 1.0, at.y == 1.0, at.x == 0.0);
+#endif
+}
+
 // What the corners have, at a point of the patch.
 #if defined(PENTAGON)
 #define INTERPOLATED(of, at) (at.x * of[0] + at.y * of[1] + at.z * ((of[0] + of[1] + of[2] + of[3] + of[4]) / 5.0))

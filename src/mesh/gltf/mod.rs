@@ -54,11 +54,11 @@ pub struct GltfOptions {
 }
 
 const NGONS: &str = "FB_ngon_encoding";
-
-/// Extensions that a file may require: they are understood here, or do not concern the shape.
 const DRACO: &str = "KHR_draco_mesh_compression";
+
+/// Extensions that a file may require: those that are understood here.
 const EXTENSIONS: [&str; 2] = [NGONS, "KHR_mesh_quantization"];
-/// Of looks, animations and metadata, none of which change the shape.
+/// How the names of others begin: those of looks, animations and metadata, none of which change the shape.
 const EXTENSIONS_OF_LOOKS: [&str; 10] = [
     "KHR_materials_",
     "KHR_texture_",
@@ -81,8 +81,8 @@ impl ControlMesh {
     /// * Vertices of one mesh whose positions are equal in every bit become one vertex, so that seams of texture
     ///   coordinates or normals are no boundaries of the surface. `TEXCOORD_0` and `NORMAL` are kept a face corner;
     ///   where only some primitives have them, the others get (0, 0) and (0, 0, 0).
-    /// * The transforms of the nodes are applied; one that mirrors turns the faces round; that of a node with a skin
-    ///   is not applied, as the format has it. Skins and morph targets are not either.
+    /// * The transforms of the nodes are applied; one that mirrors turns the faces round. That of a node with a skin is
+    ///   not, as the format has it. Skins and morph targets are not applied.
     ///
     /// Vertices that no face uses do not count. Faces that repeat a vertex after welding are errors.
     ///

@@ -69,8 +69,8 @@ impl ControlMesh {
 
     /// As [`ControlMesh::from_obj_str`], from the bytes of a file.
     ///
-    /// Text in UTF-8, in UTF-16 if it begins with a byte order mark, or in any encoding that has ASCII's statements and numbers: names and
-    /// comments are passed over.
+    /// The text may be UTF-8, UTF-16 with a byte order mark, or in any other encoding that writes statements and numbers as ASCII
+    /// does: names and comments are passed over.
     ///
     /// # Errors
     /// As [`ControlMesh::from_obj_str`].
