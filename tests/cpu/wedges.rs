@@ -39,6 +39,8 @@ fn only_what_touches_a_polygon_is_refined() {
     // The hexagon as six wedges, and the ten quads around it.
     assert_eq!((plan.patches().len(), plan.count(PatchKind::Triangle)), (126 + 6, 6));
     assert_eq!(plan.patches().iter().filter(|patch| patch.refined).count(), 6 + 10);
+    // Nothing else is planned.
+    assert_eq!(surface.adaptive().expect("leaves").roots.len(), 6 + 10);
     assert!(surface.notices().is_empty());
     let corners = plan.patches().iter().filter(|patch| patch.is_wedge()).map(|patch| plan.origin(patch));
     assert_eq!(corners.map(|o| (o.face, o.corner)).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5].map(|k| (0, Some(k))));
