@@ -69,6 +69,7 @@ described! {
     pub(super) struct Patches {
         regular: u32,
         irregular_quad: u32,
+        /// Wedges of other faces, too: one for each edge.
         triangle: u32,
         /// Five for each face of five corners.
         pentagon: u32,

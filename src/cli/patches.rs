@@ -49,7 +49,8 @@ corner of the face around which refinement made the patch, or at which the edge 
 kind is regular, irregular_quad, triangle or pentagon; scheme is the one asked for, or the fallback.
 
 With --adaptive: construction, leaves[{face, sub, level, u, v, kind, edge, sharpness, points[[x, y, z]]}], of each patch
-in the order of its quadtree: a leaf is the cell in column u and row v of the 2^level by 2^level cells of the patch.
+in the order of its quadtree: a leaf is the cell in column u and row v of the 2^level by 2^level cells of the patch. Of a
+face other than a quad sub is a corner, and cells are 2^(level-1) by 2^(level-1) of the part of the face around it.
 kind is regular, single_crease (edge 0 to 3 at v = 0, u = 1, v = 1, u = 0; sharpness at the level of the leaf) or cap.
 Points: 4 x 4 of a uniform bicubic B-spline, row-major with rows along u; of caps those of gregory.
 

@@ -41,7 +41,8 @@ pub(super) struct SampleArgs {
 const EXAMPLES: &str = "\
 Order of samples: of a quad, u = i/(N-1) and v = j/(N-1) at index j*N+i, with corners 0 to 3 of the face at (0,0),
 (1,0), (1,1) and (0,1). Of a triangle, rows r = 0..N-1 with u = 1-r/(N-1) at corner 0, in each row w = k/(N-1) for
-k = 0..r towards corner 2. A pentagon is five such triangles, sub k from corner k to k + 1 and the centre.
+k = 0..r towards corner 2. A face of five and more corners is such triangles, sub k from corner k to k + 1 and the
+centre, unless it is refined; so is a triangle with --adaptive.
 The limit surface has quads whole (sub -1); of any other face, triangles too, the part around each corner (sub): (0,0)
 is the corner, (1,0) the middle of the edge after it, (1,1) the centre, (0,1) the middle of the edge before it.
 

@@ -160,7 +160,7 @@ pub struct FaceOrigin {
     /// The face of the caller's mesh.
     pub face: u32,
     /// The corner of a face that is no quad: that around which the first step of refinement made the part with this patch, or
-    /// from which the edge of this piece of a pentagon starts.
+    /// from which the edge of this wedge, or of this piece of a pentagon, starts.
     pub corner: Option<u32>,
     /// The patch's identity.
     pub id: PatchId,

@@ -19,8 +19,8 @@ pub struct DrawItem {
     pub cull: Cull,
     /// Index into [`Options::styles`](crate::renderer::Options::styles).
     pub style: usize,
-    /// Linear RGBA of regular patches, irregular quads, triangles and pentagons: in the order of
-    /// [`PatchKind::ALL`](crate::topology::PatchKind::ALL).
+    /// Linear RGBA of regular patches, irregular quads, triangles (those, too, that larger faces are cut in) and pentagons: in the
+    /// order of [`PatchKind::ALL`](crate::topology::PatchKind::ALL).
     pub colors: [[f32; 4]; 4],
     /// For a model with a displacement map: what its values are multiplied with, and what is added then. Object space.
     pub displacement: [f32; 2],
