@@ -6,7 +6,7 @@ use super::level::{Cell, Fate, Level};
 use super::options::AdaptiveOptions;
 use super::plan::{Leaf, Plan, RefinedCell, Root};
 use crate::blend::Row;
-use crate::limit::Stencils;
+use crate::limit::MaskedRows;
 use crate::patch::Scheme;
 use crate::topology::{Topology, draws_face};
 use rustc_hash::FxBuildHasher;
@@ -75,7 +75,7 @@ impl Plan {
 pub(super) struct Piece {
     /// How many there are before.
     pub first: usize,
-    pub rows: Stencils,
+    pub rows: MaskedRows,
 }
 
 /// A plan in the making, whose vertices are numbered as they come, those too that nothing will read.

@@ -4,8 +4,9 @@ use super::alone::Alone;
 use super::feature::Class;
 use super::few::{FEW, Few};
 use super::look::Seen;
+use super::rows::BlocksMut;
 use crate::blend::{Blend, Frame, PatchCorner, RingValues, Row};
-use crate::limit::{RowsMut, Stencils};
+use crate::limit::Stencils;
 use crate::mesh::{CreaseMethod, MeshError};
 use crate::patch::Scheme;
 use crate::patch::gregory::gregory_points;
@@ -45,8 +46,9 @@ pub(super) struct Caps {
 
 /// The points of caps as sums of the vertices around each.
 struct Pattern {
+    /// Over the numbers of those that are read.
     rows: Stencils,
-    /// The vertices that rows read, where others do not.
+    /// Of the vertices around, those that are read.
     read: Vec<u32>,
 }
 
@@ -120,30 +122,35 @@ impl Caps {
 
     /// Calls `mark` for all vertices that are read.
     pub(super) fn for_each_read(&self, mark: impl Fn(u32) + Sync) {
-        self.caps.par_iter().with_min_len(MIN_LEN).for_each(|cap| {
-            let vertices = self.vertices_of(cap);
-            self.patterns[cap.pattern as usize].read.iter().for_each(|&number| mark(vertices[number as usize]));
-        });
+        self.caps.par_iter().with_min_len(MIN_LEN).for_each(|cap| self.read(cap).for_each(&mark));
     }
 
-    /// Number of terms of some caps' rows.
-    pub(super) fn terms(&self, caps: Range<usize>) -> usize {
-        self.caps[caps].iter().map(|cap| self.patterns[cap.pattern as usize].rows.indices.len()).sum()
+    /// Number of vertices that some caps read.
+    pub(super) fn read_count(&self, caps: Range<usize>) -> usize {
+        self.caps[caps].iter().map(|cap| self.patterns[cap.pattern as usize].read.len()).sum()
     }
 
-    /// Writes the rows of some caps, with `number(v)` in the place of vertex v.
-    pub(super) fn write(&self, caps: Range<usize>, number: impl Fn(u32) -> u32, rows: &mut RowsMut) {
-        let mut numbers = Vec::new();
+    /// Appends the masks of all patterns. Gives where that of each starts.
+    pub(super) fn add_masks(&self, masks: &mut Stencils) -> Vec<u32> {
+        let add = |pattern: &Pattern| {
+            let first = masks.len() as u32;
+            (0..pattern.rows.len()).for_each(|row| masks.push(pattern.rows.row(row)));
+            first
+        };
+        self.patterns.iter().map(add).collect()
+    }
+
+    /// Writes some caps, whose patterns have these masks, with `number(v)` in the place of vertex v.
+    pub(super) fn write(&self, caps: Range<usize>, masks: &[u32], number: impl Fn(u32) -> u32, blocks: &mut BlocksMut) {
         for cap in &self.caps[caps] {
-            numbers.clear();
-            numbers.extend(self.vertices_of(cap).iter().map(|&vertex| number(vertex)));
-            let pattern = &self.patterns[cap.pattern as usize].rows;
-            rows.push(pattern, 0..pattern.len(), |index| numbers[index as usize]);
+            blocks.push(masks[cap.pattern as usize], self.read(cap).map(&number));
         }
     }
 
-    fn vertices_of(&self, cap: &Cap) -> &[u32] {
-        &self.vertices[cap.first as usize..(cap.first + cap.count) as usize]
+    /// The vertices that a cap reads.
+    fn read<'c>(&'c self, cap: &Cap) -> impl Iterator<Item = u32> + 'c {
+        let vertices = &self.vertices[cap.first as usize..(cap.first + cap.count) as usize];
+        self.patterns[cap.pattern as usize].read.iter().map(|&number| vertices[number as usize])
     }
 
     fn push(&mut self, pattern: u32, vertices: &[u32]) {
@@ -151,10 +158,14 @@ impl Caps {
         self.vertices.extend_from_slice(vertices);
     }
 
-    fn push_pattern(&mut self, rows: Stencils, vertices: usize) -> u32 {
+    /// Adds the pattern of rows over so many vertices.
+    fn push_pattern(&mut self, mut rows: Stencils, vertices: usize) -> u32 {
         let mut is_read = vec![false; vertices];
         rows.indices.iter().for_each(|&number| is_read[number as usize] = true);
-        let read = (0..vertices as u32).filter(|&number| is_read[number as usize]).collect();
+        let read: Vec<u32> = (0..vertices as u32).filter(|&number| is_read[number as usize]).collect();
+        let mut numbers = vec![NONE; vertices];
+        read.iter().zip(0..).for_each(|(&vertex, number)| numbers[vertex as usize] = number);
+        rows.indices.iter_mut().for_each(|index| *index = numbers[*index as usize]);
         self.patterns.push(Pattern { rows, read });
         self.patterns.len() as u32 - 1
     }

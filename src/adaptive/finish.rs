@@ -4,7 +4,8 @@ use super::build::{Builder, GHOST, Piece};
 use super::caps::{Caps, FRAME, POINTS};
 use super::error::AdaptiveError;
 use super::plan::{Leaf, LeafKind, Plan};
-use crate::limit::{RowsMut, Stencils};
+use super::rows::{BlocksMut, Rows};
+use crate::limit::{MaskedRows, Masks, Stencils};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,23 +13,46 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Vertices, or leaves, for one thread at least.
 const MIN_LEN: usize = 1024;
 
-/// Caps whose rows are written together.
+/// Caps that are written together.
 const CAPS: usize = 256;
 
-/// Rows that are written together.
+/// Blocks that are written together.
 struct Part<'b> {
     source: Source<'b>,
-    /// Number of rows.
-    rows: usize,
-    /// Number of terms.
-    terms: usize,
+    /// Number of blocks.
+    blocks: usize,
+    /// Number of vertices that they read.
+    vertices: usize,
 }
 
-/// Where rows come from.
+/// Where blocks come from.
 enum Source<'b> {
-    Refined(&'b Piece),
-    Shared(&'b Stencils),
+    /// Some rows, and the masks of all by those that they have.
+    Rows(&'b MaskedRows, Vec<Range<usize>>, Vec<u32>),
     Caps(Range<usize>),
+}
+
+/// The masks of a plan.
+#[derive(Default)]
+struct AllMasks {
+    masks: Masks,
+    /// Of each mask of a row.
+    stencils: Stencils,
+}
+
+impl AllMasks {
+    /// The numbers of the masks of some rows.
+    fn add(&mut self, rows: &MaskedRows) -> Vec<u32> {
+        let number = |mask| {
+            let weights = rows.weights.weights(mask);
+            let number = self.masks.number(weights.iter().copied());
+            if number as usize == self.stencils.len() {
+                self.stencils.push((0..).zip(weights.iter().copied()));
+            }
+            number
+        };
+        (0..rows.weights.len() as u32).map(number).collect()
+    }
 }
 
 impl Builder {
@@ -52,27 +76,28 @@ impl Builder {
         for level in self.levels.iter().rev() {
             level.par_iter().for_each(|Piece { first, rows }| {
                 for row in (0..rows.len()).filter(|row| used[first + row].load(Ordering::Relaxed)) {
-                    rows.row(row).for_each(|(vertex, _)| mark(vertex));
+                    rows.masked(row).1.iter().for_each(|&vertex| mark(vertex));
                 }
             });
         }
         used.into_iter().map(AtomicBool::into_inner).collect()
     }
 
-    /// The rows in their order, and what makes them.
-    fn parts<'b>(&'b self, used: &[bool], shared: &'b Stencils) -> Vec<Part<'b>> {
-        let refined = |piece: &'b Piece| {
-            let used = runs(piece, used).map(|run| [run.len(), terms(&piece.rows, run)]);
-            let [rows, terms] = used.fold([0, 0], |[a, b], [rows, terms]| [a + rows, b + terms]);
-            Part { source: Source::Refined(piece), rows, terms }
+    /// The blocks in their order; `shared` are ghosts and frames.
+    fn parts<'b>(&'b self, used: &[bool], shared: &'b MaskedRows, masks: &mut AllMasks) -> Vec<Part<'b>> {
+        let mut of_rows = |rows: &'b MaskedRows, runs: Vec<Range<usize>>| {
+            let count = runs.iter().map(|run| [run.len(), rows.term_count(run.clone())]);
+            let [blocks, vertices] = count.fold([0, 0], |[a, b], [blocks, terms]| [a + blocks, b + terms]);
+            Part { source: Source::Rows(rows, runs, masks.add(rows)), blocks, vertices }
         };
         let pieces: Vec<&Piece> = self.levels.iter().flatten().collect();
-        let mut parts: Vec<Part> = pieces.into_par_iter().map(refined).collect();
-        parts.push(Part { source: Source::Shared(shared), rows: shared.len(), terms: shared.indices.len() });
+        let found: Vec<Vec<Range<usize>>> = pieces.par_iter().map(|piece| runs(piece, used).collect()).collect();
+        let mut parts: Vec<Part> = pieces.iter().zip(found).map(|(piece, runs)| of_rows(&piece.rows, runs)).collect();
+        parts.push(of_rows(shared, std::iter::once(0..shared.len()).collect()));
         parts.extend((0..self.caps.len()).step_by(CAPS).map(|first| {
             let caps = first..self.caps.len().min(first + CAPS);
-            let (rows, terms) = (POINTS as usize * caps.len(), self.caps.terms(caps.clone()));
-            Part { source: Source::Caps(caps), rows, terms }
+            let (blocks, vertices) = (caps.len(), self.caps.read_count(caps.clone()));
+            Part { source: Source::Caps(caps), blocks, vertices }
         }));
         parts
     }
@@ -96,23 +121,29 @@ impl Builder {
             _ if vertex & FRAME != 0 => frames.start + (vertex & !FRAME),
             _ => numbers[(vertex - control) as usize],
         };
-        let shared = [std::mem::take(&mut self.ghosts), std::mem::take(&mut self.frames)].concat();
-        let shared = Stencils::new(shared);
-        let parts = self.parts(&used, &shared);
-        let all = parts.iter().map(|part| part.rows).sum();
-        self.check_vertices(all)?;
-        self.check("terms", parts.iter().map(|part| part.terms).sum(), u32::MAX as usize)?;
-        let rows = Stencils::join(
+        let mut shared = MaskedRows::default();
+        self.ghosts.iter().chain(&self.frames).for_each(|row| shared.push_row(row));
+        let mut masks = AllMasks::default();
+        let parts = self.parts(&used, &shared, &mut masks);
+        let mut masks = masks.stencils;
+        let cap_masks = self.caps.add_masks(&mut masks);
+        let cap_points = frames.end as usize..frames.end as usize + POINTS as usize * self.caps.len();
+        self.check_vertices(cap_points.end - control as usize)?;
+        let read = parts.iter().map(|part| part.vertices).sum();
+        self.check("vertices read by sums", read, u32::MAX as usize)?;
+        self.check("terms of masks", masks.indices.len(), u32::MAX as usize)?;
+        let rows = Rows::join(
+            masks,
             &parts,
-            |part| [part.rows, part.terms],
-            |part, rows| part.write(&used, &self.caps, number, rows),
+            |part| [part.blocks, part.vertices],
+            |part, blocks| part.write(&self.caps, &cap_masks, number, blocks),
         );
         drop(parts);
 
         let centres = control..control + self.centres.len() as u32;
         let start = |level: &Vec<Piece>| level.first().map_or(kept, |piece| numbers[piece.first]);
         let starts: Vec<u32> = self.levels.iter().map(start).chain([kept]).collect();
-        let cap_points = frames.end..control + all as u32;
+        let cap_points = cap_points.start as u32..cap_points.end as u32;
         self.grids.par_iter_mut().with_min_len(16 * MIN_LEN).for_each(|vertex| *vertex = number(*vertex));
         self.leaves.par_iter_mut().with_min_len(MIN_LEN).for_each(|leaf: &mut Leaf| {
             if leaf.kind == LeafKind::Cap {
@@ -141,11 +172,14 @@ impl Builder {
 }
 
 impl Part<'_> {
-    fn write(&self, used: &[bool], caps: &Caps, number: impl Fn(u32) -> u32, rows: &mut RowsMut) {
+    fn write(&self, caps: &Caps, cap_masks: &[u32], number: impl Fn(u32) -> u32, blocks: &mut BlocksMut) {
         match &self.source {
-            Source::Refined(piece) => runs(piece, used).for_each(|run| rows.push(&piece.rows, run, &number)),
-            Source::Shared(shared) => rows.push(shared, 0..shared.len(), number),
-            Source::Caps(range) => caps.write(range.clone(), number, rows),
+            Source::Rows(rows, runs, masks) => {
+                for (mask, vertices) in runs.iter().cloned().flatten().map(|row| rows.masked(row)) {
+                    blocks.push(masks[mask as usize], vertices.iter().map(|&vertex| number(vertex)));
+                }
+            }
+            Source::Caps(range) => caps.write(range.clone(), cap_masks, number, blocks),
         }
     }
 }
@@ -158,8 +192,4 @@ fn runs<'u>(piece: &Piece, used: &'u [bool]) -> impl Iterator<Item = Range<usize
         Some((chunk[0], *start - chunk.len()..*start))
     });
     ranges.filter_map(|(used, range)| used.then_some(range))
-}
-
-fn terms(rows: &Stencils, range: Range<usize>) -> usize {
-    (rows.offsets[range.end] - rows.offsets[range.start]) as usize
 }

@@ -2,7 +2,7 @@
 
 use super::feature::{Class, Reason, Shape, classify, is_constant, shape};
 use super::options::AdaptiveOptions;
-use crate::limit::{Part, Stencils, refine_part};
+use crate::limit::{MaskedRows, Part, refine_part};
 use crate::mesh::{CreaseMethod, MeshError};
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -111,7 +111,7 @@ impl Level<'_> {
         fates: &[Fate],
         first_vertex: u32,
         child: impl Fn(u32, u32) -> Cell + Sync,
-    ) -> Result<(Level<'static>, Vec<Stencils>, Vec<u32>), MeshError> {
+    ) -> Result<(Level<'static>, Vec<MaskedRows>, Vec<u32>), MeshError> {
         let topology = &*self.topology;
         let half_edges = self.half_edges_with_children(fates);
         let own = topology.mesh().vertex_count() as u32;

@@ -2,7 +2,7 @@
 
 use super::feature::Reason;
 use super::options::AdaptiveOptions;
-use crate::limit::Stencils;
+use super::rows::Rows;
 use std::ops::Range;
 
 /// The bit of a node that says that it is a leaf.
@@ -17,15 +17,14 @@ pub struct Plan {
     pub options: AdaptiveOptions,
     /// Number of control vertices, which are the first vertices of the plan.
     pub control_vertices: u32,
-    /// The vertices after the control vertices as sums: row i makes vertex `control_vertices + i`, of vertices with lower
-    /// numbers:
+    /// The vertices after the control vertices as sums of vertices with lower numbers ([`Plan::row`]):
     ///
     /// | vertex | sums |
     /// |---|---|
     /// | refined | vertices of the level before, centres |
     /// | ghost, frame | vertices of any level |
     /// | control point of a cap | vertices of any level, centres, frames |
-    pub rows: Stencils,
+    pub rows: Rows,
     /// The refined vertices of levels 1, 2, ..: their numbers. Each level follows on the one before.
     pub levels: Vec<Range<u32>>,
     /// The first vertices of level 1: the points of faces of five and more corners, and of triangles that have roots. Rows of level 1

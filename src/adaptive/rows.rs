@@ -1,5 +1,6 @@
 //! The vertices of a plan as sums.
 
+use super::caps::POINTS;
 use super::plan::Plan;
 use crate::blend::Blend;
 use crate::limit::Stencils;
@@ -9,10 +10,83 @@ use std::ops::Range;
 /// Rows for one thread at least.
 const MIN_LEN: usize = 256;
 
+/// Vertices as weighted sums that share their weights, which are the same wherever a mesh looks the same.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Rows {
+    /// The weights: outputs of masks, over the numbers of a block's own vertices. Those of end caps come last.
+    pub masks: Stencils,
+    /// What makes vertices: one each, but for end caps, each of which makes 20.
+    pub blocks: Vec<Block>,
+    /// The vertices that blocks read.
+    pub vertices: Vec<u32>,
+}
+
+/// Some vertices and a mask that makes others of them.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Block {
+    /// The first output of the mask in [`Rows::masks`].
+    pub mask: u32,
+    /// Where the block's vertices start in [`Rows::vertices`].
+    pub vertices: u32,
+}
+
+/// Where some blocks are written.
+pub(super) struct BlocksMut<'r> {
+    blocks: std::slice::IterMut<'r, Block>,
+    vertices: &'r mut [u32],
+    /// The number of the first vertex.
+    first: u32,
+    /// Vertices that are written.
+    written: usize,
+}
+
+impl BlocksMut<'_> {
+    /// Writes the next block.
+    pub(super) fn push(&mut self, mask: u32, vertices: impl Iterator<Item = u32>) {
+        if let Some(block) = self.blocks.next() {
+            *block = Block { mask, vertices: self.first + self.written as u32 };
+        }
+        for vertex in vertices {
+            self.vertices[self.written] = vertex;
+            self.written += 1;
+        }
+    }
+}
+
+impl Rows {
+    /// The blocks of some parts, one after the other, each written where it belongs. `size` counts the blocks of a part, and their
+    /// vertices; `write` pushes as many.
+    pub(super) fn join<P: Sync>(
+        masks: Stencils,
+        parts: &[P],
+        size: impl Fn(&P) -> [usize; 2],
+        write: impl Fn(&P, &mut BlocksMut) + Sync,
+    ) -> Self {
+        let [blocks, vertices] = parts.iter().map(&size).fold([0, 0], |[a, b], [blocks, read]| [a + blocks, b + read]);
+        let mut all = Self { masks, blocks: vec![Block::default(); blocks], vertices: vec![0; vertices] };
+        let (mut blocks, mut vertices) = (&mut all.blocks[..], &mut all.vertices[..]);
+        let mut first = 0;
+        let mut places = Vec::with_capacity(parts.len());
+        for part in parts {
+            let [count, read] = size(part);
+            places.push(BlocksMut {
+                blocks: blocks.split_off_mut(..count).unwrap_or_default().iter_mut(),
+                vertices: vertices.split_off_mut(..read).unwrap_or_default(),
+                first,
+                written: 0,
+            });
+            first += read as u32;
+        }
+        places.into_par_iter().zip(parts).for_each(|(mut place, part)| write(part, &mut place));
+        all
+    }
+}
+
 impl Plan {
     /// Number of vertices: control vertices, refined vertices, ghost vertices, frames, control points of end caps.
     pub fn vertex_count(&self) -> usize {
-        self.control_vertices as usize + self.rows.len()
+        self.cap_points.end as usize
     }
 
     /// The ranges of vertices that can be made one after the other, each all at once: the points of faces other than
@@ -32,7 +106,7 @@ impl Plan {
         let mut points = Vec::with_capacity(self.vertex_count());
         points.extend_from_slice(positions);
         for step in self.steps() {
-            let point = |vertex: u32| T::sum(self.terms(vertex).map(|(index, weight)| (weight, &points[index])));
+            let point = |vertex: u32| T::sum(self.row(vertex).map(|(index, weight)| (weight, &points[index])));
             let made: Vec<_> = step.into_par_iter().with_min_len(MIN_LEN).map(point).collect();
             points.extend(made);
         }
@@ -42,10 +116,10 @@ impl Plan {
     /// The rows over control vertices alone: output i is vertex `control_vertices + i`.
     pub fn composed(&self) -> Stencils {
         let control = self.control_vertices as usize;
-        let mut composed = Stencils { offsets: vec![0], indices: Vec::new(), weights: Vec::new() };
+        let mut composed = Stencils::default();
         let mut row = Sum::new(control);
         for vertex in self.control_vertices..self.vertex_count() as u32 {
-            for (index, weight) in self.terms(vertex) {
+            for (index, weight) in self.row(vertex) {
                 if index < control {
                     row.add(index as u32, weight);
                     continue;
@@ -59,10 +133,20 @@ impl Plan {
         composed
     }
 
-    /// Vertex and weight of each term of a vertex's row.
-    fn terms(&self, vertex: u32) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let terms = term_range(&self.rows, (vertex - self.control_vertices) as usize);
-        self.rows.indices[terms.clone()].iter().zip(&self.rows.weights[terms]).map(|(&i, &w)| (i as usize, w))
+    /// The sum that makes a vertex after the control vertices: number and weight of each vertex in it.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn row(&self, vertex: u32) -> impl ExactSizeIterator<Item = (usize, f64)> + '_ {
+        assert!(vertex >= self.control_vertices, "vertex {vertex} is one of the control mesh");
+        let (row, single) = (vertex - self.control_vertices, self.cap_points.start - self.control_vertices);
+        let (block, output) = match row.checked_sub(single) {
+            None => (row, 0),
+            Some(point) => (single + point / POINTS, point % POINTS),
+        };
+        let Block { mask, vertices } = self.rows.blocks[block as usize];
+        let terms = self.rows.masks.row((mask + output) as usize);
+        terms.map(move |(number, weight)| (self.rows.vertices[(vertices + number) as usize] as usize, weight))
     }
 }
 

@@ -1,6 +1,7 @@
 //! One step of refinement of a part of a mesh.
 
-use super::stencils::{MIN_LEN, Stencils};
+use super::masked::MaskedRows;
+use super::stencils::MIN_LEN;
 use super::step::{Kind, Step, child_rules};
 use crate::mesh::{ControlMesh, Corner, Crease, MeshData, MeshError, NO_TWIN};
 use crate::topology::Topology;
@@ -16,7 +17,7 @@ pub(crate) struct Part {
     pub mesh: ControlMesh,
     /// Its vertices as sums of the coarse mesh's vertices and, numbered after these, of its own first vertices, the centres. In
     /// pieces, one after the other.
-    pub rows: Vec<Stencils>,
+    pub rows: Vec<MaskedRows>,
     /// The faces whose points are the first vertices.
     pub centres: Vec<u32>,
 }
@@ -105,30 +106,29 @@ fn part_mesh(
 /// Makes rows. Among quads, where nothing is sharp, weights are those of the first vertex of the kind.
 struct PartRows<'s> {
     step: &'s Step<'s>,
-    /// The weights of the points around, by kind and number of points.
-    masks: [Vec<Vec<f64>>; 3],
+    /// The mask of the points around, by kind and number of points.
+    masks: [[Option<u32>; MANY + 1]; 3],
     around: Vec<u32>,
 }
 
 impl<'s> PartRows<'s> {
     fn new(step: &'s Step<'s>) -> Self {
-        Self { step, masks: std::array::from_fn(|_| vec![Vec::new(); MANY + 1]), around: Vec::new() }
+        Self { step, masks: [[None; MANY + 1]; 3], around: Vec::new() }
     }
 
-    fn rows(mut self, vertices: &[(u32, u32)]) -> Stencils {
-        let mut rows = Stencils::with_capacity(vertices.len(), 8 * vertices.len());
+    fn rows(mut self, vertices: &[(u32, u32)]) -> MaskedRows {
+        let mut rows = MaskedRows::default();
         for &(vertex, h) in vertices {
             let Some(kind) = self.look_around(vertex, h).filter(|_| self.is_distinct()) else {
-                rows.push(self.step.row(vertex, h).weights().iter().copied());
+                rows.push_row(&self.step.row(vertex, h));
                 continue;
             };
             let Self { step, masks, around } = &mut self;
-            let mask = &mut masks[kind][around.len()];
-            if mask.is_empty() {
+            let mask = *masks[kind][around.len()].get_or_insert_with(|| {
                 let row = step.row(vertex, h);
-                mask.extend(around.iter().map(|&vertex| row.weight(vertex)));
-            }
-            rows.push(around.iter().copied().zip(mask.iter().copied()));
+                rows.weights.number(around.iter().map(|&vertex| row.weight(vertex)))
+            });
+            rows.push(around.iter().copied(), mask);
         }
         rows
     }

@@ -36,41 +36,65 @@ pub struct LeafTable {
     pub refinement: Refinement,
 }
 
-/// The vertices of adaptive subdivision as weighted sums, in rows. GLSL twin: `glsl/compute/refine.comp`.
+/// The vertices of adaptive subdivision as weighted sums: [`adaptive::Rows`]. GLSL twin: `glsl/compute/refine.comp`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refinement {
     /// The vertex that the first row makes: the last that are read.
     pub first_vertex: u32,
-    /// Rows that can be made all at once, in the order in which they read each other.
-    pub steps: Vec<Range<u32>>,
-    /// Where the terms of each row start, and after the last row their number.
-    pub starts: Vec<u32>,
-    /// Vertex and, as the bits of an `f32`, weight of each term.
-    pub terms: Vec<[u32; 2]>,
+    /// What can be made all at once, in the order in which the vertices read each other.
+    pub steps: Vec<RefinementStep>,
+    /// The blocks: of the mask, the first output; the first of the vertices.
+    pub blocks: Vec<adaptive::Block>,
+    /// The vertices that blocks read.
+    pub vertices: Vec<u32>,
+    /// Where the terms of each mask's outputs start, and after the last output their number.
+    pub mask_starts: Vec<u32>,
+    /// Of each term, the number of a vertex in the block and, as the bits of an `f32`, the weight.
+    pub mask_terms: Vec<[u32; 2]>,
+}
+
+/// Rows that can be made all at once.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RefinementStep {
+    /// The rows.
+    pub rows: Range<u32>,
+    /// The block of the first row.
+    pub first_block: u32,
+    /// How many rows each block makes.
+    pub rows_of_block: u32,
 }
 
 impl Refinement {
-    fn new(plan: &adaptive::Plan, vertex: impl Fn(u32) -> u32) -> Self {
+    fn new(plan: &adaptive::Plan, vertex: impl Fn(u32) -> u32 + Sync) -> Self {
+        let adaptive::Rows { masks, blocks, vertices } = &plan.rows;
         let row = |vertex: u32| vertex - plan.control_vertices;
-        let terms = plan.rows.indices.iter().zip(&plan.rows.weights);
+        let step = |step: Range<u32>| {
+            // Those before end caps have a block each.
+            let first_block = row(step.start).min(row(plan.cap_points.start));
+            let rows_of_block = if step.start < plan.cap_points.start { 1 } else { CAP_ORDER.len() as u32 };
+            RefinementStep { rows: row(step.start)..row(step.end), first_block, rows_of_block }
+        };
+        let masks = order_caps(masks, &blocks[row(plan.cap_points.start) as usize..]);
+        let terms = masks.indices.iter().zip(&masks.weights);
         Self {
             first_vertex: vertex(plan.control_vertices),
-            steps: plan.steps().map(|step| row(step.start)..row(step.end)).collect(),
-            starts: plan.rows.offsets.clone(),
-            terms: terms.map(|(&index, &weight)| [vertex(index), (weight as f32).to_bits()]).collect(),
+            steps: plan.steps().filter(|step| !step.is_empty()).map(step).collect(),
+            blocks: blocks.clone(),
+            vertices: vertices.par_iter().map(|&index| vertex(index)).collect(),
+            mask_terms: terms.map(|(&number, &weight)| [number, (weight as f32).to_bits()]).collect(),
+            mask_starts: masks.offsets,
         }
     }
 
     /// Number of vertices that are made.
     pub fn vertices(&self) -> usize {
-        self.starts.len() - 1
+        self.steps.last().map_or(0, |step| step.rows.end as usize)
     }
 }
 
 impl LeafTable {
     /// For the patches in `patches` of a mesh that was planned.
-    pub(super) fn new(prepared: &Prepared, patches: &PatchPlan, mut plan: adaptive::Plan) -> Self {
-        order_caps(&mut plan);
+    pub(super) fn new(prepared: &Prepared, patches: &PatchPlan, plan: adaptive::Plan) -> Self {
         let topology = prepared.topology();
         let first_patch = patches.patches().iter().position(|patch| patch.refined).unwrap_or(patches.patches().len());
         let owners = Owners::new(topology, patches);
@@ -134,29 +158,13 @@ fn leaf_words(
 /// Where the points of a Gregory quad stand: a grid like that of a regular leaf, then the face points f- of the corners.
 const CAP_ORDER: [usize; 20] = [0, 5, 10, 3, 4, 12, 18, 11, 7, 14, 16, 8, 1, 6, 9, 2, 13, 15, 17, 19];
 
-/// Has the control points of end caps in [`CAP_ORDER`].
-fn order_caps(plan: &mut adaptive::Plan) {
-    let Stencils { offsets, indices, weights } = &mut plan.rows;
-    let first = (plan.cap_points.start - plan.control_vertices) as usize;
-    let (mut old_indices, mut old_weights) = (Vec::new(), Vec::new());
-    for cap in (first..offsets.len() - 1).step_by(CAP_ORDER.len()) {
-        let old: [u32; CAP_ORDER.len() + 1] = std::array::from_fn(|point| offsets[cap + point]);
-        let start = old[0] as usize;
-        let end = old[CAP_ORDER.len()] as usize;
-        old_indices.clear();
-        old_weights.clear();
-        old_indices.extend_from_slice(&indices[start..end]);
-        old_weights.extend_from_slice(&weights[start..end]);
-        let mut at = start;
-        for (i, point) in CAP_ORDER.into_iter().enumerate() {
-            let terms = old[point] as usize - start..old[point + 1] as usize - start;
-            let place = at..at + terms.len();
-            indices[place.clone()].copy_from_slice(&old_indices[terms.clone()]);
-            weights[place.clone()].copy_from_slice(&old_weights[terms]);
-            at = place.end;
-            offsets[cap + i + 1] = at as u32;
-        }
-    }
+/// The masks, those of end caps, which come last, with the control points in [`CAP_ORDER`].
+fn order_caps(masks: &Stencils, caps: &[adaptive::Block]) -> Stencils {
+    let first = caps.iter().map(|cap| cap.mask as usize).min().unwrap_or(masks.len());
+    let mut ordered = Stencils::default();
+    let of_caps = (first..masks.len()).step_by(CAP_ORDER.len()).flat_map(|cap| CAP_ORDER.map(|point| cap + point));
+    (0..first).chain(of_caps).for_each(|output| ordered.push(masks.row(output)));
+    ordered
 }
 
 /// Who makes what patches share.

@@ -33,7 +33,7 @@ pub use cpu::{CpuSurface, grid_parameters};
 pub use edges::{EdgeRecord, EdgeTable};
 pub use error::TableError;
 pub(crate) use lattice::{LatticeIndices, MAX_SEGMENTS, TILE_VERTICES, lattice_tiles, lattice_vertices};
-pub use leaves::{LeafTable, Refinement};
+pub use leaves::{LeafTable, Refinement, RefinementStep};
 pub(crate) use model::TEXEL_BYTES;
 pub use model::{ModelTables, TableBytes};
 pub use options::{Construction, Evaluation, TableOptions};

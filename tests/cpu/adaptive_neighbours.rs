@@ -188,7 +188,7 @@ fn check_rows(plan: &Plan, mesh: &ControlMesh) {
     let mut mark = |vertex: u32| read[vertex as usize] = true;
     plan.grids.iter().for_each(|&vertex| mark(vertex));
     plan.cap_points.clone().for_each(&mut mark);
-    plan.rows.indices.iter().for_each(|&vertex| mark(vertex));
+    plan.rows.vertices.iter().for_each(|&vertex| mark(vertex));
     assert!(read[plan.control_vertices as usize..].iter().all(|&read| read), "each vertex is read");
     let mut end = plan.control_vertices;
     let mut below = 0..plan.control_vertices;
@@ -197,15 +197,13 @@ fn check_rows(plan: &Plan, mesh: &ControlMesh) {
         end = range.end;
         let is_level = range.end <= plan.ghosts.start;
         for vertex in range.clone() {
-            let row = (vertex - plan.control_vertices) as usize;
-            let terms = plan.rows.offsets[row] as usize..plan.rows.offsets[row + 1] as usize;
-            let sum: f64 = plan.rows.weights[terms.clone()].iter().sum();
+            let sum: f64 = plan.row(vertex).map(|(_, weight)| weight).sum();
             assert!((sum - 1.0).abs() < 1e-13, "{sum}");
-            let is_readable = |&v: &u32| match is_level {
+            let is_readable = |v: u32| match is_level {
                 true => below.contains(&v) || plan.centres.contains(&v),
                 false => v < range.start && !plan.ghosts.contains(&v),
             };
-            assert!(plan.rows.indices[terms].iter().all(is_readable));
+            assert!(plan.row(vertex).all(|(v, _)| is_readable(v as u32)));
         }
         if range != plan.centres {
             below = range;
@@ -259,7 +257,7 @@ fn drum(n: u32) -> ControlMesh {
 #[test]
 fn polygons_of_many_corners_cost_what_their_corners_do() {
     for depth in [0, 1, 3] {
-        let terms = |n| Planned::at_depth(&drum(n), depth).plan.rows.indices.len() as f64 / f64::from(n);
+        let terms = |n| Planned::at_depth(&drum(n), depth).plan.rows.vertices.len() as f64 / f64::from(n);
         let (few, many) = (terms(50), terms(400));
         assert!(many < 1.05 * few, "{few} terms a corner of 50, {many} of 400");
     }

@@ -11,6 +11,8 @@ layout(push_constant, std430) uniform Invocations {
     uint count;
     uint first;         // of the corners of the patches, or of the rows
     uint first_vertex;  // that the first of all rows makes
+    uint first_block;   // that of the first row
+    uint rows_of_block;
 } invocations;
 
 // Of those below `count`; groups are laid out in rows, as there are no more than 65 535 along an axis.

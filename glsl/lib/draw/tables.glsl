@@ -23,8 +23,10 @@ layout(set = 1, binding = BINDING_TABLE_STARTS, std140) uniform Tables {
     uint texcoords;
     uint shared_corners;
     uint shared_texcoords;
-    uint row_starts;
-    uint row_terms;
+    uint blocks;
+    uint block_vertices;
+    uint mask_starts;
+    uint mask_terms;
     uint faces;  // where that of patch 0 would be
 } tables;
 

@@ -5,7 +5,7 @@ use crate::gpu::{DeviceContext, GpuError, MAX_WORKGROUPS};
 use crate::renderer::pipelines::ComputePipelines;
 use crate::renderer::shader::{Cut, PatchStages, ShaderCode};
 use crate::renderer::shader::{ShaderKey, Source};
-use crate::table::{PatchPlan, Refinement};
+use crate::table::{PatchPlan, Refinement, RefinementStep};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
@@ -19,6 +19,9 @@ struct Invocations {
     first: u32,
     /// The vertex that the first of all rows makes.
     first_vertex: u32,
+    /// The block of the first row.
+    first_block: u32,
+    rows_of_block: u32,
 }
 
 /// What pipelines are for.
@@ -79,13 +82,11 @@ impl CachedPipelines {
         // SAFETY: as the caller promises.
         unsafe {
             self.0.cmd_bind(cmd, 1, &[set], &[]);
-            for step in refinement.steps.iter().filter(|step| !step.is_empty()) {
-                let (count, first) = (step.len() as u32, step.start);
-                self.cmd_dispatch(
-                    cmd,
-                    Step::Refine,
-                    Invocations { count, first, first_vertex: refinement.first_vertex },
-                );
+            for RefinementStep { rows, first_block, rows_of_block } in refinement.steps.iter().cloned() {
+                let (count, first) = (rows.len() as u32, rows.start);
+                let first_vertex = refinement.first_vertex;
+                let invocations = Invocations { count, first, first_vertex, first_block, rows_of_block };
+                self.cmd_dispatch(cmd, Step::Refine, invocations);
                 device.cmd_pipeline_barrier(cmd, stage, stage, none, &made, &[], &[]);
             }
         }
