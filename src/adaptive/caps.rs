@@ -4,7 +4,7 @@ use super::alone::Alone;
 use super::feature::Class;
 use super::few::{FEW, Few};
 use super::look::Seen;
-use super::rows::BlocksMut;
+use super::rows::{BlocksMut, Rows};
 use crate::blend::{Blend, Frame, PatchCorner, RingValues, Row};
 use crate::limit::Stencils;
 use crate::mesh::{CreaseMethod, MeshError};
@@ -41,7 +41,24 @@ pub(super) struct Caps {
     caps: Vec<Cap>,
     /// The vertices of the caps.
     vertices: Vec<u32>,
+    /// The patterns of the others, by what they are.
+    alike: HashMap<Alike, u32, FxBuildHasher>,
     limits: HashMap<Alone, Row, FxBuildHasher>,
+}
+
+/// Rows whose weights are the same but for rounding, mostly.
+#[derive(PartialEq, Eq, Hash)]
+struct Alike {
+    offsets: Vec<u32>,
+    terms: Vec<(u32, u32)>,
+}
+
+impl Alike {
+    fn new(rows: &Stencils) -> Self {
+        let terms = rows.indices.iter().zip(&rows.weights);
+        let terms = terms.map(|(&index, &weight)| (index, (weight as f32).to_bits())).collect();
+        Self { offsets: rows.offsets.clone(), terms }
+    }
 }
 
 /// The points of caps as sums of the vertices around each.
@@ -83,6 +100,7 @@ impl Caps {
             numbers: HashMap::default(),
             caps: Vec::new(),
             vertices: Vec::new(),
+            alike: HashMap::default(),
             limits: HashMap::default(),
         }
     }
@@ -130,20 +148,17 @@ impl Caps {
         self.caps[caps].iter().map(|cap| self.patterns[cap.pattern as usize].read.len()).sum()
     }
 
-    /// Appends the masks of all patterns. Gives where that of each starts.
-    pub(super) fn add_masks(&self, masks: &mut Stencils) -> Vec<u32> {
-        let add = |pattern: &Pattern| {
-            let first = masks.len() as u32;
-            (0..pattern.rows.len()).for_each(|row| masks.push(pattern.rows.row(row)));
-            first
-        };
-        self.patterns.iter().map(add).collect()
+    /// Adds the masks of all patterns, in order.
+    pub(super) fn add_masks(&self, rows: &mut Rows) {
+        for pattern in &self.patterns {
+            rows.add_mask(pattern.read.len(), (0..pattern.rows.len()).map(|output| pattern.rows.row(output)));
+        }
     }
 
-    /// Writes some caps, whose patterns have these masks, with `number(v)` in the place of vertex v.
-    pub(super) fn write(&self, caps: Range<usize>, masks: &[u32], number: impl Fn(u32) -> u32, blocks: &mut BlocksMut) {
+    /// Writes some caps, where the masks of all patterns start with number `mask`, and with `number(v)` in the place of vertex v.
+    pub(super) fn write(&self, caps: Range<usize>, mask: u32, number: impl Fn(u32) -> u32, blocks: &mut BlocksMut) {
         for cap in &self.caps[caps] {
-            blocks.push(masks[cap.pattern as usize], self.read(cap).map(&number));
+            blocks.push(mask + cap.pattern, self.read(cap).map(&number));
         }
     }
 
@@ -156,18 +171,6 @@ impl Caps {
     fn push(&mut self, pattern: u32, vertices: &[u32]) {
         self.caps.push(Cap { pattern, first: self.vertices.len() as u32, count: vertices.len() as u32 });
         self.vertices.extend_from_slice(vertices);
-    }
-
-    /// Adds the pattern of rows over so many vertices.
-    fn push_pattern(&mut self, mut rows: Stencils, vertices: usize) -> u32 {
-        let mut is_read = vec![false; vertices];
-        rows.indices.iter().for_each(|&number| is_read[number as usize] = true);
-        let read: Vec<u32> = (0..vertices as u32).filter(|&number| is_read[number as usize]).collect();
-        let mut numbers = vec![NONE; vertices];
-        read.iter().zip(0..).for_each(|(&vertex, number)| numbers[vertex as usize] = number);
-        rows.indices.iter_mut().for_each(|index| *index = numbers[*index as usize]);
-        self.patterns.push(Pattern { rows, read });
-        self.patterns.len() as u32 - 1
     }
 
     /// The pattern with a key, of which a quad and its vertices are an example.
@@ -183,7 +186,7 @@ impl Caps {
             true => few_rows(&self.points_of(around.topology, quad, |h| Few::unit(number(h)))),
             false => Stencils::new(self.points_of(around.topology, quad, |h| Row::unit(number(h)))),
         };
-        let pattern = self.push_pattern(rows, vertices.len());
+        let pattern = push_pattern(&mut self.patterns, rows, vertices.len());
         self.numbers.insert(key.to_vec(), pattern);
         pattern
     }
@@ -201,10 +204,17 @@ impl Caps {
         }
         let places = quad.map(|h| around.topology.place(h));
         let rings = places.map(|place| &known[&place.ring]);
-        let mut vertices: Vec<u32> = rings.iter().flat_map(|(ring, frame)| terms(ring, frame)).collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let number = |vertex: u32| vertices.partition_point(|&v| v < vertex) as u32;
+        // Numbered as they come around the corners, so that caps that look alike have one pattern.
+        let seen = rings.iter().zip(places).flat_map(|((ring, frame), place)| terms(ring, frame, place.index as usize));
+        let mut firsts: Vec<(u32, u32)> = seen.zip(0..).collect();
+        firsts.sort_unstable();
+        firsts.dedup_by_key(|&mut (vertex, _)| vertex);
+        let mut order: Vec<u32> = (0..firsts.len() as u32).collect();
+        order.sort_unstable_by_key(|&i| firsts[i as usize].1);
+        let mut numbers = vec![0; firsts.len()];
+        order.iter().zip(0..).for_each(|(&i, number)| numbers[i as usize] = number);
+        let vertices: Vec<u32> = order.iter().map(|&i| firsts[i as usize].0).collect();
+        let number = |vertex: u32| numbers[firsts.partition_point(|&(v, _)| v < vertex)];
         let rows = if vertices.len() <= FEW {
             let few = |row: &Row| Few::new(row.weights().iter().map(|&(vertex, weight)| (number(vertex), weight)));
             let rings = rings.map(|(ring, frame)| (ring.map(few), frame.map(few)));
@@ -214,7 +224,10 @@ impl Caps {
             rows.indices.iter_mut().for_each(|vertex| *vertex = number(*vertex));
             rows
         };
-        let pattern = self.push_pattern(rows, vertices.len());
+        let pattern = match self.alike.entry(Alike::new(&rows)) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(unknown) => *unknown.insert(push_pattern(&mut self.patterns, rows, vertices.len())),
+        };
         self.push(pattern, &vertices);
         Ok(())
     }
@@ -287,11 +300,28 @@ impl Caps {
     }
 }
 
-/// The vertices in a ring and its frame, some of them several times.
-fn terms<'r>(ring: &'r RingValues<Row>, frame: &'r Frame<Row>) -> impl Iterator<Item = u32> + 'r {
-    let of_frame = [&ring.centre, &frame.p, &frame.a, &frame.b].into_iter();
-    let rows = of_frame.chain(&ring.edges).chain(&ring.diagonals);
+/// The vertices in a ring, from an edge on, and in its frame, some of them several times.
+fn terms<'r>(ring: &'r RingValues<Row>, frame: &'r Frame<Row>, edge: usize) -> impl Iterator<Item = u32> + 'r {
+    fn from<T>(values: &[T], start: usize) -> impl Iterator<Item = &T> {
+        let (before, after) = values.split_at(start.min(values.len()));
+        after.iter().chain(before)
+    }
+    let around = from(&ring.edges, edge).chain(from(&ring.diagonals, edge));
+    let of_frame = [&frame.p, &frame.a, &frame.b].into_iter();
+    let rows = std::iter::once(&ring.centre).chain(around).chain(of_frame);
     rows.flat_map(|row| row.weights()).map(|&(vertex, _)| vertex)
+}
+
+/// Adds the pattern of rows over so many vertices.
+fn push_pattern(patterns: &mut Vec<Pattern>, mut rows: Stencils, vertices: usize) -> u32 {
+    let mut is_read = vec![false; vertices];
+    rows.indices.iter().for_each(|&number| is_read[number as usize] = true);
+    let read: Vec<u32> = (0..vertices as u32).filter(|&number| is_read[number as usize]).collect();
+    let mut numbers = vec![NONE; vertices];
+    read.iter().zip(0..).for_each(|(&vertex, number)| numbers[vertex as usize] = number);
+    rows.indices.iter_mut().for_each(|index| *index = numbers[*index as usize]);
+    patterns.push(Pattern { rows, read });
+    patterns.len() as u32 - 1
 }
 
 fn few_rows(points: &[Few]) -> Stencils {

@@ -5,7 +5,7 @@ use super::caps::{Caps, FRAME, POINTS};
 use super::error::AdaptiveError;
 use super::plan::{Leaf, LeafKind, Plan};
 use super::rows::{BlocksMut, Rows};
-use crate::limit::{MaskedRows, Masks, Stencils};
+use crate::limit::{MaskedRows, Masks};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,22 +32,21 @@ enum Source<'b> {
     Caps(Range<usize>),
 }
 
-/// The masks of a plan.
+/// The masks of single rows.
 #[derive(Default)]
-struct AllMasks {
+struct SingleMasks {
     masks: Masks,
-    /// Of each mask of a row.
-    stencils: Stencils,
+    rows: Rows,
 }
 
-impl AllMasks {
+impl SingleMasks {
     /// The numbers of the masks of some rows.
     fn add(&mut self, rows: &MaskedRows) -> Vec<u32> {
         let number = |mask| {
             let weights = rows.weights.weights(mask);
             let number = self.masks.number(weights.iter().copied());
-            if number as usize == self.stencils.len() {
-                self.stencils.push((0..).zip(weights.iter().copied()));
+            if number as usize == self.rows.masks.len() {
+                self.rows.add_mask(weights.len(), std::iter::once((0..).zip(weights.iter().copied())));
             }
             number
         };
@@ -84,7 +83,7 @@ impl Builder {
     }
 
     /// The blocks in their order; `shared` are ghosts and frames.
-    fn parts<'b>(&'b self, used: &[bool], shared: &'b MaskedRows, masks: &mut AllMasks) -> Vec<Part<'b>> {
+    fn parts<'b>(&'b self, used: &[bool], shared: &'b MaskedRows, masks: &mut SingleMasks) -> Vec<Part<'b>> {
         let mut of_rows = |rows: &'b MaskedRows, runs: Vec<Range<usize>>| {
             let count = runs.iter().map(|run| [run.len(), rows.term_count(run.clone())]);
             let [blocks, vertices] = count.fold([0, 0], |[a, b], [blocks, terms]| [a + blocks, b + terms]);
@@ -123,20 +122,20 @@ impl Builder {
         };
         let mut shared = MaskedRows::default();
         self.ghosts.iter().chain(&self.frames).for_each(|row| shared.push_row(row));
-        let mut masks = AllMasks::default();
+        let mut masks = SingleMasks::default();
         let parts = self.parts(&used, &shared, &mut masks);
-        let mut masks = masks.stencils;
-        let cap_masks = self.caps.add_masks(&mut masks);
+        let mut rows = masks.rows;
+        let cap_mask = rows.masks.len() as u32;
+        self.caps.add_masks(&mut rows);
         let cap_points = frames.end as usize..frames.end as usize + POINTS as usize * self.caps.len();
         self.check_vertices(cap_points.end - control as usize)?;
         let read = parts.iter().map(|part| part.vertices).sum();
         self.check("vertices read by sums", read, u32::MAX as usize)?;
-        self.check("terms of masks", masks.indices.len(), u32::MAX as usize)?;
-        let rows = Rows::join(
-            masks,
+        self.check("weights of masks", rows.weights.len(), u32::MAX as usize)?;
+        let rows = rows.with_blocks(
             &parts,
             |part| [part.blocks, part.vertices],
-            |part, blocks| part.write(&self.caps, &cap_masks, number, blocks),
+            |part, blocks| part.write(&self.caps, cap_mask, number, blocks),
         );
         drop(parts);
 
@@ -172,14 +171,14 @@ impl Builder {
 }
 
 impl Part<'_> {
-    fn write(&self, caps: &Caps, cap_masks: &[u32], number: impl Fn(u32) -> u32, blocks: &mut BlocksMut) {
+    fn write(&self, caps: &Caps, cap_mask: u32, number: impl Fn(u32) -> u32, blocks: &mut BlocksMut) {
         match &self.source {
             Source::Rows(rows, runs, masks) => {
                 for (mask, vertices) in runs.iter().cloned().flatten().map(|row| rows.masked(row)) {
                     blocks.push(masks[mask as usize], vertices.iter().map(|&vertex| number(vertex)));
                 }
             }
-            Source::Caps(range) => caps.write(range.clone(), cap_masks, number, blocks),
+            Source::Caps(range) => caps.write(range.clone(), cap_mask, number, blocks),
         }
     }
 }

@@ -46,4 +46,4 @@ pub use feature::Reason;
 pub(crate) use grids::{fill, grid, is_boundary};
 pub use options::{AdaptiveOptions, MAX_DEPTH};
 pub use plan::{LEAF, Leaf, LeafKind, Plan, RefinedCell, Root};
-pub use rows::{Block, Rows};
+pub use rows::{Block, Mask, Rows};

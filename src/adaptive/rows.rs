@@ -13,21 +13,33 @@ const MIN_LEN: usize = 256;
 /// Vertices as weighted sums that share their weights, which are the same wherever a mesh looks the same.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Rows {
-    /// The weights: outputs of masks, over the numbers of a block's own vertices. Those of end caps come last.
-    pub masks: Stencils,
-    /// What makes vertices: one each, but for end caps, each of which makes 20.
+    /// The masks.
+    pub masks: Vec<Mask>,
+    /// The weights of all masks.
+    pub weights: Vec<f64>,
+    /// What makes vertices, in their order: one each, but for end caps, each of which makes 20.
     pub blocks: Vec<Block>,
     /// The vertices that blocks read.
     pub vertices: Vec<u32>,
 }
 
-/// Some vertices and a mask that makes others of them.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+/// The weights by which some vertices make others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mask {
+    /// Where its weights start in [`Rows::weights`]: one of each input for the first output, then for the next.
+    pub weights: u32,
+    /// How many vertices it reads.
+    pub inputs: u32,
+    /// How many it makes.
+    pub outputs: u32,
+}
+
+/// Some vertices and the mask that makes others of them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Block {
-    /// The first output of the mask in [`Rows::masks`].
+    /// The mask, by its number in [`Rows::masks`].
     pub mask: u32,
-    /// Where the block's vertices start in [`Rows::vertices`].
+    /// Where the block's vertices start in [`Rows::vertices`], as many as the mask has inputs.
     pub vertices: u32,
 }
 
@@ -55,16 +67,30 @@ impl BlocksMut<'_> {
 }
 
 impl Rows {
-    /// The blocks of some parts, one after the other, each written where it belongs. `size` counts the blocks of a part, and their
-    /// vertices; `write` pushes as many.
-    pub(super) fn join<P: Sync>(
-        masks: Stencils,
+    /// Adds the mask of some sums over `inputs` numbers.
+    pub(super) fn add_mask<T: IntoIterator<Item = (u32, f64)>>(
+        &mut self,
+        inputs: usize,
+        outputs: impl ExactSizeIterator<Item = T>,
+    ) {
+        let (start, count) = (self.weights.len(), outputs.len());
+        self.weights.resize(start + inputs * count, 0.0);
+        for (weights, terms) in self.weights[start..].chunks_mut(inputs.max(1)).zip(outputs) {
+            terms.into_iter().for_each(|(number, weight)| weights[number as usize] = weight);
+        }
+        self.masks.push(Mask { weights: start as u32, inputs: inputs as u32, outputs: count as u32 });
+    }
+
+    /// With the blocks of some parts, one after the other, each written where it belongs. `size` counts the blocks of a part, and
+    /// their vertices; `write` pushes as many.
+    pub(super) fn with_blocks<P: Sync>(
+        self,
         parts: &[P],
         size: impl Fn(&P) -> [usize; 2],
         write: impl Fn(&P, &mut BlocksMut) + Sync,
     ) -> Self {
         let [blocks, vertices] = parts.iter().map(&size).fold([0, 0], |[a, b], [blocks, read]| [a + blocks, b + read]);
-        let mut all = Self { masks, blocks: vec![Block::default(); blocks], vertices: vec![0; vertices] };
+        let mut all = Self { blocks: vec![Block::default(); blocks], vertices: vec![0; vertices], ..self };
         let (mut blocks, mut vertices) = (&mut all.blocks[..], &mut all.vertices[..]);
         let mut first = 0;
         let mut places = Vec::with_capacity(parts.len());
@@ -137,16 +163,20 @@ impl Plan {
     ///
     /// # Panics
     /// If there is no such vertex.
-    pub fn row(&self, vertex: u32) -> impl ExactSizeIterator<Item = (usize, f64)> + '_ {
+    pub fn row(&self, vertex: u32) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
         assert!(vertex >= self.control_vertices, "vertex {vertex} is one of the control mesh");
         let (row, single) = (vertex - self.control_vertices, self.cap_points.start - self.control_vertices);
         let (block, output) = match row.checked_sub(single) {
             None => (row, 0),
             Some(point) => (single + point / POINTS, point % POINTS),
         };
-        let Block { mask, vertices } = self.rows.blocks[block as usize];
-        let terms = self.rows.masks.row((mask + output) as usize);
-        terms.map(move |(number, weight)| (self.rows.vertices[(vertices + number) as usize] as usize, weight))
+        let Rows { masks, weights, blocks, vertices } = &self.rows;
+        let block = blocks[block as usize];
+        let Mask { weights: start, inputs, .. } = masks[block.mask as usize];
+        let weights = &weights[(start + output * inputs) as usize..][..inputs as usize];
+        let terms =
+            vertices[block.vertices as usize..].iter().map(|&vertex| vertex as usize).zip(weights.iter().copied());
+        terms.filter(|&(_, weight)| weight != 0.0)
     }
 }
 

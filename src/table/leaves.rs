@@ -7,7 +7,6 @@ use crate::constants::{
     FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE, OWNER_SHIFT, OWNERS,
     WEDGE_BIT,
 };
-use crate::limit::Stencils;
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -36,21 +35,21 @@ pub struct LeafTable {
     pub refinement: Refinement,
 }
 
-/// The vertices of adaptive subdivision as weighted sums: [`adaptive::Rows`]. GLSL twin: `glsl/compute/refine.comp`.
+/// The vertices of adaptive subdivision as weighted sums: [`adaptive::Rows`]. What is counted in fours is filled up with weights of
+/// zero. GLSL twin: `glsl/compute/refine.comp`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refinement {
     /// The vertex that the first row makes: the last that are read.
     pub first_vertex: u32,
     /// What can be made all at once, in the order in which the vertices read each other.
     pub steps: Vec<RefinementStep>,
-    /// The blocks: of the mask, the first output; the first of the vertices.
-    pub blocks: Vec<adaptive::Block>,
+    /// For each block, the first four of the weights of its mask and of its vertices; and after the last block the number of fours of
+    /// all vertices.
+    pub blocks: Vec<[u32; 2]>,
     /// The vertices that blocks read.
-    pub vertices: Vec<u32>,
-    /// Where the terms of each mask's outputs start, and after the last output their number.
-    pub mask_starts: Vec<u32>,
-    /// Of each term, the number of a vertex in the block and, as the bits of an `f32`, the weight.
-    pub mask_terms: Vec<[u32; 2]>,
+    pub vertices: Vec<[u32; 4]>,
+    /// The weights of masks, output by output.
+    pub weights: Vec<[f32; 4]>,
 }
 
 /// Rows that can be made all at once.
@@ -66,7 +65,6 @@ pub struct RefinementStep {
 
 impl Refinement {
     fn new(plan: &adaptive::Plan, vertex: impl Fn(u32) -> u32 + Sync) -> Self {
-        let adaptive::Rows { masks, blocks, vertices } = &plan.rows;
         let row = |vertex: u32| vertex - plan.control_vertices;
         let step = |step: Range<u32>| {
             // Those before end caps have a block each.
@@ -74,15 +72,28 @@ impl Refinement {
             let rows_of_block = if step.start < plan.cap_points.start { 1 } else { CAP_ORDER.len() as u32 };
             RefinementStep { rows: row(step.start)..row(step.end), first_block, rows_of_block }
         };
-        let masks = order_caps(masks, &blocks[row(plan.cap_points.start) as usize..]);
-        let terms = masks.indices.iter().zip(&masks.weights);
+        let (weights, starts) = mask_fours(&plan.rows);
+        let blocks = &plan.rows.blocks;
+        let ends = blocks.iter().skip(1).map(|block| block.vertices).chain([plan.rows.vertices.len() as u32]);
+        let ranges: Vec<Range<u32>> = blocks.iter().zip(ends).map(|(block, end)| block.vertices..end).collect();
+        let mut four = 0;
+        let place = |(block, range): (&adaptive::Block, &Range<u32>)| {
+            let first = four;
+            four += range.len().div_ceil(4) as u32;
+            [starts[block.mask as usize], first]
+        };
+        let mut blocks: Vec<[u32; 2]> = blocks.iter().zip(&ranges).map(place).collect();
+        blocks.push([0, four]);
+        let vertices = ranges.into_par_iter().flat_map_iter(|range| {
+            let read = &plan.rows.vertices[range.start as usize..range.end as usize];
+            read.chunks(4).map(|four| std::array::from_fn(|i| vertex(*four.get(i).unwrap_or(&read[0]))))
+        });
         Self {
             first_vertex: vertex(plan.control_vertices),
             steps: plan.steps().filter(|step| !step.is_empty()).map(step).collect(),
-            blocks: blocks.clone(),
-            vertices: vertices.par_iter().map(|&index| vertex(index)).collect(),
-            mask_terms: terms.map(|(&number, &weight)| [number, (weight as f32).to_bits()]).collect(),
-            mask_starts: masks.offsets,
+            vertices: vertices.collect(),
+            blocks,
+            weights,
         }
     }
 
@@ -158,13 +169,19 @@ fn leaf_words(
 /// Where the points of a Gregory quad stand: a grid like that of a regular leaf, then the face points f- of the corners.
 const CAP_ORDER: [usize; 20] = [0, 5, 10, 3, 4, 12, 18, 11, 7, 14, 16, 8, 1, 6, 9, 2, 13, 15, 17, 19];
 
-/// The masks, those of end caps, which come last, with the control points in [`CAP_ORDER`].
-fn order_caps(masks: &Stencils, caps: &[adaptive::Block]) -> Stencils {
-    let first = caps.iter().map(|cap| cap.mask as usize).min().unwrap_or(masks.len());
-    let mut ordered = Stencils::default();
-    let of_caps = (first..masks.len()).step_by(CAP_ORDER.len()).flat_map(|cap| CAP_ORDER.map(|point| cap + point));
-    (0..first).chain(of_caps).for_each(|output| ordered.push(masks.row(output)));
-    ordered
+/// The weights of masks, those of end caps in [`CAP_ORDER`], and the first four of each mask.
+fn mask_fours(rows: &adaptive::Rows) -> (Vec<[f32; 4]>, Vec<u32>) {
+    let (mut fours, mut starts) = (Vec::new(), Vec::with_capacity(rows.masks.len()));
+    for &adaptive::Mask { weights, inputs, outputs } in &rows.masks {
+        starts.push(fours.len() as u32);
+        for output in 0..outputs as usize {
+            let output = if outputs == 1 { output } else { CAP_ORDER[output] };
+            let weights = &rows.weights[weights as usize + output * inputs as usize..][..inputs as usize];
+            let four = |four: &[f64]| std::array::from_fn(|i| four.get(i).map_or(0.0, |&weight| weight as f32));
+            fours.extend(weights.chunks(4).map(four));
+        }
+    }
+    (fours, starts)
 }
 
 /// Who makes what patches share.

@@ -213,7 +213,7 @@ impl ModelTables {
 
     /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need
     /// are empty.
-    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 17] {
+    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 16] {
         fn array<'t, T, E: bytemuck::NoUninit>(table: &'t Option<T>, array: impl Fn(&'t T) -> &'t [E]) -> &'t [u8] {
             table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
         }
@@ -241,16 +241,15 @@ impl ModelTables {
             corners,
             ("quadtrees", array(&self.leaves, |t| &t.quadtrees)),
             ("leaves", array(&self.leaves, |t| t.leaves.as_flattened())),
+            ("blocks", array(&self.leaves, |t| t.refinement.blocks.as_flattened())),
+            ("block_vertices", array(&self.leaves, |t| t.refinement.vertices.as_flattened())),
+            ("mask_weights", array(&self.leaves, |t| t.refinement.weights.as_flattened())),
             ("stencil_patches", array(stencils, |t| &t.patches)),
             ("stencil_vertices", array(stencils, |t| &t.vertices)),
             ("stencil_types", array(stencils, |t| &t.types)),
             ("texcoords", array(&self.texcoords, |t| t.as_slice())),
             ("shared_corners", array(&self.shared, |t| t.corners.as_flattened())),
             ("shared_texcoords", array(&self.shared, |t| &t.texcoords)),
-            ("blocks", array(&self.leaves, |t| &t.refinement.blocks)),
-            ("block_vertices", array(&self.leaves, |t| &t.refinement.vertices)),
-            ("mask_starts", array(&self.leaves, |t| &t.refinement.mask_starts)),
-            ("mask_terms", array(&self.leaves, |t| t.refinement.mask_terms.as_flattened())),
             ("faces", array(&self.leaves, |t| t.faces.as_flattened())),
         ]
     }

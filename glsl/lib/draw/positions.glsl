@@ -8,7 +8,10 @@
 // Rust twin: `DeviceProperties::reads_texels` in src/gpu/device.rs.
 layout(constant_id = ID_READS_TEXELS) const bool READS_TEXELS = false;
 
-layout(set = 1, binding = BINDING_POSITIONS, std430) readonly buffer Positions { vec4 positions[]; };
+#ifndef POSITIONS_ACCESS
+#define POSITIONS_ACCESS readonly
+#endif
+layout(set = 1, binding = BINDING_POSITIONS, std430) POSITIONS_ACCESS buffer Positions { vec4 positions[]; };
 #ifndef POSITION_TEXELS
 #define POSITION_TEXELS BINDING_POSITION_TEXELS
 #endif

@@ -17,16 +17,15 @@ layout(set = 1, binding = BINDING_TABLE_STARTS, std140) uniform Tables {
     uint patch_corners;
     uint quadtrees;
     uint leaves;
+    uint blocks;
+    uint block_vertices;
+    uint mask_weights;
     uint stencil_patches;
     uint stencil_vertices;
     uint stencil_types;
     uint texcoords;
     uint shared_corners;
     uint shared_texcoords;
-    uint blocks;
-    uint block_vertices;
-    uint mask_starts;
-    uint mask_terms;
     uint faces;  // where that of patch 0 would be
 } tables;
 

@@ -3,7 +3,7 @@
 use crate::constants::GROUP_INVOCATIONS;
 use crate::gpu::{DeviceContext, GpuError, MAX_WORKGROUPS};
 use crate::renderer::pipelines::ComputePipelines;
-use crate::renderer::shader::{Cut, PatchStages, ShaderCode};
+use crate::renderer::shader::{Cut, PatchStages, ShaderCode, reads_texels};
 use crate::renderer::shader::{ShaderKey, Source};
 use crate::table::{PatchPlan, Refinement, RefinementStep};
 use ash::vk;
@@ -66,7 +66,8 @@ impl CachedPipelines {
 
     /// Makes what adaptive surfaces need.
     pub(crate) fn make_refinement(&mut self, code: &ShaderCode) -> Result<(), GpuError> {
-        self.0.make(Step::Refine, ShaderKey::of(Source::RefineComp), code, &[])
+        let constants = [reads_texels(self.0.context().properties())];
+        self.0.make(Step::Refine, ShaderKey::of(Source::RefineComp), code, &constants)
     }
 
     /// Records the dispatches that make the vertices of adaptive subdivision, step by step; `set` is the model's.

@@ -50,16 +50,23 @@ pub(crate) const MODEL_BUFFERS: usize = 5;
 pub(crate) const VECTOR_TEXEL: (vk::Format, u64) = (vk::Format::R32G32B32A32_SFLOAT, 16);
 
 /// The tables that shaders may see as texel buffers, the first of all: format and bytes of a texel of the headers of rings, their
-/// entries, their types and the corners of patches; quadtrees of faces, and their leaves. GLSL twins: `glsl/lib/construct/rings.glsl`,
-/// `glsl/lib/evaluate/leaves.glsl`.
-pub(crate) const TABLE_TEXELS: [(vk::Format, u64); 6] = [
+/// entries, their types and the corners of patches; quadtrees of faces, and their leaves; and of what only compute reads, blocks of
+/// vertices, the vertices that they read, and the weights of masks. GLSL twins: `glsl/lib/construct/rings.glsl`,
+/// `glsl/lib/evaluate/leaves.glsl`, `glsl/compute/refine.comp`.
+pub(crate) const TABLE_TEXELS: [(vk::Format, u64); 9] = [
     (vk::Format::R32G32B32A32_UINT, 16),
     (vk::Format::R32_UINT, 4),
     VECTOR_TEXEL,
     (vk::Format::R32G32_UINT, 8),
     (vk::Format::R32_UINT, 4),
     (vk::Format::R32G32B32A32_UINT, 16),
+    (vk::Format::R32G32_UINT, 8),
+    (vk::Format::R32G32B32A32_UINT, 16),
+    VECTOR_TEXEL,
 ];
+
+/// The first of [`TABLE_TEXELS`] that draws do not read.
+const FIRST_OF_COMPUTE: usize = 6;
 
 /// Texel buffers of a model.
 pub(crate) const MODEL_TEXELS: usize = 3 + TABLE_TEXELS.len();
@@ -107,8 +114,12 @@ fn is_storage_buffer(ty: vk::DescriptorType) -> bool {
 
 /// The layout of set 1.
 fn model_layout(context: &Arc<DeviceContext>) -> Result<SetLayout, GpuError> {
-    let stages = STAGES | vk::ShaderStageFlags::COMPUTE;
-    let bindings: Vec<_> = model_bindings().into_iter().map(|ty| (ty, stages)).collect();
+    let compute = vk::ShaderStageFlags::COMPUTE;
+    // Of what each stage of a draw may see, which devices limit, the caller's own sets leave room for no more than is read.
+    let first = crate::constants::BINDING_TABLE_TEXELS as usize;
+    let is_of_compute = |binding| (first + FIRST_OF_COMPUTE..first + TABLE_TEXELS.len()).contains(&binding);
+    let stages = |binding| if is_of_compute(binding) { compute } else { STAGES | compute };
+    let bindings: Vec<_> = model_bindings().into_iter().enumerate().map(|(i, ty)| (ty, stages(i))).collect();
     descriptor_set_layout(context, "subdiv model", &bindings)
 }
 
