@@ -90,8 +90,9 @@ pub(crate) unsafe fn draw(path: &str) -> Result<(), Box<dyn Error>> {
     let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
     let cmd = device.allocate_command_buffers(&info)?[0];
     device.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
-    // subdiv: the copies and barriers of frame 0, before rendering begins.
-    renderer.cmd_prepare(cmd, 0)?;
+    // subdiv: a frame, and its copies and barriers before rendering begins.
+    let frame = renderer.begin_frame();
+    renderer.cmd_prepare(cmd, frame)?;
     // Each barrier is for everything: a program that does more than this says more closely what waits for what.
     let (all, written, used) = (Stage::ALL_COMMANDS, Access::MEMORY_WRITE, Access::MEMORY_READ | Access::MEMORY_WRITE);
     let memory = [vk::MemoryBarrier::default().src_access_mask(written).dst_access_mask(used)];
@@ -118,7 +119,7 @@ pub(crate) unsafe fn draw(path: &str) -> Result<(), Box<dyn Error>> {
     device.cmd_set_viewport(cmd, 0, &[vk::Viewport { width, height, max_depth: 1.0, ..Default::default() }]);
     device.cmd_set_scissor(cmd, 0, &[area]);
     // subdiv: among draws of our own, if there were any; viewport and scissor are ours too.
-    renderer.cmd_draw(cmd, 0, &view, &[item])?;
+    renderer.cmd_draw(cmd, frame, &view, &[item])?;
     device.cmd_end_rendering(cmd);
     barrier(&[change(&picture, color, Layout::TRANSFER_SRC_OPTIMAL)]);
     let layers = vk::ImageSubresourceLayers::default().aspect_mask(is_color).layer_count(1);

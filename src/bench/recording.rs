@@ -105,24 +105,29 @@ impl Bench<'_> {
         let mut recording = Recording { crowd, prepare: Vec::new(), draw: Vec::new() };
         // Tables are copied.
         // SAFETY: recorded outside rendering; the submission is waited for.
-        self.headless().try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+        self.headless().try_submit(|cmd| unsafe {
+            let begun = renderer.begin_frame();
+            renderer.cmd_prepare(cmd, begun)
+        })?;
         let before = self.options().warm_up;
         for round in 0..before + self.options().frames {
+            // SAFETY: the device is done with what was submitted; the frame before is lost.
+            let begun = unsafe { renderer.begin_frame() };
             if crowd == Crowd::Moving {
                 for item in items {
-                    renderer.set_positions(item.model, 0, &positions)?;
+                    renderer.set_positions(item.model, begun, &positions)?;
                 }
             }
             // SAFETY: recorded outside rendering, then inside of rendering that fits.
             self.headless().record(|cmd| unsafe {
                 let (visible, prepare) = timed(|| {
-                    renderer.cmd_prepare(cmd, 0)?;
-                    contestant.culls_by_compute().then(|| renderer.cmd_cull(cmd, 0, frame.view, items)).transpose()
+                    renderer.cmd_prepare(cmd, begun)?;
+                    contestant.culls_by_compute().then(|| renderer.cmd_cull(cmd, begun, frame.view, items)).transpose()
                 })?;
                 target.cmd_begin(cmd, [0.0; 4]);
                 let ((), draw) = timed(|| match &visible {
-                    Some(visible) => renderer.cmd_draw_visible(cmd, 0, visible),
-                    None => renderer.cmd_draw(cmd, 0, frame.view, items),
+                    Some(visible) => renderer.cmd_draw_visible(cmd, begun, visible),
+                    None => renderer.cmd_draw(cmd, begun, frame.view, items),
                 })?;
                 target.cmd_end(cmd);
                 if round >= before {
@@ -131,6 +136,7 @@ impl Bench<'_> {
                 }
                 Ok::<_, BenchError>(())
             })?;
+            renderer.frame_lost(begun)?;
         }
         Ok(recording)
     }

@@ -5,8 +5,8 @@ use super::{BenchError, Contestant, Motion, Path, published};
 use crate::headless::Headless;
 use crate::measure::statistics::Summary;
 use crate::renderer::{
-    Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options, Renderer,
-    Style, TableBytes, Target, VisibleItems, subdivision_level,
+    self, Cull, DrawItem, Error, Evaluation, Factor, MemoryUsage, ModelId, ModelOptions, ModelTables, Options,
+    Renderer, Style, TableBytes, Target, VisibleItems, subdivision_level,
 };
 use crate::topology::PatchKind;
 use ash::vk;
@@ -28,6 +28,8 @@ pub(super) struct Surface {
     cull: Cull,
     /// Whether compute looks for what can be seen.
     culls_by_compute: bool,
+    /// The frame that is being recorded.
+    begun: Option<renderer::Frame>,
     /// Visible list of the next pass.
     visible: Option<VisibleItems>,
 }
@@ -57,7 +59,10 @@ struct Uploads<'a> {
 impl Uploads<'_> {
     fn prepare(&self, renderer: &mut Renderer) -> Result<(), Error> {
         // SAFETY: the command buffer is being recorded, outside rendering.
-        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })
+        self.headless.try_submit(|cmd| unsafe {
+            let frame = renderer.begin_frame();
+            renderer.cmd_prepare(cmd, frame)
+        })
     }
 
     /// The model, and the milliseconds until it can be drawn.
@@ -108,8 +113,13 @@ impl Surface {
             evaluation,
             cull: contestant.cull,
             culls_by_compute: contestant.culls_by_compute(),
+            begun: None,
             visible: None,
         })
+    }
+
+    fn begun(&self) -> Result<renderer::Frame, Error> {
+        self.begun.ok_or(Error::FrameNotPrepared)
     }
 
     fn items(&self, frame: &Frame) -> Vec<DrawItem> {
@@ -157,7 +167,11 @@ impl Drawable for Surface {
             self.renderer.forget_control_points(self.model)?;
         }
         // SAFETY: as the caller promises.
-        unsafe { self.renderer.cmd_prepare(cmd, 0)? };
+        unsafe {
+            let begun = self.renderer.begin_frame();
+            self.begun = Some(begun);
+            self.renderer.cmd_prepare(cmd, begun)?;
+        }
         Ok(())
     }
 
@@ -165,17 +179,18 @@ impl Drawable for Surface {
         if self.culls_by_compute {
             let items = self.items(frame);
             // SAFETY: as the caller promises.
-            self.visible = Some(unsafe { self.renderer.cmd_cull(cmd, 0, frame.view, &items)? });
+            self.visible = Some(unsafe { self.renderer.cmd_cull(cmd, self.begun()?, frame.view, &items)? });
         }
         Ok(())
     }
 
     unsafe fn cmd_draw(&mut self, cmd: vk::CommandBuffer, frame: &Frame) -> Result<(), BenchError> {
+        let begun = self.begun()?;
         // SAFETY: as the caller promises.
         unsafe {
             match &self.visible {
-                Some(visible) => self.renderer.cmd_draw_visible(cmd, 0, visible)?,
-                None => self.renderer.cmd_draw(cmd, 0, frame.view, &self.items(frame))?,
+                Some(visible) => self.renderer.cmd_draw_visible(cmd, begun, visible)?,
+                None => self.renderer.cmd_draw(cmd, begun, frame.view, &self.items(frame))?,
             }
         }
         Ok(())

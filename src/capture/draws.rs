@@ -56,8 +56,8 @@ impl Captured<'_> {
             let renderer = &mut watcher.renderer;
             renderer.remove_model(model)?;
             map.map_or(Ok(()), |map| renderer.remove_displacement(map))?;
-            // SAFETY: the command buffer is being recorded; the frame before was waited for. Frees the model.
-            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+            // SAFETY: the frame before was waited for. Frees the model.
+            unsafe { renderer.begin_frame() };
             kept.put_back(watched, watcher);
         }
         Ok(())
@@ -82,7 +82,10 @@ impl Captured<'_> {
             renderer.set_segments(model, most.ceil() as u32)?;
         }
         if let Factor::Edges(_) = draw.factor {
-            renderer.set_edge_factors(model, 0, &draw.edge_factors)?;
+            // SAFETY: every submission is waited for.
+            let frame = unsafe { renderer.begin_frame() };
+            renderer.set_edge_factors(model, frame, &draw.edge_factors)?;
+            renderer.frame_lost(frame)?;
         }
         Ok((model, map))
     }

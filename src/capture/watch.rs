@@ -115,11 +115,12 @@ impl Watcher {
         let pipeline_layout = renderer.pipeline_layout();
         // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
         headless.try_submit(|cmd| unsafe {
-            renderer.cmd_prepare(cmd, 0)?;
+            let frame = renderer.begin_frame();
+            renderer.cmd_prepare(cmd, frame)?;
             target.cmd_begin(cmd, [0.0; 4]);
             let point = vk::PipelineBindPoint::GRAPHICS;
             headless.device().cmd_bind_descriptor_sets(cmd, point, pipeline_layout, 2, &[set.raw()], &[]);
-            renderer.cmd_draw(cmd, 0, view, &[item])?;
+            renderer.cmd_draw(cmd, frame, view, &[item])?;
             target.cmd_end(cmd);
             Ok::<(), Error>(())
         })?;

@@ -193,6 +193,12 @@ impl DeviceContext {
         unsafe { instance.get_physical_device_image_format_properties(device, format, kind, tiling, usage, none).ok() }
     }
 
+    /// What the device can do with images and buffers of a format.
+    pub(crate) fn format_properties(&self, format: vk::Format) -> vk::FormatProperties {
+        // SAFETY: the device is of the instance, which lives, as the caller of `new` promised.
+        unsafe { self.instance.get_physical_device_format_properties(self.physical_device, format) }
+    }
+
     /// Properties of the device.
     pub fn properties(&self) -> &DeviceProperties {
         &self.properties

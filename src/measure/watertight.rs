@@ -283,20 +283,22 @@ pub fn leaked_pixels(
     // SAFETY: the texture outlives the model, and nothing else looks at it.
     let map = displacement.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
     let model = renderer.add_model(mesh, &ModelOptions { displacement: map, ..options.clone() })?;
+    // SAFETY: the frame before was waited for.
+    let frame = unsafe { renderer.begin_frame() };
     if let Factor::Edges(_) = draw.factor {
-        renderer.set_edge_factors(model, 0, &draw.edge_factors)?;
+        renderer.set_edge_factors(model, frame, &draw.edge_factors)?;
     }
     let CaptureDraw { factor, cull, displacement, .. } = *draw;
     let item = DrawItem { factor, cull, displacement, ..DrawItem::new(model, 1.0) };
     let view: View = draw.view;
     // SAFETY: outside rendering, and inside what fits the target.
-    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) })?;
     // SAFETY: likewise.
-    let pixels = target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, 0, &view, &[item]) })?;
+    let pixels = target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, frame, &view, &[item]) })?;
     renderer.remove_model(model)?;
     map.map_or(Ok(()), |map| renderer.remove_displacement(map))?;
-    // SAFETY: outside rendering, and all frames before are done. Frees the model.
-    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+    // SAFETY: all frames before are done. Frees the model.
+    unsafe { renderer.begin_frame() };
     kept.put_back(drawn, layers);
     Ok(pixels.chunks_exact(4).filter(|pixel| pixel[0] != pixel[1]).count() as u64)
 }

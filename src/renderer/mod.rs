@@ -4,12 +4,14 @@
 //!
 //! One frame:
 //!
-//! 1. The caller waits until the frame's last submission is done, as always before reusing a frame index.
+//! 1. The caller waits until the submission of the frame that began [`Options::frames_in_flight`] frames ago is done, as always before
+//!    using again what belongs to a frame in flight; then [`Renderer::begin_frame`].
 //! 2. [`Renderer::set_positions`] writes this frame's control vertices, if they move.
-//! 3. [`Renderer::cmd_prepare`], outside rendering, records the copies and barriers. Once a frame.
+//! 3. [`Renderer::cmd_prepare`], outside rendering, records the copies and barriers.
 //! 4. [`Renderer::cmd_draw`], inside rendering, records the draws of one view: for every model its regular patches,
 //!    irregular quads and triangles. As often as there are views. Or, to draw only what can be seen,
 //!    [`Renderer::cmd_cull`] outside rendering and [`Renderer::cmd_draw_visible`] inside.
+//! 5. The caller submits; or, if it cannot, tells [`Renderer::frame_lost`].
 //!
 //! Passes into other attachments, such as shadows, are draws in styles with a target of their own ([`Style::target`]), of the
 //! same models: what compute made of them is there for all. [`View::measured_from`] has a shadow be of the triangles that the eye
@@ -50,9 +52,9 @@ mod pipelines;
 mod shader;
 
 pub use crate::table::{Construction, EdgeTable, Evaluation, ModelTables, TableBytes, TableOptions};
-pub use frame::Renderer;
 pub use frame::segments::EvaluatedVertices;
 pub use frame::visible::VisibleItems;
+pub use frame::{Frame, Renderer};
 pub use options::{
     ColorEncoding, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Factor, Fragment, Geometry, MeasuredFrom,
     MemoryUsage, ModelId, ModelOptions, Options, Pass, Style, Target, View,

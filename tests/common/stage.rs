@@ -3,7 +3,7 @@
 use ash::vk;
 use ash_subdiv::gpu::{Buffer, BufferDesc, MemoryLocation};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
-use ash_subdiv::{DrawItem, Error, ModelId, Options, Renderer, Target, View};
+use ash_subdiv::{DrawItem, Error, Frame, ModelId, Options, Renderer, Target, View};
 
 /// A picture, and a renderer for it.
 pub struct Stage {
@@ -24,9 +24,16 @@ impl Stage {
         unsafe { Renderer::new(self.headless.context(), &target, options) }.expect("a renderer")
     }
 
-    pub fn prepare(&self, renderer: &mut Renderer, frame: u32) {
-        // SAFETY: the command buffer is being recorded, and all frames before are done.
-        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("a frame");
+    /// Begins a frame and prepares it.
+    pub fn frame(&self, renderer: &mut Renderer) -> Frame {
+        let frame = begin(renderer);
+        self.prepare(renderer, frame);
+        frame
+    }
+
+    pub fn prepare(&self, renderer: &mut Renderer, frame: Frame) {
+        // SAFETY: the command buffer is being recorded, and submitted.
+        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("prepared");
     }
 
     /// Of a cube from -1 to 1.
@@ -34,7 +41,7 @@ impl Stage {
         View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [-0.6, 0.5, 1.0], 1.0)
     }
 
-    pub fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Vec<u8>, Error> {
+    pub fn draw(&self, renderer: &mut Renderer, frame: Frame, items: &[DrawItem]) -> Result<Vec<u8>, Error> {
         let view = Self::view();
         let record = |cmd| {
             // SAFETY: as above, inside rendering.
@@ -47,6 +54,12 @@ impl Stage {
         drop(self.target);
         self.headless.finish_silent();
     }
+}
+
+/// Begins a frame, where every submission is waited for.
+pub fn begin(renderer: &mut Renderer) -> Frame {
+    // SAFETY: all frames before are done.
+    unsafe { renderer.begin_frame() }
 }
 
 /// The vertices of a model that was prepared, as words.

@@ -171,16 +171,18 @@ fn missed(
     let mut picture = |view: &View, cull: Cull| {
         let item = DrawItem { cull, ..all };
         // SAFETY: outside rendering, then inside; every submission is waited for.
+        let frame = unsafe { renderer.begin_frame() };
+        // SAFETY: likewise.
         let counted = headless.counted(|cmd| unsafe {
-            renderer.cmd_prepare(cmd, 0)?;
+            renderer.cmd_prepare(cmd, frame)?;
             target.cmd_begin(cmd, [0.0; 4]);
-            renderer.cmd_draw(cmd, 0, view, &[item])?;
+            renderer.cmd_draw(cmd, frame, view, &[item])?;
             target.cmd_end(cmd);
             Ok::<_, Error>(())
         });
         let vertices = counted.expect("counts").evaluation_invocations;
         // SAFETY: inside.
-        let draw = target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, 0, view, &[item]) });
+        let draw = target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, frame, view, &[item]) });
         (draw.expect("a picture"), vertices as f64)
     };
     let (mut drawn, mut whole) = (0.0, 0.0);
@@ -478,26 +480,27 @@ fn maps_go_while_others_are_drawn() {
     let mut renderer = stage.renderer(&Options { frames_in_flight: 2, ..Options::default() });
     let plain = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
     let before = {
-        stage.prepare(&mut renderer, 0);
-        stage.draw(&mut renderer, 0, &[DrawItem::new(plain, 3.0)]).expect("a picture")
+        let frame = stage.frame(&mut renderer);
+        stage.draw(&mut renderer, frame, &[DrawItem::new(plain, 3.0)]).expect("a picture")
     };
     for _ in 0..2 {
         let texture = Texture::new(&stage.headless, "map", &texels).expect("a texture");
-        // SAFETY: the texture lives until every frame was prepared again.
+        // SAFETY: the texture lives until as many frames began as there are in flight.
         let map = unsafe { renderer.add_displacement((&texture).into()) };
         let options = ModelOptions { displacement: Some(map), ..ModelOptions::default() };
         let model = renderer.add_model(&mesh, &options).expect("a model");
         let item = DrawItem { displacement: [0.05, 0.0], ..DrawItem::new(model, 3.0) };
-        for frame in 0..2 {
-            stage.prepare(&mut renderer, frame);
+        for _ in 0..2 {
+            let frame = stage.frame(&mut renderer);
             let displaced = stage.draw(&mut renderer, frame, &[item]).expect("a picture");
             assert_ne!(displaced, before);
         }
         renderer.remove_model(model).expect("there is one");
         renderer.remove_displacement(map).expect("no model uses it");
-        (0..2).for_each(|frame| stage.prepare(&mut renderer, frame));
+        (0..2).for_each(|_| _ = stage.frame(&mut renderer));
         drop(texture);
-        for frame in 0..2 {
+        for _ in 0..2 {
+            let frame = stage.frame(&mut renderer);
             assert_eq!(stage.draw(&mut renderer, frame, &[DrawItem::new(plain, 3.0)]).expect("a picture"), before);
         }
     }

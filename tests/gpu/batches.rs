@@ -61,9 +61,10 @@ fn draw(headless: &Headless, mesh: &ControlMesh, construction: Construction, fac
     let item = DrawItem::new(model, factor).color([1.0 / 255.0, 0.0, 0.0, 0.0]);
     // SAFETY: the command buffer is being recorded; rendering is begun and ended in it.
     let statistics = headless.counted(|cmd| unsafe {
-        renderer.cmd_prepare(cmd, 0)?;
+        let frame = renderer.begin_frame();
+        renderer.cmd_prepare(cmd, frame)?;
         target.cmd_begin(cmd, [0.0; 4]);
-        renderer.cmd_draw(cmd, 0, view, &[item])?;
+        renderer.cmd_draw(cmd, frame, view, &[item])?;
         target.cmd_end(cmd);
         target.cmd_read_back(cmd);
         Ok::<(), ash_subdiv::Error>(())

@@ -64,10 +64,28 @@ fn what_a_device_lacks_is_named_at_once() {
         assert_eq!(told(&target(&stage), options), format!("Options::shaders: {}{expected}", id.name()));
     }
     let swapped: Vec<u32> = code.iter().map(|word| word.swap_bytes()).collect();
-    for bad in [Vec::new(), code[..5].to_vec(), swapped] {
+    let [cut, cut_off] = [code.len() - 1, code.len() / 2].map(|end| code[..end].to_vec());
+    for bad in [Vec::new(), code[..5].to_vec(), swapped, cut, cut_off] {
         let styles = vec![Style::default(), Style { fragment: Fragment::Spirv(bad), ..Style::default() }];
         let error = told(&target(&stage), Options { styles, ..Options::default() });
         assert_eq!(error, format!("Options::styles: Fragment::Spirv of style 1 is no SPIR-V: {no_spirv}"));
+    }
+    let of_styles = |code: &[u32]| {
+        let styles = vec![Style { fragment: Fragment::Spirv(code.to_vec()), ..Style::default() }];
+        Options { styles, ..Options::default() }
+    };
+    let vertex = ShaderId::ConstructControlMeshVert.code();
+    assert_eq!(
+        told(&target(&stage), of_styles(vertex)),
+        "Options::styles: Fragment::Spirv of style 0 has no entry point `main` of its stage: compile it for that, and call its \
+         function main"
+    );
+    let shaders = vec![(ShaderId::ConstructControlMeshVert, code.to_vec())];
+    let error = told(&target(&stage), Options { shaders, ..Options::default() });
+    assert!(error.starts_with("Options::shaders: construct_control_mesh_vert has no entry point"), "{error}");
+    for (code, place) in [(shaders::OWN_SET_FRAG, "set 0, binding 1:"), (shaders::FAR_SET_FRAG, "set 2, binding 0:")] {
+        let error = told(&target(&stage), of_styles(code));
+        assert!(error.contains(&format!("no such descriptor at {place}")), "{error}");
     }
     for (samples, given) in [
         (vk::SampleCountFlags::empty(), "empty"),
@@ -109,6 +127,39 @@ fn features_that_the_context_was_not_told_of_are_named() {
         color.push(color[0]);
     }
     assert!(told(&two).contains(&format!(", independentBlend {off}:")), "{}", told(&two));
+    stage.finish();
+}
+
+#[test]
+fn formats_that_cannot_be_drawn_into_are_named() {
+    let stage = Stage::new();
+    let (instance, device) = (stage.headless.instance(), stage.headless.physical_device());
+    let one = vk::SampleCountFlags::TYPE_1;
+    let [color, depth] = [vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT];
+    let told = |target: &Target| {
+        // SAFETY: the device is of the instance.
+        let checked = unsafe { check(instance, device, target, &Options::default()) };
+        // SAFETY: nothing is drawn.
+        let made = unsafe { Renderer::new(stage.headless.context(), target, &Options::default()) };
+        let [checked, made] = [checked.unwrap_err(), made.expect_err("an error")].map(|error| error.to_string());
+        assert_eq!(checked, made);
+        made
+    };
+    let error = told(&Target::dynamic(depth, color, one));
+    assert!(error.contains("D32_SFLOAT is given as the format of the colour attachment"), "{error}");
+    let error = told(&Target::depth_only(color, one));
+    assert!(error.contains("R8G8B8A8_UNORM is given as the format of the depth attachment"), "{error}");
+    let error = told(&Target::dynamic(vk::Format::BC1_RGBA_UNORM_BLOCK, depth, one));
+    assert!(error.contains("missing BC1_RGBA_UNORM_BLOCK as the format of a colour attachment"), "{error}");
+    let error = told(&Target { depth: false, ..Target::dynamic(color, depth, one) });
+    assert!(
+        error.starts_with("Target::depth is false, but Pass::Dynamic has the format of a depth attachment"),
+        "{error}"
+    );
+    let of_pass = Target::render_pass(vk::RenderPass::null(), 0, one);
+    // SAFETY: nothing is drawn.
+    let made = unsafe { Renderer::new(stage.headless.context(), &of_pass, &Options::default()) };
+    assert!(matches!(made, Err(Error::NoRenderPass)));
     stage.finish();
 }
 

@@ -1,6 +1,6 @@
 //! Evaluation by compute: when it happens, and what evaluations say when they are used wrongly.
 
-use crate::common::stage::{Stage, read_vertices};
+use crate::common::stage::{Stage, begin, read_vertices};
 use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError};
 use ash_subdiv::renderer::{Evaluation, Factor, MemoryUsage, ModelTables};
 use ash_subdiv::topology::Topology;
@@ -35,19 +35,11 @@ fn vertices_follow_positions_and_segments() {
     };
     let small: Vec<_> = mesh.positions_f32().iter().map(|p| p.map(|x| 0.5 * x)).collect();
     renderer.set_segments(model, 4).unwrap();
-    for (frame, n, moves) in [
-        (0, 4, false),
-        (1, 4, true),
-        (0, 9, false),
-        (1, 9, true),
-        (0, 1, true),
-        (1, 3, true),
-        (0, 3, true),
-        (1, 3, false),
-    ] {
+    for (n, moves) in [(4, false), (4, true), (9, false), (9, true), (1, true), (3, true), (3, true), (3, false)] {
         renderer.set_segments(model, n).unwrap();
+        let frame = begin(&mut renderer);
         if moves {
-            let positions = if frame == 1 { &small } else { &mesh.positions_f32() };
+            let positions = if frame.index() == 1 { &small } else { &mesh.positions_f32() };
             renderer.set_positions(model, frame, positions).unwrap();
             renderer.set_positions(tessellated, frame, positions).unwrap();
         }
@@ -57,7 +49,7 @@ fn vertices_follow_positions_and_segments() {
         assert_eq!(vertices.size, u64::from(patches * 32 * (n + 1) * (n + 1)));
         let [a, b] = [model, tessellated].map(|model| picture(&mut renderer, frame, model, n as f32));
         let differ = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
-        assert!(a.iter().any(|&x| x > 0) && differ == 0, "{n} in frame {frame}: {differ}");
+        assert!(a.iter().any(|&x| x > 0) && differ == 0, "{n} in {frame:?}: {differ}");
     }
     // The vertices, and indices of as many patches as the largest group has, at most.
     let MemoryUsage { vertices, indices, .. } = renderer.memory_usage();
@@ -93,9 +85,10 @@ fn counts<const FRAMES: usize>(options: &ModelOptions, changes: [Change; FRAMES]
     let mut segments = 5;
     renderer.set_segments(model, segments).unwrap();
     let counts = changes.map(|change| {
+        let frame = begin(&mut renderer);
         match change {
             Change::None => {}
-            Change::Vertices => renderer.set_positions(model, 0, &mesh.positions_f32()).unwrap(),
+            Change::Vertices => renderer.set_positions(model, frame, &mesh.positions_f32()).unwrap(),
             Change::Segments(other) => {
                 segments = other;
                 renderer.set_segments(model, segments).unwrap();
@@ -104,10 +97,10 @@ fn counts<const FRAMES: usize>(options: &ModelOptions, changes: [Change; FRAMES]
         let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
         // SAFETY: outside rendering, then inside; each submission is waited for.
         let counted = stage.headless.counted(|cmd| unsafe {
-            renderer.cmd_prepare(cmd, 0)?;
+            renderer.cmd_prepare(cmd, frame)?;
             for _ in 0..3 {
                 stage.target.cmd_begin(cmd, [0.0; 4]);
-                renderer.cmd_draw(cmd, 0, &view, &[DrawItem::new(model, segments as f32)])?;
+                renderer.cmd_draw(cmd, frame, &view, &[DrawItem::new(model, segments as f32)])?;
                 stage.target.cmd_end(cmd);
             }
             Ok::<_, Error>(())
@@ -152,11 +145,12 @@ fn two_passes_can_be_counted_after_other_geometry_shaders() {
             renderer.set_segments(model, 2).unwrap();
         }
         let item = DrawItem::new(model, 2.0);
+        let frame = begin(&mut renderer);
         // SAFETY: outside rendering, then inside; the submission is waited for.
         let counted = stage.headless.counted(|cmd| unsafe {
-            renderer.cmd_prepare(cmd, 0)?;
+            renderer.cmd_prepare(cmd, frame)?;
             stage.target.cmd_begin(cmd, [0.0; 4]);
-            renderer.cmd_draw(cmd, 0, &near, &[item])?;
+            renderer.cmd_draw(cmd, frame, &near, &[item])?;
             stage.target.cmd_end(cmd);
             Ok::<_, Error>(())
         });
@@ -177,18 +171,20 @@ fn factors_of_edges_wait_for_their_frame() {
         let options = ModelOptions { edge_factors: true, evaluation, ..compute(Scheme::Gregory) };
         let model = renderer.add_model(&mesh, &options).expect("a model");
         let edges = renderer.tables(model).unwrap().edges().expect("edges").vertices.len();
-        let mut draw = |frame, set: Option<(u32, f32)>, prepare: Option<u32>| {
-            if let Some((frame, factor)) = set {
+        let frame = begin(&mut renderer);
+        let draw = |renderer: &mut Renderer, frame, set: Option<f32>, prepare: bool| {
+            if let Some(factor) = set {
                 renderer.set_edge_factors(model, frame, &vec![factor; edges]).expect("factors");
             }
-            if let Some(frame) = prepare {
-                stage.prepare(&mut renderer, frame);
+            if prepare {
+                stage.prepare(renderer, frame);
             }
-            stage.draw(&mut renderer, frame, &[DrawItem::new(model, Factor::Edges(1.0))]).expect("a picture")
+            stage.draw(renderer, frame, &[DrawItem::new(model, Factor::Edges(1.0))]).expect("a picture")
         };
-        let fine = draw(0, Some((0, 6.0)), Some(0));
-        assert!(draw(0, Some((1, 1.0)), None) == fine, "{evaluation:?}");
-        assert!(draw(1, None, Some(1)) != fine, "{evaluation:?}");
+        let fine = draw(&mut renderer, frame, Some(6.0), true);
+        assert!(draw(&mut renderer, frame, Some(1.0), false) == fine, "{evaluation:?}");
+        let frame = begin(&mut renderer);
+        assert!(draw(&mut renderer, frame, None, true) != fine, "{evaluation:?}");
     }
     drop(renderer);
     stage.finish();
@@ -248,56 +244,56 @@ fn wrong_use_is_told() {
         assert_eq!(error, format!("model 0: {segments} segments: from 1 to 1024 are possible along an edge"));
     }
     assert_eq!(renderer.evaluated_vertices(model).unwrap(), None);
-    stage.prepare(&mut renderer, 0);
-    let draw_model = |renderer: &mut Renderer, model, factor: Factor| {
-        stage.draw(renderer, 0, &[DrawItem::new(model, factor)]).map_err(text)
+    let frame = stage.frame(&mut renderer);
+    let draw_in = |renderer: &mut Renderer, frame, model, factor: Factor| {
+        stage.draw(renderer, frame, &[DrawItem::new(model, factor)]).map_err(text)
     };
     assert_eq!(
-        draw_model(&mut renderer, geometry, Factor::Uniform(1024.5)),
+        draw_in(&mut renderer, frame, geometry, Factor::Uniform(1024.5)),
         Err("model 2: 1025 segments: from 1 to 1024 are possible along an edge".into())
     );
     assert_eq!(
-        draw_model(&mut renderer, geometry, Factor::Edges(2.0)),
+        draw_in(&mut renderer, frame, geometry, Factor::Edges(2.0)),
         Err("model 2: its edges have no factors: set ModelOptions::edge_factors when you add it, or draw with another Factor".into())
     );
     let sized = View::framing(mesh.bounds(), [0.0, 0.0, 1.0], 1.0).sized(8, 8);
     let by_pixels = DrawItem::new(geometry, Factor::Pixels(2.0));
     // SAFETY: nothing is submitted, for it fails.
-    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_draw(cmd, 0, &sized, &[by_pixels]) });
+    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_draw(cmd, frame, &sized, &[by_pixels]) });
     assert_eq!(
         text(error.unwrap_err()),
         "model 2: Pixels(2.0): Evaluation::Geometry has one factor for all edges: draw with a uniform one"
     );
-    let draw = |renderer: &mut Renderer, factor: Factor| draw_model(renderer, model, factor);
+    let draw = |renderer: &mut Renderer, frame, factor: Factor| draw_in(renderer, frame, model, factor);
     let told = |factor: &str, n: u32| {
         Err(format!(
             "model 0: {factor}: its edges have {n} segments: call set_segments before cmd_prepare, and draw with that \
              number as uniform factor (with Factor::Edges(1.0) if edges have factors of their own)"
         ))
     };
-    assert_eq!(draw(&mut renderer, Factor::Uniform(4.0)), told("Uniform(4.0)", 0));
+    assert_eq!(draw(&mut renderer, frame, Factor::Uniform(4.0)), told("Uniform(4.0)", 0));
     renderer.set_segments(model, 4).unwrap();
     assert_eq!(
-        draw(&mut renderer, Factor::Uniform(4.0)),
+        draw(&mut renderer, frame, Factor::Uniform(4.0)),
         Err("model 0: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw".into())
     );
     // Never copied, and gone.
     renderer.set_segments(model, 3).unwrap();
     renderer.set_segments(model, 4).unwrap();
-    stage.prepare(&mut renderer, 0);
-    assert!(draw(&mut renderer, Factor::Uniform(3.5)).is_ok());
-    assert_eq!(draw(&mut renderer, Factor::Uniform(5.0)), told("Uniform(5.0)", 4));
+    let frame = stage.frame(&mut renderer);
+    assert!(draw(&mut renderer, frame, Factor::Uniform(3.5)).is_ok());
+    assert_eq!(draw(&mut renderer, frame, Factor::Uniform(5.0)), told("Uniform(5.0)", 4));
     let of_edges = ModelOptions { edge_factors: true, ..compute(Scheme::Gregory) };
     let of_edges = renderer.add_model(&mesh, &of_edges).unwrap();
     renderer.set_segments(of_edges, 4).unwrap();
-    stage.prepare(&mut renderer, 0);
-    assert!(draw_model(&mut renderer, of_edges, Factor::Edges(1.0)).is_ok());
+    let frame = stage.frame(&mut renderer);
+    assert!(draw_in(&mut renderer, frame, of_edges, Factor::Edges(1.0)).is_ok());
     for factor in [Factor::Uniform(4.0), Factor::Edges(0.5)] {
         let told = format!(
             "model 3: {factor:?}: Evaluation::Compute with edges that have factors of their own takes these as they are: \
              draw with Factor::Edges(1.0)"
         );
-        assert_eq!(draw_model(&mut renderer, of_edges, factor), Err(told));
+        assert_eq!(draw_in(&mut renderer, frame, of_edges, factor), Err(told));
     }
     drop(renderer);
     stage.finish();
@@ -353,8 +349,9 @@ fn evaluations_that_need_features_say_so() {
         assert_eq!(error, told);
     }
     let view = View::framing([glam::DVec3::NEG_ONE, glam::DVec3::ONE], [0.0, 0.0, 1.0], 1.0);
+    let frame = stage.frame(&mut renderer);
     // SAFETY: the command buffer is being recorded, outside rendering.
-    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, &view, &[]) }).unwrap_err();
+    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, frame, &view, &[]) }).unwrap_err();
     assert_eq!(
         error.to_string(),
         "cmd_cull goes with Options::visible_lists only: set it, and make the device with what requirements lists then"

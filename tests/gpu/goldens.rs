@@ -345,10 +345,12 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
         ..DrawItem::new(model, factor)
     };
     let items: Vec<_> = picture.layers.iter().enumerate().map(item).collect();
+    // SAFETY: there was no frame before.
+    let frame = unsafe { renderer.begin_frame() };
     let mut record = |cmd: vk::CommandBuffer, moment| match moment {
         // SAFETY: outside rendering, and inside what the renderer was made for.
-        Moment::Before => unsafe { renderer.cmd_prepare(cmd, 0) },
-        Moment::Inside => unsafe { renderer.cmd_draw(cmd, 0, &view, &items) },
+        Moment::Before => unsafe { renderer.cmd_prepare(cmd, frame) },
+        Moment::Inside => unsafe { renderer.cmd_draw(cmd, frame, &view, &items) },
     };
     match &pass {
         Some(pass) => pass.draw(picture.clear, record),

@@ -2,7 +2,7 @@
 
 use crate::common;
 use crate::common::edges::{bits, edge_parameters, shared_edges};
-use crate::common::stage::{Stage, read_vertices};
+use crate::common::stage::{Stage, begin, read_vertices};
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedVertex, Which};
 use ash_subdiv::renderer::{Evaluation, Factor, Fragment, Geometry, ModelTables};
@@ -85,10 +85,11 @@ fn kept_lattices(
     let mut renderer = stage.renderer(&Options::default());
     let model = renderer.add_model(mesh, options).expect("a model");
     renderer.set_segments(model, segments).expect("segments");
+    let frame = begin(&mut renderer);
     if let Some(factors) = edge_factors {
-        renderer.set_edge_factors(model, 0, factors).expect("factors");
+        renderer.set_edge_factors(model, frame, factors).expect("factors");
     }
-    stage.prepare(&mut renderer, 0);
+    stage.prepare(&mut renderer, frame);
     let words = read_vertices(&stage.headless, &renderer, model);
     let mut vertices = words.chunks_exact(6).map(|v| [v[0], v[1], v[2], v[3], v[4], v[5]]);
     let patches = renderer.tables(model).unwrap().plan().patches();
@@ -266,16 +267,15 @@ fn pictures_follow_positions_and_segments() {
         .map(|options| (renderer.add_model(&mesh, &options).expect("a model"), options.evaluation))
         .collect();
     let small: Vec<_> = mesh.positions_f32().iter().map(|p| p.map(|x| 0.5 * x)).collect();
-    let frames =
-        [(0, 4, false), (1, 4, true), (0, 9, false), (1, 9, true), (0, 1, true), (1, 3, false), (0, 16, false)];
-    for (frame, n, moves) in frames {
+    for (n, moves) in [(4, false), (4, true), (9, false), (9, true), (1, true), (3, false), (16, false)] {
+        let frame = begin(&mut renderer);
         for &(model, evaluation) in &models {
             if evaluation.needs_segments() {
                 renderer.set_segments(model, n).unwrap();
             }
         }
         if moves {
-            let positions = if frame == 1 { &small } else { &mesh.positions_f32() };
+            let positions = if frame.index() == 1 { &small } else { &mesh.positions_f32() };
             for model in models.iter().map(|(model, _)| *model).chain([tessellated]) {
                 renderer.set_positions(model, frame, positions).unwrap();
             }
@@ -288,7 +288,7 @@ fn pictures_follow_positions_and_segments() {
             };
             let expected = picture(tessellated);
             for &(model, evaluation) in &models {
-                assert_same(&picture(model), &expected, &format!("{evaluation:?}: {n} in frame {frame}"));
+                assert_same(&picture(model), &expected, &format!("{evaluation:?}: {n} in {frame:?}"));
             }
         }
     }
@@ -311,7 +311,7 @@ fn triangles_are_those_of_the_tessellation_stages() {
             if way.evaluation.needs_segments() {
                 renderer.set_segments(model, n).unwrap();
             }
-            stage.prepare(&mut renderer, 0);
+            let frame = stage.frame(&mut renderer);
             // Of a single quad nothing faces away.
             let styles = if name == "cube" { vec![vec![0, 1], vec![2]] } else { vec![vec![0, 1]] };
             for (styles, expected) in styles.into_iter().zip(&mut expected) {
@@ -321,7 +321,7 @@ fn triangles_are_those_of_the_tessellation_stages() {
                     ..DrawItem::new(model, n as f32)
                 });
                 let items: Vec<_> = items.collect();
-                let picture = stage.draw(&mut renderer, 0, &items).expect("a picture");
+                let picture = stage.draw(&mut renderer, frame, &items).expect("a picture");
                 let what = format!("{name}, {:?} {:?}: {n}", way.evaluation, way.construction);
                 assert_same(&picture, expected.get_or_insert(picture.clone()), &what);
             }
@@ -357,14 +357,14 @@ fn indices_are_shared() {
         assert!(evaluation == Evaluation::Compute || of_one == bytes);
         // What was to be copied for both does not go with the first.
         renderer.remove_model(first).expect("a model");
-        stage.prepare(&mut renderer, 0);
+        let frame = stage.frame(&mut renderer);
         let third = add(&mut renderer, evaluation, 6);
         let item = |model| DrawItem::new(model, 6.0);
-        let early = stage.draw(&mut renderer, 0, &[item(third)]).unwrap_err().to_string();
+        let early = stage.draw(&mut renderer, frame, &[item(third)]).unwrap_err().to_string();
         assert!(early.contains("it was not yet prepared"), "{early}");
-        stage.prepare(&mut renderer, 0);
+        let frame = stage.frame(&mut renderer);
         for model in [second, third] {
-            pictures.push(stage.draw(&mut renderer, 0, &[item(model)]).expect("a picture"));
+            pictures.push(stage.draw(&mut renderer, frame, &[item(model)]).expect("a picture"));
         }
         assert_eq!(renderer.memory_usage().indices, of_one);
         // Others are others, and go when nobody has them.
@@ -372,19 +372,16 @@ fn indices_are_shared() {
         assert!(renderer.memory_usage().indices > of_one);
         renderer.set_segments(third, 6).expect("segments");
         renderer.remove_model(second).expect("a model");
-        for frame in [0, 1, 0, 1] {
-            stage.prepare(&mut renderer, frame);
-        }
+        (0..3).for_each(|_| _ = stage.frame(&mut renderer));
+        let frame = stage.frame(&mut renderer);
         assert_eq!(renderer.memory_usage().indices, of_one);
-        pictures.push(stage.draw(&mut renderer, 0, &[item(third)]).expect("a picture"));
+        pictures.push(stage.draw(&mut renderer, frame, &[item(third)]).expect("a picture"));
         renderer.remove_model(third).expect("a model");
-        for frame in [0, 1] {
-            stage.prepare(&mut renderer, frame);
-        }
+        (0..2).for_each(|_| _ = stage.frame(&mut renderer));
         assert_eq!((renderer.memory_usage().indices, renderer.memory_usage().staging), (0, 0));
         let alone = add(&mut renderer, evaluation, 6);
-        stage.prepare(&mut renderer, 0);
-        let expected = stage.draw(&mut renderer, 0, &[item(alone)]).expect("a picture");
+        let frame = stage.frame(&mut renderer);
+        let expected = stage.draw(&mut renderer, frame, &[item(alone)]).expect("a picture");
         pictures.iter().for_each(|picture| assert_same(picture, &expected, &format!("{evaluation:?}")));
         renderer.remove_model(alone).expect("a model");
     }
@@ -423,13 +420,13 @@ fn items_do_not_depend_on_those_before() {
         DrawItem { transform: transform.to_cols_array_2d(), ..kinds[kind] }
     });
     let items: Vec<DrawItem> = items.collect();
-    stage.prepare(&mut renderer, 0);
-    let together = stage.draw(&mut renderer, 0, &items).expect("a picture");
+    let frame = stage.frame(&mut renderer);
+    let together = stage.draw(&mut renderer, frame, &items).expect("a picture");
     let view = Stage::view();
     let record = |cmd| {
         for item in &items {
             // SAFETY: inside rendering, after the preparation of the frame.
-            unsafe { renderer.cmd_draw(cmd, 0, &view, &[*item]) }?;
+            unsafe { renderer.cmd_draw(cmd, frame, &view, &[*item]) }?;
         }
         Ok::<_, ash_subdiv::Error>(())
     };
@@ -466,10 +463,10 @@ fn displaced_pictures_are_those_of_the_tessellation_stages() {
             for &(model, _) in models.iter().filter(|(_, evaluation)| evaluation.needs_segments()) {
                 renderer.set_segments(model, n).unwrap();
             }
-            stage.prepare(&mut renderer, 0);
+            let frame = stage.frame(&mut renderer);
             let mut picture = |model, height| {
                 let item = DrawItem { displacement: [height, 0.0], ..DrawItem::new(model, n as f32) };
-                stage.draw(&mut renderer, 0, &[item]).expect("a picture")
+                stage.draw(&mut renderer, frame, &[item]).expect("a picture")
             };
             let [expected, smooth] = [0.1, 0.0].map(|height| picture(models[0].0, height));
             let differ = |a: &[u8], b: &[u8]| a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 8).count();
@@ -499,8 +496,9 @@ fn lattices_may_be_fine() {
             if options.evaluation.needs_segments() {
                 renderer.set_segments(model, segments).unwrap();
             }
-            stage.prepare(&mut renderer, 0);
-            let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, segments as f32)]).expect("a picture");
+            let frame = stage.frame(&mut renderer);
+            let picture =
+                stage.draw(&mut renderer, frame, &[DrawItem::new(model, segments as f32)]).expect("a picture");
             let what = format!("{name} {:?} {:?}", options.evaluation, options.construction);
             assert_same(&picture, expected.get_or_insert(picture.clone()), &what);
             renderer.remove_model(model).unwrap();

@@ -10,6 +10,7 @@ mod common;
 mod compute;
 mod device_limits;
 mod example;
+mod frames;
 mod golden_files;
 mod goldens;
 mod headless;

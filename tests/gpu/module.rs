@@ -7,7 +7,7 @@ use ash_subdiv::headless::{Headless, HeadlessOptions, Offscreen, OffscreenDesc};
 use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::renderer::{ColorEncoding, Evaluation, Fragment, Geometry};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Error, ModelOptions, Options, Renderer, Style, Target, View, shape,
+    Construction, ControlMesh, DrawItem, Error, Frame, ModelOptions, Options, Renderer, Style, Target, View, shape,
 };
 
 #[allow(dead_code, reason = "other tests use the other shaders")]
@@ -43,12 +43,19 @@ impl Stage {
         unsafe { Renderer::new(self.headless.context(), &self.target(), options) }.expect("a renderer")
     }
 
-    fn prepare(&self, renderer: &mut Renderer, frame: u32) {
-        // SAFETY: the command buffer is being recorded, and all frames before are done.
-        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("a frame");
+    /// Begins a frame and prepares it.
+    fn frame(&self, renderer: &mut Renderer) -> Frame {
+        let frame = begin(renderer);
+        self.prepare(renderer, frame);
+        frame
     }
 
-    fn draw(&self, renderer: &mut Renderer, frame: u32, items: &[DrawItem]) -> Result<Picture, Error> {
+    fn prepare(&self, renderer: &mut Renderer, frame: Frame) {
+        // SAFETY: the command buffer is being recorded, and submitted.
+        self.headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("prepared");
+    }
+
+    fn draw(&self, renderer: &mut Renderer, frame: Frame, items: &[DrawItem]) -> Result<Picture, Error> {
         // SAFETY: as above, inside rendering.
         let pixels =
             self.target.draw(&self.headless, BLACK, |cmd| unsafe { renderer.cmd_draw(cmd, frame, &front(), items) })?;
@@ -59,6 +66,12 @@ impl Stage {
         drop(self.target);
         self.headless.finish_silent();
     }
+}
+
+/// Begins a frame, where every submission is waited for.
+fn begin(renderer: &mut Renderer) -> Frame {
+    // SAFETY: all frames before are done.
+    unsafe { renderer.begin_frame() }
 }
 
 /// What lies in [`orthographic`], seen from the front.
@@ -118,16 +131,25 @@ fn positions_of_a_frame_move_the_model() {
     let item = DrawItem::new(model, 3.0).color(WHITE);
     let moved = |x: f32| mesh.positions_f32().iter().map(|p| [p[0] + x, p[1], p[2]]).collect::<Vec<_>>();
 
-    // Another frame's positions are its own until it is prepared, then they stay.
-    renderer.set_positions(model, 1, &moved(0.5)).unwrap();
-    stage.prepare(&mut renderer, 0);
-    let picture = stage.draw(&mut renderer, 0, &[item]).unwrap();
+    let frame = stage.frame(&mut renderer);
+    let picture = stage.draw(&mut renderer, frame, &[item]).unwrap();
     assert_eq!((picture.at(0.0, 0.0), picture.at(0.6, 0.0)), ([255; 4], [0, 0, 0, 255]));
     assert_eq!(picture.covered(), 16 * 16);
-    for frame in [1, 0] {
-        stage.prepare(&mut renderer, frame);
+    // What was set for a frame after its copies were recorded, or without recording any, is in the next.
+    let late = stage.frame(&mut renderer);
+    renderer.set_positions(model, late, &moved(-0.5)).unwrap();
+    let frame = stage.frame(&mut renderer);
+    assert_eq!(stage.draw(&mut renderer, frame, &[item]).unwrap().at(-0.6, 0.0), [255; 4]);
+    let skipped = begin(&mut renderer);
+    renderer.set_positions(model, skipped, &moved(-0.5)).unwrap();
+    let frame = begin(&mut renderer);
+    renderer.set_positions(model, frame, &moved(0.5)).unwrap();
+    stage.prepare(&mut renderer, frame);
+    // They stay.
+    for _ in 0..3 {
+        let frame = stage.frame(&mut renderer);
         let picture = stage.draw(&mut renderer, frame, &[item]).unwrap();
-        assert_eq!((picture.at(0.0, 0.0), picture.at(0.6, 0.0)), ([0, 0, 0, 255], [255; 4]), "frame {frame}");
+        assert_eq!((picture.at(0.0, 0.0), picture.at(0.6, 0.0)), ([0, 0, 0, 255], [255; 4]));
     }
     drop(renderer);
     stage.finish();
@@ -143,9 +165,10 @@ fn refined_models_move_too() {
         let model = renderer.add_model(&mesh, &options).unwrap();
         assert_eq!(renderer.tables(model).unwrap().origins().len(), 16);
         let positions: Vec<_> = mesh.positions_f32().iter().map(|p| [p[0], p[1] + 0.5, p[2]]).collect();
-        renderer.set_positions(model, 0, &positions).unwrap();
-        stage.prepare(&mut renderer, 0);
-        let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0).color(WHITE)]).unwrap();
+        let frame = begin(&mut renderer);
+        renderer.set_positions(model, frame, &positions).unwrap();
+        stage.prepare(&mut renderer, frame);
+        let picture = stage.draw(&mut renderer, frame, &[DrawItem::new(model, 1.0).color(WHITE)]).unwrap();
         assert_eq!((picture.at(0.0, 0.5), picture.at(0.0, 0.0)), ([255; 4], [0, 0, 0, 255]));
         assert_eq!(picture.covered(), 16 * 16);
     }
@@ -173,17 +196,19 @@ fn adaptive_models_move_too() {
                 renderer.set_segments(model, 6).unwrap();
             }
         }
-        let draw = |renderer: &mut Renderer, frame, model| {
+        let draw = |renderer: &mut Renderer, model, moved: Option<&ControlMesh>| {
+            let frame = begin(renderer);
+            if let Some(moved) = moved {
+                renderer.set_positions(model, frame, &moved.positions_f32()).unwrap();
+            }
             stage.prepare(renderer, frame);
             stage.draw(renderer, frame, &[DrawItem::new(model, 6.0)]).unwrap().0
         };
-        let before = draw(&mut renderer, 0, model);
-        renderer.set_positions(model, 1, &moved.positions_f32()).unwrap();
-        let after = draw(&mut renderer, 1, model);
-        assert!(after != before && after == draw(&mut renderer, 0, other), "{evaluation:?} {construction:?}");
-        assert!(after == draw(&mut renderer, 0, model), "they stay");
-        renderer.set_positions(model, 1, &mesh.positions_f32()).unwrap();
-        assert!(before == draw(&mut renderer, 1, model), "{evaluation:?} {construction:?}");
+        let before = draw(&mut renderer, model, None);
+        let after = draw(&mut renderer, model, Some(&moved));
+        assert!(after != before && after == draw(&mut renderer, other, None), "{evaluation:?} {construction:?}");
+        assert!(after == draw(&mut renderer, model, None), "they stay");
+        assert!(before == draw(&mut renderer, model, Some(&mesh)), "{evaluation:?} {construction:?}");
     }
     drop(renderer);
     stage.finish();
@@ -206,8 +231,8 @@ fn a_callers_shader_gets_texture_coordinates() {
             }
             let mesh = ControlMesh::new(data).unwrap();
             let model = renderer.add_model(&mesh, &ModelOptions { construction, ..Default::default() }).unwrap();
-            stage.prepare(&mut renderer, 0);
-            let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 8.0)]).unwrap();
+            let frame = stage.frame(&mut renderer);
+            let picture = stage.draw(&mut renderer, frame, &[DrawItem::new(model, 8.0)]).unwrap();
             if triangles {
                 // Two triangles round off their shared corners; inside, the coordinate is that of the plane nearly.
                 assert_ne!(picture.at(0.3, -0.3), [0, 0, 0, 255]);
@@ -225,8 +250,8 @@ fn a_callers_shader_gets_texture_coordinates() {
     let mut data = square(1.0).into_data();
     data.texcoords = None;
     let model = renderer.add_model(&ControlMesh::new(data).unwrap(), &ModelOptions::default()).unwrap();
-    stage.prepare(&mut renderer, 0);
-    let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0)]).unwrap();
+    let frame = stage.frame(&mut renderer);
+    let picture = stage.draw(&mut renderer, frame, &[DrawItem::new(model, 1.0)]).unwrap();
     assert_eq!(picture.at(0.5, 0.5), [0, 0, 0, 255]);
     drop(renderer);
     stage.finish();
@@ -250,8 +275,8 @@ fn items_have_colours_and_words_of_their_own() {
         item
     };
     let items: Vec<_> = (0..256).map(item).collect();
-    for frame in [0, 1, 0] {
-        stage.prepare(&mut renderer, frame);
+    for _ in 0..3 {
+        let frame = stage.frame(&mut renderer);
         let pixels = stage.target.draw(&stage.headless, BLACK, |cmd| {
             // SAFETY: as in `Stage::draw`.
             unsafe {
@@ -282,14 +307,14 @@ fn removed_models_stay_until_their_frames_are_done() {
         let used = renderer.memory_usage();
         assert!(used.tables > 90_000 && used.positions == 16 * creature.vertex_count() as u64);
         assert_eq!(used.control_meshes, 4 * (2 * creature.edge_count() + 6 * creature.face_count()) as u64);
-        stage.prepare(&mut renderer, round % 2);
+        let frame = stage.frame(&mut renderer);
         // Uploads are done; what is left is a copy of the positions for each frame.
         assert_eq!(renderer.memory_usage().staging, 2 * used.positions);
         let items = [DrawItem::new(model, 2.0), DrawItem { style: 1, ..DrawItem::new(model, 1.0) }];
-        stage.draw(&mut renderer, round % 2, &items).unwrap();
+        stage.draw(&mut renderer, frame, &items).unwrap();
         renderer.remove_model(model).unwrap();
         assert_eq!(renderer.memory_usage(), empty);
-        let error = stage.draw(&mut renderer, round % 2, &items).err().unwrap().to_string();
+        let error = stage.draw(&mut renderer, frame, &items).err().unwrap().to_string();
         assert_eq!(error, format!("model {round}: there is no such model: it was removed, or is another renderer's"));
     }
     drop(renderer);
@@ -310,16 +335,16 @@ fn faces_of_all_kinds_face_outwards() {
         let mesh = shape(name).unwrap();
         for construction in Construction::ALL {
             let model = renderer.add_model(&mesh, &ModelOptions { construction, ..Default::default() }).unwrap();
-            stage.prepare(&mut renderer, 0);
+            let frame = stage.frame(&mut renderer);
             let shrink = (1.6 / mesh.diagonal()) as f32;
             // Mirrored models are inside out: their culling is the caller's business.
             let transform = glam::Mat4::from_scale(glam::Vec3::splat(shrink)).to_cols_array_2d();
             let item = DrawItem { transform, ..DrawItem::new(model, 5.0).color(WHITE) };
-            let all = stage.draw(&mut renderer, 0, &[item]).unwrap();
-            let front = stage.draw(&mut renderer, 0, &[DrawItem { style: 1, ..item }]).unwrap();
+            let all = stage.draw(&mut renderer, frame, &[item]).unwrap();
+            let front = stage.draw(&mut renderer, frame, &[DrawItem { style: 1, ..item }]).unwrap();
             assert!(all.covered() > 50, "{name}");
             assert!(all.0 == front.0, "{name} {construction:?}: culling back faces leaves holes");
-            let cage = stage.draw(&mut renderer, 0, &[DrawItem { style: 2, ..item }]).unwrap();
+            let cage = stage.draw(&mut renderer, frame, &[DrawItem { style: 2, ..item }]).unwrap();
             assert!(cage.covered() > all.covered() / 2, "{name}");
         }
     }
@@ -334,8 +359,8 @@ fn holes_are_not_drawn() {
     let mut data = square(0.9).into_data();
     data.holes = vec![0];
     let model = renderer.add_model(&ControlMesh::new(data).unwrap(), &ModelOptions::default()).unwrap();
-    stage.prepare(&mut renderer, 0);
-    let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 4.0).color(WHITE)]).unwrap();
+    let frame = stage.frame(&mut renderer);
+    let picture = stage.draw(&mut renderer, frame, &[DrawItem::new(model, 4.0).color(WHITE)]).unwrap();
     assert_eq!(picture.covered(), 0);
     drop(renderer);
     stage.finish();
@@ -351,38 +376,49 @@ fn wrong_use_is_told() {
     let draw = |renderer: &mut Renderer, frame, item| {
         stage.draw(renderer, frame, &[item]).err().expect("an error").to_string()
     };
+    let over = "the frame is over: another one began since, it was lost, or it is another renderer's: name what begin_frame gave last";
+    let old = begin(&mut renderer);
+    let told = "the frame was not prepared: record cmd_prepare before cmd_draw and cmd_cull, outside rendering";
+    assert_eq!(draw(&mut renderer, old, item), told);
+    stage.prepare(&mut renderer, old);
+    let late = renderer.add_model(&mesh, &ModelOptions::default()).unwrap();
     assert_eq!(
-        draw(&mut renderer, 0, item),
-        "model 0: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw"
+        draw(&mut renderer, old, DrawItem::new(late, 1.0)),
+        "model 1: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw"
     );
-    stage.prepare(&mut renderer, 0);
-    assert_eq!(draw(&mut renderer, 2, item), "frame index 2: Options::frames_in_flight is 2, so frames are 0 to 1");
+    let mut frame = stage.frame(&mut renderer);
+    assert_eq!(draw(&mut renderer, old, item), over);
     for factor in [0.5, f32::NAN] {
         assert_eq!(
-            draw(&mut renderer, 0, DrawItem { factor: factor.into(), ..item }),
+            draw(&mut renderer, frame, DrawItem { factor: factor.into(), ..item }),
             format!(
                 "model 0: Uniform({factor:?}): a tessellation factor is a number from 1 up, pixels and scales are above 0"
             )
         );
-        stage.prepare(&mut renderer, 0);
+        frame = stage.frame(&mut renderer);
     }
-    assert_eq!(draw(&mut renderer, 0, DrawItem { style: 1, ..item }), "style 1: Options::styles has 1");
-    stage.draw(&mut renderer, 0, &[item]).unwrap();
+    assert_eq!(draw(&mut renderer, frame, DrawItem { style: 1, ..item }), "style 1: Options::styles has 1");
+    stage.draw(&mut renderer, frame, &[item]).unwrap();
     assert_eq!(
-        draw(&mut renderer, 0, item),
-        "2 views were already drawn or culled in frame 0: raise Options::views_per_frame"
+        draw(&mut renderer, frame, item),
+        "2 views were already drawn or culled in the frame: raise Options::views_per_frame"
     );
     // Another renderer's first model is not this one's.
     let mut other = stage.renderer(&Options::default());
-    let error = other.set_positions(model, 0, &[[0.0; 3]; 8]).unwrap_err().to_string();
+    let of_other = begin(&mut other);
+    let error = other.set_positions(model, of_other, &[[0.0; 3]; 8]).unwrap_err().to_string();
     assert_eq!(error, "model 0: there is no such model: it was removed, or is another renderer's");
     let first = other.add_model(&mesh, &ModelOptions::default()).unwrap();
-    assert!(first != model && other.set_positions(model, 0, &[[0.0; 3]; 8]).is_err());
+    assert!(first != model && other.set_positions(model, of_other, &[[0.0; 3]; 8]).is_err());
     drop(other);
-    let error = renderer.set_positions(model, 0, &[[0.0; 3]; 7]).unwrap_err().to_string();
+    let error = renderer.set_positions(model, frame, &[[0.0; 3]; 7]).unwrap_err().to_string();
     assert_eq!(error, "model 0: 7 positions are given, but its control mesh has 8 vertices");
-    let error = renderer.set_positions(model, 5, &[[0.0; 3]; 8]).unwrap_err().to_string();
-    assert_eq!(error, "frame index 5: Options::frames_in_flight is 2, so frames are 0 to 1");
+    for frame in [old, of_other] {
+        assert_eq!(renderer.set_positions(model, frame, &[[0.0; 3]; 8]).unwrap_err().to_string(), over);
+    }
+    renderer.frame_lost(frame).unwrap();
+    assert_eq!(renderer.frame_lost(frame).unwrap_err().to_string(), over);
+    assert_eq!(draw(&mut renderer, frame, item), over);
     drop(renderer);
     stage.finish();
 }
@@ -395,8 +431,9 @@ fn colors_are_encoded_where_the_format_does_not() {
         // SAFETY: as in `Stage::renderer`.
         let mut renderer = unsafe { Renderer::new(stage.headless.context(), &target, &flat()) }.unwrap();
         let model = renderer.add_model(&square(0.5), &ModelOptions::default()).unwrap();
-        stage.prepare(&mut renderer, 0);
-        let picture = stage.draw(&mut renderer, 0, &[DrawItem::new(model, 1.0).color([0.5, 0.0, 1.0, 1.0])]).unwrap();
+        let frame = stage.frame(&mut renderer);
+        let picture =
+            stage.draw(&mut renderer, frame, &[DrawItem::new(model, 1.0).color([0.5, 0.0, 1.0, 1.0])]).unwrap();
         assert_eq!(picture.at(0.0, 0.0)[..3], expected, "{encoding:?}");
     }
     stage.finish();

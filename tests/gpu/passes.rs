@@ -5,7 +5,8 @@ use crate::common::passes::{Moment, PassTarget};
 use ash::vk;
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
-use ash_subdiv::{Construction, DrawItem, ModelOptions, Options, Renderer, Style, Target, View, requirements, shape};
+use ash_subdiv::{Construction, DrawItem, Frame, ModelOptions, Options, Renderer, Style, Target, View};
+use ash_subdiv::{requirements, shape};
 
 #[allow(dead_code, reason = "other tests use the other shaders")]
 mod shaders {
@@ -24,24 +25,30 @@ fn renderer(headless: &Headless, main: &PassTarget, others: &[&PassTarget], opti
     unsafe { Renderer::new(headless.context(), &main.target(), &Options { styles, ..options }) }.expect("a renderer")
 }
 
-fn prepare(headless: &Headless, renderer: &mut Renderer) {
-    // SAFETY: the command buffer is being recorded, and all frames before are done.
-    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) }).expect("a frame");
+/// Begins a frame and prepares it.
+fn prepare(headless: &Headless, renderer: &mut Renderer) -> Frame {
+    // SAFETY: all frames before are done.
+    let frame = unsafe { renderer.begin_frame() };
+    // SAFETY: the command buffer is being recorded, and submitted.
+    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("prepared");
+    frame
 }
 
-fn draw(pass: &PassTarget, renderer: &mut Renderer, view: &View, items: &[DrawItem]) -> (Vec<Vec<u8>>, Vec<f32>) {
+type Pictures = (Vec<Vec<u8>>, Vec<f32>);
+
+fn draw(pass: &PassTarget, renderer: &mut Renderer, frame: Frame, view: &View, items: &[DrawItem]) -> Pictures {
     pass.draw_all(&[BLACK, GREEN], |cmd, moment| match moment {
         Moment::Before => Ok(()),
         // SAFETY: inside rendering, after the preparation.
-        Moment::Inside => unsafe { renderer.cmd_draw(cmd, 0, view, items) },
+        Moment::Inside => unsafe { renderer.cmd_draw(cmd, frame, view, items) },
     })
 }
 
-fn draw_visible(pass: &PassTarget, renderer: &mut Renderer, visible: &VisibleItems) -> Vec<f32> {
+fn draw_visible(pass: &PassTarget, renderer: &mut Renderer, frame: Frame, visible: &VisibleItems) -> Vec<f32> {
     let drawn = pass.draw_all(&[BLACK, GREEN], |cmd, moment| match moment {
         Moment::Before => Ok(()),
         // SAFETY: inside rendering, after the search.
-        Moment::Inside => unsafe { renderer.cmd_draw_visible(cmd, 0, visible) },
+        Moment::Inside => unsafe { renderer.cmd_draw_visible(cmd, frame, visible) },
     });
     drawn.1
 }
@@ -67,21 +74,21 @@ fn depth_alone_is_drawn_as_with_colours() {
             if evaluation.needs_segments() {
                 renderer.set_segments(model, 6).expect("segments");
             }
-            prepare(&headless, &mut renderer);
+            let frame = prepare(&headless, &mut renderer);
             let item = DrawItem { cull: Cull { small: false, ..Cull::ALL }, ..DrawItem::new(model, factor) };
             let of_style = |style| DrawItem { style, cull: Cull::NONE, ..item };
-            let (colors, depths) = draw(&main, &mut renderer, &view, &[of_style(0)]);
+            let (colors, depths) = draw(&main, &mut renderer, frame, &view, &[of_style(0)]);
             let seen = depths.iter().filter(|&&depth| depth < 1.0).count();
             assert_eq!(colors[0].chunks(4).filter(|pixel| pixel[..3] != [0; 3]).count(), seen);
             assert!(seen > 1000, "{seen}");
-            let (colors, alone) = draw(&shadow, &mut renderer, &view, &[of_style(1)]);
+            let (colors, alone) = draw(&shadow, &mut renderer, frame, &view, &[of_style(1)]);
             assert!(colors.is_empty() && alone == depths, "{evaluation:?} {construction:?}, dynamic: {dynamic}");
             // One search for both.
             // SAFETY: outside rendering, after the preparation.
-            let visible = headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, &view, &[item]) });
+            let visible = headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, frame, &view, &[item]) });
             let visible = visible.expect("lists");
-            assert!(draw_visible(&shadow, &mut renderer, &visible.in_style(1)) == depths, "{evaluation:?}");
-            assert!(draw_visible(&main, &mut renderer, &visible) == depths, "{evaluation:?}");
+            assert!(draw_visible(&shadow, &mut renderer, frame, &visible.in_style(1)) == depths, "{evaluation:?}");
+            assert!(draw_visible(&main, &mut renderer, frame, &visible) == depths, "{evaluation:?}");
         }
     }
     headless.finish_silent();
@@ -103,10 +110,10 @@ fn samples_are_those_of_the_style() {
         let renderer = unsafe { Renderer::new(headless.context(), target, &Options { styles, ..Options::default() }) };
         let mut renderer = renderer.expect("a renderer");
         let model = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
-        prepare(&headless, &mut renderer);
+        let frame = prepare(&headless, &mut renderer);
         let item = DrawItem { style: 1, ..DrawItem::new(model, 4.0) };
         // SAFETY: inside rendering, after the preparation.
-        let record = |cmd| unsafe { renderer.cmd_draw(cmd, 0, &view, &[item]) };
+        let record = |cmd| unsafe { renderer.cmd_draw(cmd, frame, &view, &[item]) };
         pictures.push(four.0.draw(&headless, BLACK, record).expect("a picture"));
     }
     assert!(pictures[0] == pictures[1]);
@@ -124,10 +131,10 @@ fn a_callers_shader_cuts_holes_into_depth() {
     let options = Options { styles: vec![Style::default(), cut_out], texcoords: true, ..Options::default() };
     let mut renderer = renderer(&headless, &pass, &[], options);
     let model = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
-    prepare(&headless, &mut renderer);
+    let frame = prepare(&headless, &mut renderer);
     let view = View::framing(mesh.bounds(), [0.1, 0.2, 1.0], 1.0);
     let mut covered = |style| {
-        let (_, depths) = draw(&pass, &mut renderer, &view, &[DrawItem { style, ..DrawItem::new(model, 4.0) }]);
+        let (_, depths) = draw(&pass, &mut renderer, frame, &view, &[DrawItem { style, ..DrawItem::new(model, 4.0) }]);
         depths.into_iter().filter(|&depth| depth < 1.0).count()
     };
     let [all, cut] = [0, 1].map(&mut covered);
@@ -149,8 +156,9 @@ fn attachments_that_our_shaders_do_not_know_stay() {
         assert!(requirements(&pass.target(), &options).features.independent_blend);
         let mut renderer = renderer(&headless, &pass, &[], options);
         let model = renderer.add_model(&mesh, &ModelOptions::default()).expect("a model");
-        prepare(&headless, &mut renderer);
-        let mut drawn = |style| draw(&pass, &mut renderer, &view, &[DrawItem { style, ..DrawItem::new(model, 2.0) }]).0;
+        let frame = prepare(&headless, &mut renderer);
+        let mut drawn =
+            |style| draw(&pass, &mut renderer, frame, &view, &[DrawItem { style, ..DrawItem::new(model, 2.0) }]).0;
         let of = |picture: &[u8], color: [u8; 4]| picture.chunks(4).filter(|pixel| *pixel == color).count();
         let pixels = (EXTENT.width * EXTENT.height) as usize;
         let ours = drawn(0);

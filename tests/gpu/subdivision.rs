@@ -198,22 +198,24 @@ fn faces_follow_positions() {
     let mesh = shape("creature").expect("built in");
     let model = renderer.add_model(&mesh, &self::options()).expect("a model");
     let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
-    let mut picture = |frame, positions: &[[f32; 3]], factors: &[f32]| {
+    let mut picture = |positions: &[[f32; 3]], factors: &[f32]| {
+        // SAFETY: all frames before are done.
+        let frame = unsafe { renderer.begin_frame() };
         renderer.set_positions(model, frame, positions).expect("as many");
-        // SAFETY: outside rendering, then inside; all frames before are done.
-        headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("a frame");
+        // SAFETY: outside rendering, then inside.
+        headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("prepared");
         let items: Vec<_> = factors.iter().map(|&factor| DrawItem::new(model, factor)).collect();
         target.draw(&headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, frame, &view, &items) })
     };
     let positions = mesh.positions_f32();
     let half: Vec<_> = positions.iter().map(|p| p.map(|x| 0.5 * x)).collect();
     let covered = |pixels: &[u8]| pixels.chunks(4).filter(|pixel| pixel[3] > 0).count();
-    let whole = covered(&picture(0, &positions, &[4.0]).expect("a picture"));
-    let smaller = covered(&picture(1, &half, &[4.0]).expect("a picture"));
+    let whole = covered(&picture(&positions, &[4.0]).expect("a picture"));
+    let smaller = covered(&picture(&half, &[4.0]).expect("a picture"));
     assert!(whole > 1000 && smaller.abs_diff(whole / 4) < whole / 20, "{whole} {smaller}");
-    let levels = covered(&picture(0, &positions, &[8.0, 1.0, 2.0]).expect("a picture"));
+    let levels = covered(&picture(&positions, &[8.0, 1.0, 2.0]).expect("a picture"));
     assert!(levels >= whole, "{levels} {whole}");
-    let error = picture(0, &positions, &[4.0, 3.0]).unwrap_err().to_string();
+    let error = picture(&positions, &[4.0, 3.0]).unwrap_err().to_string();
     let told = "model 0: Uniform(3.0): subdivision has uniform factors of 1, 2, 4 and 8, for levels 0 to 3";
     assert_eq!(error, told);
     drop(renderer);
@@ -237,10 +239,12 @@ fn a_level_less_of_a_refined_mesh_is_the_same_picture() {
         let view = View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0);
         let mut picture = |refine, factor: f32| {
             let model = renderer.add_model(&mesh, &ModelOptions { refine, ..options() }).expect("a model");
-            // SAFETY: outside rendering, then inside; all frames before are done.
-            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) }).expect("a frame");
+            // SAFETY: all frames before are done.
+            let frame = unsafe { renderer.begin_frame() };
+            // SAFETY: outside rendering, then inside.
+            headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("prepared");
             let item = [DrawItem::new(model, factor)];
-            let draw = |cmd| unsafe { renderer.cmd_draw(cmd, 0, &view, &item) };
+            let draw = |cmd| unsafe { renderer.cmd_draw(cmd, frame, &view, &item) };
             target.draw(&headless, [0.0; 4], draw).expect("a picture")
         };
         let (whole, refined) = (picture(0, 8.0), picture(1, 4.0));

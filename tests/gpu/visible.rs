@@ -1,13 +1,13 @@
 //! Patches that compute leaves out before the draws.
 
 use crate::common;
-use crate::common::stage::Stage;
+use crate::common::stage::{Stage, begin};
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::headless::{Statistics, Texels, Texture};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Error, Fallback, ModelId, ModelOptions, Options, Renderer, Scheme, Style,
-    View, shape,
+    Construction, ControlMesh, DrawItem, Error, Fallback, Frame, ModelId, ModelOptions, Options, Renderer, Scheme,
+    Style, View, shape,
 };
 use glam::{Mat4, Vec3};
 
@@ -36,14 +36,14 @@ fn views(mesh: &ControlMesh) -> [View; 2] {
     [View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0), near].map(|view| view.sized(96, 96))
 }
 
-fn cull(stage: &Stage, renderer: &mut Renderer, view: &View, items: &[DrawItem]) -> VisibleItems {
-    cull_in(stage, renderer, 0, view, items).expect("lists")
+fn cull(stage: &Stage, renderer: &mut Renderer, frame: Frame, view: &View, items: &[DrawItem]) -> VisibleItems {
+    find(stage, renderer, frame, view, items).expect("lists")
 }
 
-fn cull_in(
+fn find(
     stage: &Stage,
     renderer: &mut Renderer,
-    frame: u32,
+    frame: Frame,
     view: &View,
     items: &[DrawItem],
 ) -> Result<VisibleItems, Error> {
@@ -51,36 +51,28 @@ fn cull_in(
     stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, frame, view, items) })
 }
 
-fn draw(stage: &Stage, renderer: &mut Renderer, visible: &VisibleItems) -> Result<Vec<u8>, Error> {
-    draw_in(stage, renderer, 0, visible)
-}
-
-fn draw_in(stage: &Stage, renderer: &mut Renderer, frame: u32, visible: &VisibleItems) -> Result<Vec<u8>, Error> {
+fn draw(stage: &Stage, renderer: &mut Renderer, frame: Frame, visible: &VisibleItems) -> Result<Vec<u8>, Error> {
     // SAFETY: as above, inside rendering.
     let record = |cmd| unsafe { renderer.cmd_draw_visible(cmd, frame, visible) };
     stage.target.draw(&stage.headless, [0.0; 4], record)
 }
 
-fn draw_all(stage: &Stage, renderer: &mut Renderer, view: &View, items: &[DrawItem]) -> Vec<u8> {
-    draw_all_in(stage, renderer, 0, view, items)
-}
-
-fn draw_all_in(stage: &Stage, renderer: &mut Renderer, frame: u32, view: &View, items: &[DrawItem]) -> Vec<u8> {
+fn draw_all(stage: &Stage, renderer: &mut Renderer, frame: Frame, view: &View, items: &[DrawItem]) -> Vec<u8> {
     // SAFETY: as above.
     let record = |cmd| unsafe { renderer.cmd_draw(cmd, frame, view, items) };
     stage.target.draw(&stage.headless, [0.0; 4], record).expect("a picture")
 }
 
 /// What the stages do for an item, looked through before or not.
-fn count(stage: &Stage, renderer: &mut Renderer, view: &View, item: DrawItem, lists: bool) -> Statistics {
+fn count(stage: &Stage, renderer: &mut Renderer, frame: Frame, view: &View, item: DrawItem, lists: bool) -> Statistics {
     let counted = stage.headless.counted(|cmd| {
         // SAFETY: as above.
         unsafe {
-            let visible = if lists { Some(renderer.cmd_cull(cmd, 0, view, &[item])?) } else { None };
+            let visible = if lists { Some(renderer.cmd_cull(cmd, frame, view, &[item])?) } else { None };
             stage.target.cmd_begin(cmd, [0.0; 4]);
             match &visible {
-                Some(visible) => renderer.cmd_draw_visible(cmd, 0, visible)?,
-                None => renderer.cmd_draw(cmd, 0, view, &[item])?,
+                Some(visible) => renderer.cmd_draw_visible(cmd, frame, visible)?,
+                None => renderer.cmd_draw(cmd, frame, view, &[item])?,
             }
             stage.target.cmd_end(cmd);
         }
@@ -138,13 +130,15 @@ fn leave_out_the_same(construction: Construction, models: &[(&str, Scheme)], way
         let model = renderer.add_model(&mesh, &options).expect("a model");
         let edges = renderer.tables(model).unwrap().edges().expect("asked for").vertices.len();
         let factors: Vec<f32> = (0..edges).map(|edge| 2.0 + (edge % 5) as f32).collect();
-        renderer.set_edge_factors(model, 0, &factors).expect("factors");
+        let frame = begin(&mut renderer);
+        renderer.set_edge_factors(model, frame, &factors).expect("factors");
         let mut less = 0;
         for view in views(&mesh) {
             for &(factor, cull) in ways {
-                stage.prepare(&mut renderer, 0);
+                let frame = stage.frame(&mut renderer);
                 let item = DrawItem { cull, ..moved(model, factor) };
-                let [shader, lists] = [false, true].map(|lists| count(&stage, &mut renderer, &view, item, lists));
+                let [shader, lists] =
+                    [false, true].map(|lists| count(&stage, &mut renderer, frame, &view, item, lists));
                 let numbers = |s: &Statistics| (s.evaluation_invocations, s.clipping_invocations);
                 assert_eq!(numbers(&lists), numbers(&shader), "{name}, {factor:?}, {cull:?}");
                 let fewer = shader.control_patches - lists.control_patches;
@@ -187,11 +181,11 @@ fn pictures_stay_the_same() {
                 renderer.set_segments(model, 6).expect("segments");
             }
             for (view, style) in views(&mesh).into_iter().flat_map(|view| [(view, 0), (view, 1)]) {
-                stage.prepare(&mut renderer, 0);
+                let frame = stage.frame(&mut renderer);
                 let item = DrawItem { cull: Cull::ALL, style, ..moved(model, 6.0.into()) };
-                let all = draw_all(&stage, &mut renderer, &view, &[DrawItem { cull: Cull::NONE, ..item }]);
-                let visible = cull(&stage, &mut renderer, &view, &[item]);
-                let drawn = draw(&stage, &mut renderer, &visible).unwrap();
+                let all = draw_all(&stage, &mut renderer, frame, &view, &[DrawItem { cull: Cull::NONE, ..item }]);
+                let visible = cull(&stage, &mut renderer, frame, &view, &[item]);
+                let drawn = draw(&stage, &mut renderer, frame, &visible).unwrap();
                 assert!(drawn == all, "{name}, {construction:?}, {evaluation:?}, {style}");
                 assert!(all.chunks(4).any(|pixel| pixel != [0; 4]));
             }
@@ -212,14 +206,14 @@ fn pictures_stay_the_same() {
             renderer.set_segments(model, 6).expect("segments");
         }
         for view in views(&mesh) {
-            stage.prepare(&mut renderer, 0);
+            let frame = stage.frame(&mut renderer);
             let item = DrawItem { cull: Cull::ALL, displacement: [0.2, 0.0], ..moved(model, 6.0.into()) };
             let not_culled = DrawItem { cull: Cull::NONE, ..item };
-            let all = draw_all(&stage, &mut renderer, &view, &[not_culled]);
-            let visible = cull(&stage, &mut renderer, &view, &[item]);
-            assert!(draw(&stage, &mut renderer, &visible).unwrap() == all, "{options:?}");
-            let before = count(&stage, &mut renderer, &view, not_culled, false);
-            let now = count(&stage, &mut renderer, &view, item, true);
+            let all = draw_all(&stage, &mut renderer, frame, &view, &[not_culled]);
+            let visible = cull(&stage, &mut renderer, frame, &view, &[item]);
+            assert!(draw(&stage, &mut renderer, frame, &visible).unwrap() == all, "{options:?}");
+            let before = count(&stage, &mut renderer, frame, &view, not_culled, false);
+            let now = count(&stage, &mut renderer, frame, &view, item, true);
             assert_eq!(before.clipping_invocations > now.clipping_invocations, view == views(&mesh)[1]);
         }
     }
@@ -239,19 +233,20 @@ fn instances_are_of_the_patches_that_are_left() {
     let options = ModelOptions { edge_factors: true, ..instanced };
     let uneven = renderer.add_model(&mesh, &options).expect("a model");
     let edges = renderer.tables(uneven).unwrap().edges().expect("asked for").vertices.len();
-    renderer.set_edge_factors(uneven, 0, &vec![8.0; edges]).expect("factors");
+    let frame = begin(&mut renderer);
+    renderer.set_edge_factors(uneven, frame, &vec![8.0; edges]).expect("factors");
     for model in [plain, uneven] {
         renderer.set_segments(model, 8).expect("segments");
     }
     for view in views(&mesh) {
         for cull in [BACK, FRUSTUM] {
-            stage.prepare(&mut renderer, 0);
+            let frame = stage.frame(&mut renderer);
             let factors = captured.factors(&CaptureDraw { view, cull, ..CaptureDraw::new(8.0) }).expect("a capture");
             let patches = captured.tables().plan().patches().iter().zip(factors).filter(|(_, f)| !f.culled);
             let triangles: u64 = patches.map(|(patch, _)| if patch.kind.corners() == 4 { 2 * 64 } else { 64 }).sum();
             for (model, factor) in [(plain, Factor::Uniform(8.0)), (uneven, Factor::Edges(1.0))] {
                 let item = DrawItem { cull, ..DrawItem::new(model, factor) };
-                let counted = count(&stage, &mut renderer, &view, item, true);
+                let counted = count(&stage, &mut renderer, frame, &view, item, true);
                 assert_eq!(counted.clipping_invocations, triangles, "{factor:?}, {cull:?}");
             }
         }
@@ -259,12 +254,13 @@ fn instances_are_of_the_patches_that_are_left() {
     // Of edges with fewer segments less is known: nothing that they turn to the eye may be missed.
     let [view, _] = views(&mesh);
     let factors: Vec<f32> = (0..edges).map(|edge| [1.0, 8.0, 3.0][edge % 3]).collect();
-    renderer.set_edge_factors(uneven, 0, &factors).expect("factors");
-    stage.prepare(&mut renderer, 0);
+    let frame = begin(&mut renderer);
+    renderer.set_edge_factors(uneven, frame, &factors).expect("factors");
+    stage.prepare(&mut renderer, frame);
     let item = DrawItem { cull: BACK, ..DrawItem::new(uneven, Factor::Edges(1.0)) };
-    let all = draw_all(&stage, &mut renderer, &view, &[item]);
-    let visible = cull(&stage, &mut renderer, &view, &[item]);
-    assert!(draw(&stage, &mut renderer, &visible).unwrap() == all);
+    let all = draw_all(&stage, &mut renderer, frame, &view, &[item]);
+    let visible = cull(&stage, &mut renderer, frame, &view, &[item]);
+    assert!(draw(&stage, &mut renderer, frame, &visible).unwrap() == all);
     drop((renderer, captured));
     stage.finish();
 }
@@ -308,31 +304,31 @@ fn lists_grow_with_what_is_drawn() {
         ],
     ];
     let mut before = 0;
-    for frame in [0, 1, 0] {
-        stage.prepare(&mut renderer, frame);
+    for _ in 0..3 {
+        let frame = stage.frame(&mut renderer);
         let [view, near] = views(&creature);
         let views = [view, near, view];
         let visible: Vec<_> = views.iter().zip(scenes.iter().cycle()).collect();
-        let mut find = |view, items| cull_in(&stage, &mut renderer, frame, view, items).expect("lists");
+        let mut find = |view, items| find(&stage, &mut renderer, frame, view, items).expect("lists");
         let visible: Vec<_> = visible.into_iter().map(|(view, items)| (view, items, find(view, items))).collect();
         for (view, items, visible) in visible {
             for style in [0, 1] {
                 let items: Vec<_> = items.iter().map(|&item| DrawItem { cull: Cull::NONE, style, ..item }).collect();
-                let all = draw_all_in(&stage, &mut renderer, frame, view, &items);
-                let drawn = draw_in(&stage, &mut renderer, frame, &visible.in_style(style)).unwrap();
-                assert!(drawn == all, "frame {frame}, style {style}");
+                let all = draw_all(&stage, &mut renderer, frame, view, &items);
+                let drawn = draw(&stage, &mut renderer, frame, &visible.in_style(style)).unwrap();
+                assert!(drawn == all, "{frame:?}, style {style}");
             }
         }
         // Each frame has its own, and keeps them.
         let lists = renderer.memory_usage().lists;
         let patches = renderer.tables(instanced).unwrap().plan().patches().len() as u64;
-        assert_eq!(lists > before + (4 + 192) * patches, before == 0 || frame == 1, "{lists} bytes");
+        assert_eq!(lists > before + (4 + 192) * patches, before == 0 || frame.index() == 1, "{lists} bytes");
         before = lists;
     }
     // More than offsets of 32 bits reach, which takes no memory to find out.
-    stage.prepare(&mut renderer, 0);
+    let frame = stage.frame(&mut renderer);
     let many = vec![item(instanced, 1.0, 0.2); 400];
-    let error = cull_in(&stage, &mut renderer, 0, &views(&creature)[0], &many).unwrap_err().to_string();
+    let error = find(&stage, &mut renderer, frame, &views(&creature)[0], &many).unwrap_err().to_string();
     let told = error.strip_suffix(" bytes in a frame, 2147483648 at most: draw fewer items").expect(&error);
     let bytes = told.strip_prefix("lists of patches that can be seen take ").expect(&error);
     assert!(bytes.parse::<u64>().unwrap() > 400 * (4 + 192) * 32_768, "{error}");
@@ -351,15 +347,16 @@ fn copies_come_before_the_search() {
     let item = DrawItem { cull: BACK, ..DrawItem::new(model, 2.0) };
     renderer.make_pipelines(model, item.factor, item.cull).expect("pipelines");
     let [view, _] = views(&mesh);
-    for frame in [0, 1] {
+    for _ in 0..2 {
+        let frame = begin(&mut renderer);
         renderer.set_positions(model, frame, &mesh.positions_f32()).expect("positions");
         // SAFETY: outside rendering, and every submission is waited for.
         let visible = stage.headless.try_submit(|cmd| unsafe {
             renderer.cmd_prepare(cmd, frame)?;
             renderer.cmd_cull(cmd, frame, &view, &[item])
         });
-        let drawn = draw_in(&stage, &mut renderer, frame, &visible.expect("lists")).unwrap();
-        assert!(drawn == draw_all_in(&stage, &mut renderer, frame, &view, &[item]));
+        let drawn = draw(&stage, &mut renderer, frame, &visible.expect("lists")).unwrap();
+        assert!(drawn == draw_all(&stage, &mut renderer, frame, &view, &[item]));
     }
     drop(renderer);
     stage.finish();
@@ -372,26 +369,31 @@ fn wrong_use_is_told() {
     let mut renderer = stage.renderer(&options());
     let model = renderer.add_model(&mesh, &cached(Scheme::Gregory, Evaluation::Tessellation)).expect("a model");
     let [view, _] = views(&mesh);
-    stage.prepare(&mut renderer, 0);
+    let frame = stage.frame(&mut renderer);
     let item = DrawItem { cull: BACK, ..DrawItem::new(model, 2.0) };
-    let visible = cull(&stage, &mut renderer, &view, &[item]);
+    let visible = cull(&stage, &mut renderer, frame, &view, &[item]);
     let told = |error: Error| error.to_string();
-    assert_eq!(told(draw(&stage, &mut renderer, &visible.in_style(7)).unwrap_err()), "style 7: Options::styles has 1");
-    // Preparing another frame does not matter.
-    stage.prepare(&mut renderer, 1);
-    draw(&stage, &mut renderer, &visible).expect("a picture");
-    stage.prepare(&mut renderer, 0);
     assert_eq!(
-        told(draw(&stage, &mut renderer, &visible).unwrap_err()),
-        "frame 0: what can be seen was found before it was prepared, for another frame or by another renderer: call cmd_cull \
-         after cmd_prepare, and draw in the same frame"
+        told(draw(&stage, &mut renderer, frame, &visible.in_style(7)).unwrap_err()),
+        "style 7: Options::styles has 1"
     );
-    stage.prepare(&mut renderer, 1);
-    let visible = cull(&stage, &mut renderer, &view, &[item]);
+    // Preparing it again does not matter.
+    stage.prepare(&mut renderer, frame);
+    draw(&stage, &mut renderer, frame, &visible).expect("a picture");
+    let frame = stage.frame(&mut renderer);
+    assert_eq!(
+        told(draw(&stage, &mut renderer, frame, &visible).unwrap_err()),
+        "what can be seen was found in another frame, or by another renderer: call cmd_cull, and draw in the same frame"
+    );
+    let frame = stage.frame(&mut renderer);
+    let visible = cull(&stage, &mut renderer, frame, &view, &[item]);
     let mut other = stage.renderer(&options());
-    stage.prepare(&mut other, 0);
-    for error in [draw_in(&stage, &mut renderer, 1, &visible), draw(&stage, &mut other, &visible)] {
-        assert!(matches!(error, Err(Error::OtherFrame { .. })), "{error:?}");
+    let of_other = stage.frame(&mut other);
+    let error = draw(&stage, &mut other, of_other, &visible);
+    assert!(matches!(error, Err(Error::OtherFrame)), "{error:?}");
+    for (renderer, frame) in [(&mut renderer, of_other), (&mut other, frame)] {
+        let error = draw(&stage, renderer, frame, &visible);
+        assert!(matches!(error, Err(Error::OldFrame)), "{error:?}");
     }
     drop(other);
 
@@ -399,31 +401,33 @@ fn wrong_use_is_told() {
     let options = ModelOptions { edge_factors: true, ..cached(Scheme::Gregory, Evaluation::Instanced) };
     let lattice = renderer.add_model(&mesh, &options).expect("a model");
     renderer.set_segments(lattice, 8).expect("segments");
-    stage.prepare(&mut renderer, 0);
+    let frame = stage.frame(&mut renderer);
     let of_lattice = DrawItem { cull: BACK, ..DrawItem::new(lattice, Factor::Edges(1.0)) };
-    let visible = cull(&stage, &mut renderer, &view, &[item, of_lattice]);
+    let visible = cull(&stage, &mut renderer, frame, &view, &[item, of_lattice]);
     renderer.set_segments(lattice, 2).expect("segments");
-    stage.prepare(&mut renderer, 1);
-    let error = draw(&stage, &mut renderer, &visible);
+    stage.prepare(&mut renderer, frame);
+    let error = draw(&stage, &mut renderer, frame, &visible);
     assert!(matches!(error, Err(Error::OtherSegments { segments: 2, .. })), "{error:?}");
     renderer.remove_model(model).unwrap();
-    let error = draw(&stage, &mut renderer, &visible);
+    let error = draw(&stage, &mut renderer, frame, &visible);
     assert!(matches!(error, Err(Error::NoSuchModel { .. })), "{error:?}");
     let model = renderer.add_model(&mesh, &cached(Scheme::Gregory, Evaluation::Tessellation)).expect("a model");
-    stage.prepare(&mut renderer, 0);
+    let frame = stage.frame(&mut renderer);
     let item = DrawItem { model, ..item };
 
     let bad = DrawItem { factor: Factor::Uniform(0.5), ..item };
     // SAFETY: outside rendering, and every submission is waited for.
-    let error = stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, 0, &view, &[item, bad]) }).unwrap_err();
+    let error =
+        stage.headless.try_submit(|cmd| unsafe { renderer.cmd_cull(cmd, frame, &view, &[item, bad]) }).unwrap_err();
     assert!(told(error).contains("a tessellation factor is a number from 1 up"));
-    stage.prepare(&mut renderer, 0);
-    let error = (0..17).find_map(|_| cull_in(&stage, &mut renderer, 0, &view, &[item]).err()).expect("an error");
+    let frame = stage.frame(&mut renderer);
+    let error = (0..17).find_map(|_| find(&stage, &mut renderer, frame, &view, &[item]).err()).expect("an error");
     assert!(matches!(error, Error::TooManyViews { max: 16, .. }), "{error}");
     drop(renderer);
     // The device could, but was not asked to.
     let mut renderer = stage.renderer(&Options::default());
-    let error = cull_in(&stage, &mut renderer, 0, &view, &[]);
+    let frame = stage.frame(&mut renderer);
+    let error = find(&stage, &mut renderer, frame, &view, &[]);
     assert!(matches!(error, Err(Error::NoVisibleLists)), "{error:?}");
     drop(renderer);
     stage.finish();

@@ -105,18 +105,20 @@ impl RenderArgs {
             ..DrawItem::new(model, self.factor.factor())
         };
         let draws = self.shading.draws(item);
+        // SAFETY: there was no frame before.
+        let frame = unsafe { renderer.begin_frame() };
         // SAFETY: the command buffer is being recorded, outside rendering.
         let visible = headless.try_submit(|cmd| unsafe {
-            renderer.cmd_prepare(cmd, 0)?;
-            culls.then(|| renderer.cmd_cull(cmd, 0, &picture.view, &draws)).transpose()
+            renderer.cmd_prepare(cmd, frame)?;
+            culls.then(|| renderer.cmd_cull(cmd, frame, &picture.view, &draws)).transpose()
         })?;
         let record = |cmd| {
             // SAFETY: inside rendering that fits the target, after the frame was prepared; the set outlives the submission.
             unsafe {
                 painting.iter().for_each(|painting| painting.cmd_bind(headless, cmd, &renderer));
                 match &visible {
-                    Some(visible) => renderer.cmd_draw_visible(cmd, 0, visible),
-                    None => renderer.cmd_draw(cmd, 0, &picture.view, &draws),
+                    Some(visible) => renderer.cmd_draw_visible(cmd, frame, visible),
+                    None => renderer.cmd_draw(cmd, frame, &picture.view, &draws),
                 }
             }
         };

@@ -72,10 +72,14 @@ impl SharedIndices {
         self.patches[LatticeShape::place(kind)]
     }
 
-    /// Gives away what is to be copied to the device, and whereto: to the first that asks.
-    pub(crate) fn take_upload(&self) -> Option<(Buffer, vk::Buffer)> {
-        let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner).take();
-        staged.map(|staged| (staged, self.buffer.raw()))
+    /// Gives away what is to be copied to the device: to the first that asks.
+    pub(crate) fn take_upload(&self) -> Option<Buffer> {
+        self.staged.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Takes back what was not copied.
+    pub(crate) fn give_back(&self, staged: Buffer) {
+        *self.staged.lock().unwrap_or_else(PoisonError::into_inner) = Some(staged);
     }
 
     pub(crate) fn add_memory(&self, usage: &mut MemoryUsage) {

@@ -158,10 +158,11 @@ impl Lattice {
         Ok(Self { segments, vertices, indices, groups, prepared: false })
     }
 
-    /// Gives away what is to be copied to the device, and whereto, unless another model's lattice did; prepared by that.
-    pub(crate) fn take_upload(&mut self) -> Option<(Buffer, vk::Buffer)> {
+    /// Gives away what is to be copied to the device, with the indices that it is of, unless another model's lattice did; prepared by
+    /// that.
+    pub(crate) fn take_upload(&mut self) -> Option<(Buffer, Arc<SharedIndices>)> {
         self.prepared = true;
-        self.indices.take_upload()
+        self.indices.take_upload().map(|staged| (staged, self.indices.clone()))
     }
 
     /// Without indices.

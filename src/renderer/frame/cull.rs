@@ -5,10 +5,10 @@
 //! their order, but of every 128 first those within the frustum, then those that cross it. Where control points are not cached it
 //! makes those of all patches, and the draws make those of the patches that are left again.
 
-use super::Renderer;
 use super::lists::ListLayout;
 use super::resolved::ResolvedItem;
 use super::visible::{ItemLists, List, VisibleItem, VisibleItems};
+use super::{Frame, Renderer};
 #[cfg(doc)]
 use crate::renderer::Evaluation;
 use crate::renderer::evaluate::{Bound, Drawn, Place, path};
@@ -36,11 +36,12 @@ impl Renderer {
     pub unsafe fn cmd_cull(
         &mut self,
         cmd: vk::CommandBuffer,
-        frame_index: u32,
+        frame: Frame,
         view: &View,
         items: &[DrawItem],
     ) -> Result<VisibleItems, Error> {
-        self.check_frame(frame_index)?;
+        self.check_prepared(frame)?;
+        let frame_index = frame.index();
         if !self.options.visible_lists {
             return Err(Error::NoVisibleLists);
         }
@@ -67,15 +68,7 @@ impl Renderer {
         }
         let lists = &self.lists[frame_index as usize];
         let (set, buffer) = (lists.set.raw(), lists.raw());
-        let visible = VisibleItems {
-            frame: frame_index,
-            preparation: self.preparations[frame_index as usize],
-            view: *view,
-            view_offset,
-            set,
-            buffer,
-            items: listed,
-        };
+        let visible = VisibleItems { frame, view: *view, view_offset, set, buffer, items: listed };
         if bytes > 0 {
             // SAFETY: as the caller promises.
             unsafe { self.cmd_lists(cmd, &visible)? };
@@ -86,20 +79,19 @@ impl Renderer {
     /// Records the draws of what [`Renderer::cmd_cull`] found. Otherwise as [`Renderer::cmd_draw`].
     ///
     /// # Errors
-    /// As [`Renderer::cmd_draw`]; [`Error::OtherFrame`] if `visible` was found for another frame or by another renderer, or before
-    /// this frame was last prepared; [`Error::OtherSegments`] if the segments were changed since.
+    /// As [`Renderer::cmd_draw`]; [`Error::OtherFrame`] if `visible` was found for another frame or by another renderer; [`Error::OtherSegments`] if the segments were changed since.
     ///
     /// # Safety
     /// As [`Renderer::cmd_draw`]; after [`Renderer::cmd_cull`].
     pub unsafe fn cmd_draw_visible(
         &mut self,
         cmd: vk::CommandBuffer,
-        frame_index: u32,
+        frame: Frame,
         visible: &VisibleItems,
     ) -> Result<(), Error> {
-        self.check_frame(frame_index)?;
-        if (visible.frame, visible.preparation) != (frame_index, self.preparations[frame_index as usize]) {
-            return Err(Error::OtherFrame { frame: frame_index });
+        self.check_prepared(frame)?;
+        if visible.frame != frame {
+            return Err(Error::OtherFrame);
         }
         let mut bound = Bound::default();
         for own in &visible.items {

@@ -1,8 +1,8 @@
 //! Recording the draws of a view.
 
-use super::Renderer;
 use super::resolved::ResolvedItem;
 use super::visible::ItemLists;
+use super::{Frame, Renderer};
 use crate::renderer::evaluate::{Bound, BoundLattice, Drawn, DrawnGroup, Place, Recorder, path};
 use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View};
 use crate::renderer::shader::{Cut, GeometryKey, PipelineKey, ViewData};
@@ -16,7 +16,7 @@ impl Renderer {
     /// and rasterizer discard where those are dynamic.
     ///
     /// # Errors
-    /// Unknown models, styles and frames, factors below 1, more items than 2^23 and more views than
+    /// [`Error::OldFrame`], [`Error::FrameNotPrepared`]; unknown models and styles, factors below 1, more items than 2^23 and more views than
     /// [`Options::views_per_frame`](crate::renderer::Options::views_per_frame). Items before the wrong one are recorded.
     ///
     /// # Safety
@@ -26,11 +26,12 @@ impl Renderer {
     pub unsafe fn cmd_draw(
         &mut self,
         cmd: vk::CommandBuffer,
-        frame_index: u32,
+        frame: Frame,
         view: &View,
         items: &[DrawItem],
     ) -> Result<(), Error> {
-        self.check_frame(frame_index)?;
+        self.check_prepared(frame)?;
+        let frame_index = frame.index();
         let view_offset = self.take_view(frame_index, view)?;
         self.make_room(frame_index, 0, items.len())?;
         let lists = &mut self.lists[frame_index as usize];
@@ -52,7 +53,7 @@ impl Renderer {
         let max = self.options.views_per_frame;
         let drawn = &mut self.views_drawn[frame as usize];
         if *drawn >= max {
-            return Err(Error::TooManyViews { frame, max });
+            return Err(Error::TooManyViews { max });
         }
         let offset = ViewData::STRIDE * (u64::from(frame) * u64::from(max) + u64::from(*drawn));
         *drawn += 1;

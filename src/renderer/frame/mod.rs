@@ -2,6 +2,7 @@
 
 #[cfg(doc)]
 use crate::renderer::{Fragment, Style, check};
+mod begun;
 mod cull;
 mod draw;
 mod lists;
@@ -20,11 +21,13 @@ use crate::renderer::model::{Displacements, Model, Surroundings};
 use crate::renderer::options::{
     Cull, DisplacementId, DisplacementMap, Error, Factor, MemoryUsage, ModelId, ModelOptions, Options, Target,
 };
-use crate::renderer::pipelines::check_properties;
+use crate::renderer::pipelines::{check_passes, check_properties};
 use crate::renderer::shader::Capture;
 use crate::table::ModelTables;
 use crate::table::Notice;
 use ash::vk;
+use begun::Begun;
+pub use begun::Frame;
 use lists::{FrameLists, ListPipelines};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -38,7 +41,7 @@ const FIRST_RECORDS: u32 = 64;
 
 /// Something that must outlive the frames that may still use it.
 struct Retired {
-    /// The frames that may use it; it goes when each has been prepared again.
+    /// The frames that may use it, by their indices; it goes when each has begun again.
     frames: Vec<bool>,
     _what: RetiredObject,
 }
@@ -66,9 +69,8 @@ pub struct Renderer {
     views: Buffer,
     /// Of each frame.
     lists: Vec<FrameLists>,
-    /// The number of each frame's last preparation; none has the number 0.
-    preparations: Vec<u64>,
-    /// Views drawn in each frame since it was prepared.
+    begun: Begun,
+    /// Views drawn in each frame since it began.
     views_drawn: Vec<u32>,
 }
 
@@ -76,13 +78,13 @@ impl Renderer {
     /// A renderer for targets like `target`, but for styles with one of their own ([`Style::target`]).
     ///
     /// # Errors
-    /// As [`check`], of what `context` was made with; failed Vulkan calls.
+    /// As [`check`], of what `context` was made with; [`Error::NoRenderPass`]; failed Vulkan calls.
     ///
     /// # Safety
     /// * The handles in `target` and `options` are of the context's device and live as long as the renderer, and the
     ///   caller's fragment shaders match the stage interface ([`Fragment`]) and the targets of their styles.
     /// * The SPIR-V in `options` is valid: of [`Options::shaders`] each has the interface of the shader it stands for. No more is
-    ///   checked than how it starts.
+    ///   checked than that it is whole, of its stage, and that the sets that it reads are there.
     /// * The renderer is dropped only when the device is done with all command buffers recorded with it.
     pub unsafe fn new(context: &Arc<DeviceContext>, target: &Target, options: &Options) -> Result<Self, Error> {
         // SAFETY: as the caller promises.
@@ -97,7 +99,9 @@ impl Renderer {
         options: &Options,
         capture: Capture,
     ) -> Result<Self, Error> {
-        check_properties(context.properties(), context.features(), target, options)?;
+        check_passes(target, options)?;
+        let formats = |format| context.format_properties(format);
+        check_properties(context.properties(), context.features(), &formats, target, options)?;
         let pipelines = ModelPipelines::new(context, target, options, capture)?;
         let list_pipelines = ListPipelines::new(context, pipelines.sets.shared(), options.pipeline_cache)?;
         let views = Buffer::new(
@@ -111,6 +115,7 @@ impl Renderer {
         )?;
         let lists = |_| FrameLists::new(context, &pipelines.sets, &views, 0, FIRST_RECORDS);
         let lists = (0..options.frames_in_flight).map(lists).collect::<Result<_, _>>()?;
+        let renderer = RENDERERS.fetch_add(1, Ordering::Relaxed);
         Ok(Self {
             context: context.clone(),
             options: options.clone(),
@@ -118,11 +123,11 @@ impl Renderer {
             list_pipelines,
             displacements: Displacements::new(context)?,
             models: FxHashMap::default(),
-            next_id: ModelId { renderer: RENDERERS.fetch_add(1, Ordering::Relaxed), number: 0 },
+            next_id: ModelId { renderer, number: 0 },
             retired: Vec::new(),
             views,
             lists,
-            preparations: vec![0; options.frames_in_flight as usize],
+            begun: Begun::new(renderer, options.frames_in_flight),
             views_drawn: vec![0; options.frames_in_flight as usize],
         })
     }
@@ -167,15 +172,15 @@ impl Renderer {
     /// Makes a displacement map known, for [`ModelOptions::displacement`].
     ///
     /// # Safety
-    /// The view and the sampler are of the context's device and live as long as the renderer, or until every frame was prepared
-    /// again after [`Renderer::remove_displacement`]. Whenever a model that uses the map is drawn, the image is in its layout and
+    /// The view and the sampler are of the context's device and live as long as the renderer, or until
+    /// [`Options::frames_in_flight`] frames began after [`Renderer::remove_displacement`]. Whenever a model that uses the map is drawn, the image is in its layout and
     /// visible to the vertex, tessellation, geometry and fragment stages, as far as [`ModelOptions::evaluation`] has them.
     pub unsafe fn add_displacement(&mut self, map: DisplacementMap) -> DisplacementId {
         self.displacements.add(map)
     }
 
-    /// Forgets a displacement map, which no model uses any more. When every frame has been prepared again, and its last use is done
-    /// on the device, the image and the sampler are yours to destroy.
+    /// Forgets a displacement map, which no model uses any more. When [`Options::frames_in_flight`] frames have begun since, the image
+    /// and the sampler are yours to destroy.
     ///
     /// # Errors
     /// [`Error::NoSuchDisplacement`]; [`Error::DisplacementInUse`] if there is still a model with it.
@@ -187,7 +192,7 @@ impl Renderer {
         }
     }
 
-    /// Removes a model. Its memory is freed when every frame has been prepared again.
+    /// Removes a model. Its memory is freed when [`Options::frames_in_flight`] frames have begun since.
     ///
     /// # Errors
     /// [`Error::NoSuchModel`].
@@ -233,30 +238,25 @@ impl Renderer {
         Ok(self.model(id)?.tables.notices())
     }
 
-    /// Moves the control vertices of a model, from the next [`Renderer::cmd_prepare`] of `frame_index` on until other
-    /// positions are set in any frame. Object space, one position a vertex of the mesh, in its order. The numbers are not looked
+    /// Moves the control vertices of a model, from the next [`Renderer::cmd_prepare`] of `frame` on until other positions are set. Object space, one position a vertex of the mesh, in its order. The numbers are not looked
     /// at: patches around a vertex that is NaN or infinite are missing.
     ///
-    /// The last use of `frame_index` must be done on the device.
-    ///
     /// # Errors
-    /// [`Error::NoSuchModel`], [`Error::NoSuchFrame`], [`Error::PositionCount`].
-    pub fn set_positions(&mut self, id: ModelId, frame_index: u32, positions: &[[f32; 3]]) -> Result<(), Error> {
-        self.check_frame(frame_index)?;
-        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_positions(frame_index, positions)
+    /// [`Error::NoSuchModel`], [`Error::OldFrame`], [`Error::PositionCount`].
+    pub fn set_positions(&mut self, id: ModelId, frame: Frame, positions: &[[f32; 3]]) -> Result<(), Error> {
+        self.check_frame(frame)?;
+        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_positions(frame.index(), positions)
     }
 
     /// Sets the tessellation factors of a model's edges, for [`Factor::Edges`], from the next [`Renderer::cmd_prepare`] of
-    /// `frame_index` on until others are set in any frame. In the order of [`ModelTables::edges`].
-    ///
-    /// The last use of `frame_index` must be done on the device.
+    /// `frame` on until others are set. In the order of [`ModelTables::edges`].
     ///
     /// # Errors
-    /// [`Error::NoSuchModel`], [`Error::NoSuchFrame`], [`Error::NoEdgeFactors`], [`Error::EdgeFactorCount`],
+    /// [`Error::NoSuchModel`], [`Error::OldFrame`], [`Error::NoEdgeFactors`], [`Error::EdgeFactorCount`],
     /// [`Error::BadEdgeFactor`]; failed Vulkan calls.
-    pub fn set_edge_factors(&mut self, id: ModelId, frame_index: u32, factors: &[f32]) -> Result<(), Error> {
-        self.check_frame(frame_index)?;
-        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_edge_factors(frame_index, factors)
+    pub fn set_edge_factors(&mut self, id: ModelId, frame: Frame, factors: &[f32]) -> Result<(), Error> {
+        self.check_frame(frame)?;
+        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_edge_factors(frame.index(), factors)
     }
 
     /// The layout that the caller's own descriptor sets are bound with.
@@ -279,11 +279,6 @@ impl Renderer {
 
     fn model(&self, id: ModelId) -> Result<&Model, Error> {
         self.models.get(&id).ok_or(Error::NoSuchModel { id })
-    }
-
-    fn check_frame(&self, given: u32) -> Result<(), Error> {
-        let frames = self.options.frames_in_flight;
-        if given < frames { Ok(()) } else { Err(Error::NoSuchFrame { given, frames }) }
     }
 }
 

@@ -1,43 +1,34 @@
 //! What a frame does before its draws: copies, and what compute shaders make of them.
 
-use super::{Renderer, RetiredObject};
+use super::{Frame, Renderer};
 use crate::renderer::model::Model;
 use crate::renderer::options::Error;
 #[cfg(doc)]
 use crate::renderer::{Construction, Evaluation};
 use ash::vk;
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// How many frames were prepared so far, by all renderers: each has a number of its own.
-static PREPARATIONS: AtomicU64 = AtomicU64::new(1);
 
 impl Renderer {
-    /// Records what has to happen before this frame's draws: copies, barriers, and what compute shaders make. Once a frame.
+    /// Records what has to happen before this frame's draws: copies, barriers, and what compute shaders make. Once a frame; again, it
+    /// records what was set or added since.
     ///
     /// Where there is something to compute, it binds compute pipelines, with set 1, and pushes constants; models that are
     /// [`Evaluation::GeometryTwoPass`] have a render pass of their own here. What is bound for draws is to be bound after it.
     ///
     /// # Errors
-    /// [`Error::NoSuchFrame`]; nothing is recorded then.
+    /// [`Error::OldFrame`]; failed Vulkan calls, after which the frame is [lost](Renderer::frame_lost).
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
     /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or [adaptive](crate::renderer::ModelOptions::adaptive), has
     /// faces of five and more corners ([`ModelOptions::refine`](crate::renderer::ModelOptions::refine)) or, with
-    /// [`Options::visible_lists`](crate::renderer::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). The
-    /// device is done with what was recorded for `frame_index` before. Frames are submitted in the order in which they are prepared, to one queue, and every one is: uploads
-    /// and changes are recorded once, and later frames count on them. A frame that turns out to have nothing to draw into, such
-    /// as when the swapchain is out of date, is submitted without draws.
-    pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame_index: u32) -> Result<(), Error> {
-        self.check_frame(frame_index)?;
-        self.views_drawn[frame_index as usize] = 0;
-        self.lists[frame_index as usize].clear();
-        self.preparations[frame_index as usize] = PREPARATIONS.fetch_add(1, Ordering::Relaxed);
-        for retired in &mut self.retired {
-            retired.frames[frame_index as usize] = false;
-        }
-        self.retired.retain(|retired| retired.frames.contains(&true));
-        if self.models.values().all(|model| model.is_at_rest(frame_index)) {
+    /// [`Options::visible_lists`](crate::renderer::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). It is
+    /// submitted before the next frame is, or [`Renderer::frame_lost`] is told: changes are recorded once, and later frames count on
+    /// them.
+    pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame: Frame) -> Result<(), Error> {
+        self.check_frame(frame)?;
+        self.begun.is_prepared = true;
+        let frame_index = frame.index();
+        if self.models.values().all(|model| model.is_at_rest()) {
             return Ok(());
         }
         let device = self.context.device();
@@ -57,16 +48,15 @@ impl Renderer {
         unsafe {
             // The frame before may still read what is overwritten here.
             device.cmd_pipeline_barrier(cmd, readers | transfer, transfer, none, &after_writes, &[], &[]);
-            self.models.values_mut().for_each(|model| model.mark_stale(frame_index));
-            let mut staged = Vec::new();
-            for model in self.models.values_mut().filter(|model| model.needs_copies(frame_index)) {
-                staged.extend(model.cmd_copy(device, cmd, frame_index));
+            for (&id, model) in &mut self.models {
+                let mut sent = model.before();
+                model.mark_stale();
+                let copied = model.needs_copies().then(|| model.cmd_copy(device, cmd, frame_index, &mut sent));
+                self.begun.sent.push((id, sent));
+                copied.transpose()?;
             }
             device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
             self.cmd_compute(cmd);
-            if !staged.is_empty() {
-                self.retire(Some(frame_index), RetiredObject::Staging(staged));
-            }
         }
         Ok(())
     }

@@ -15,7 +15,8 @@ use ash::vk;
 ///
 /// They are written in the compute stage by the commands of [`Renderer::cmd_prepare`], followed by a barrier for vertex
 /// input; other uses need barriers of their own, before and after. The buffer may be read as vertex buffer, as storage buffer and by
-/// copies, and lives until the model is removed or its segments change, and every frame was prepared again.
+/// copies, and lives until the model is removed or its segments change, and [`Options::frames_in_flight`](crate::renderer::Options::frames_in_flight)
+/// frames began since.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EvaluatedVertices {
     /// Patch by patch in the order of [`ModelTables::plan`], in each in the order of
@@ -41,7 +42,7 @@ impl Renderer {
     /// smaller factors have fewer segments, their factors rounded up. Draws have [`Factor::Edges`]`(1.0)`.
     ///
     /// Takes memory for the indices of a patch, unless another model has the same, and for the vertices that compute evaluates, (n + 1)² a quad; lets that of the
-    /// segments before go when every frame has been prepared again. The number that is set already costs nothing.
+    /// segments before go when [`Options::frames_in_flight`](crate::renderer::Options::frames_in_flight) frames have begun since. The number that is set already costs nothing.
     ///
     /// # Errors
     /// [`Error::NoSuchModel`]; [`Error::NoSegments`]; [`Error::BadSegments`] unless from 1 to 1024; [`Error::TableTooLarge`]

@@ -4,7 +4,7 @@ use crate::gpu::{DeviceProperties, demand};
 use crate::headless::{Headless, HeadlessOptions};
 use crate::mesh::{ControlMesh, shape};
 use crate::renderer::pipelines::check_properties;
-use crate::renderer::{Construction, Evaluation, ModelOptions, Options, Renderer, Target};
+use crate::renderer::{Construction, Evaluation, Frame, ModelOptions, Options, Renderer, Target};
 use ash::vk;
 
 fn target() -> Target {
@@ -16,9 +16,9 @@ fn renderer(headless: &Headless, options: &Options) -> Renderer {
     unsafe { Renderer::new(headless.context(), &target(), options) }.unwrap()
 }
 
-fn prepare(headless: &Headless, renderer: &mut Renderer, frame: u32) {
-    // SAFETY: recorded outside rendering; the submission is waited for.
-    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).unwrap();
+fn begin(renderer: &mut Renderer) -> Frame {
+    // SAFETY: all frames before are done.
+    unsafe { renderer.begin_frame() }
 }
 
 /// The smallest mesh that there is.
@@ -44,9 +44,9 @@ fn models_share_a_pool_and_give_back_their_sets() {
     for model in models {
         renderer.remove_model(model).unwrap();
     }
-    prepare(&headless, &mut renderer, 0);
-    assert_eq!(sets(&renderer), [2, 2 + 41 + 2], "frame 1 may still use them");
-    prepare(&headless, &mut renderer, 1);
+    assert_eq!(begin(&mut renderer).index(), 0);
+    assert_eq!(sets(&renderer), [2, 2 + 41 + 2], "frames with index 1 may still use them");
+    assert_eq!(begin(&mut renderer).index(), 1);
     assert_eq!(sets(&renderer)[1], 2 + 1 + 1);
 }
 
@@ -83,7 +83,8 @@ fn storage_buffers_of_a_stage_are_as_many_as_check_says() {
     assert!(most <= 8, "{most}");
     let check = |max_stage_storage_buffers| {
         let properties = DeviceProperties { max_stage_storage_buffers, ..headless.properties().clone() };
-        check_properties(&properties, properties.features, &target(), &options)
+        let formats = |format| headless.context().format_properties(format);
+        check_properties(&properties, properties.features, &formats, &target(), &options)
     };
     check(most).unwrap();
     let told = check(most - 1).unwrap_err().to_string();

@@ -1,7 +1,7 @@
 //! The patches that can be seen, on lists, and their draws.
 
-use super::Renderer;
 use super::lists::{ListConstants, ListLayout};
+use super::{Frame, Renderer};
 use crate::constants::REGION;
 use crate::renderer::evaluate::{Drawn, Recorder};
 use crate::renderer::model::Model;
@@ -16,9 +16,7 @@ use ash::vk;
 /// [`Renderer::cmd_draw_visible`].
 #[derive(Debug, Clone)]
 pub struct VisibleItems {
-    pub(crate) frame: u32,
-    /// Which preparation of the frame they are of.
-    pub(crate) preparation: u64,
+    pub(crate) frame: Frame,
     pub(crate) view: View,
     pub(crate) view_offset: u32,
     pub(crate) set: vk::DescriptorSet,

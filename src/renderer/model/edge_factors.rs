@@ -10,8 +10,9 @@ use std::sync::Arc;
 pub(crate) struct EdgeFactors {
     /// The factor of each patch corner's plus edge.
     of_corners: Streamed,
-    /// The largest of what was last written for each frame.
-    largest_written: Vec<f32>,
+    /// What was last written.
+    written: Vec<f32>,
+    largest_written: f32,
     /// The largest of what the device has.
     largest: f32,
 }
@@ -27,7 +28,8 @@ impl EdgeFactors {
         let ones = vec![1.0f32; edges.of_corners.len()];
         Ok(Self {
             of_corners: Streamed::new(context, &format!("{name}: factors of edges"), &ones, 0, frames)?,
-            largest_written: vec![1.0; frames as usize],
+            written: ones,
+            largest_written: 1.0,
             largest: 1.0,
         })
     }
@@ -41,9 +43,10 @@ impl EdgeFactors {
         if let Some(edge) = factors.iter().position(|factor| !factor.is_finite()) {
             return Err(Error::BadEdgeFactor { id, edge, factor: factors[edge] });
         }
-        let of_corners: Vec<f32> = edges.of_corners.iter().map(|&edge| factors[edge as usize]).collect();
-        self.of_corners.write(frame, &of_corners)?;
-        self.largest_written[frame as usize] = factors.iter().copied().fold(1.0, f32::max);
+        self.written.clear();
+        self.written.extend(edges.of_corners.iter().map(|&edge| factors[edge as usize]));
+        self.of_corners.write(frame, &self.written)?;
+        self.largest_written = factors.iter().copied().fold(1.0, f32::max);
         Ok(())
     }
 
@@ -52,20 +55,32 @@ impl EdgeFactors {
         self.largest
     }
 
-    pub(crate) fn is_due(&self, frame: u32) -> bool {
-        self.of_corners.is_due(frame)
+    pub(crate) fn is_due(&self) -> bool {
+        self.of_corners.is_due()
+    }
+
+    /// As [`Streamed::send_again`].
+    pub(crate) fn send_again(&mut self, frame: u32) {
+        self.of_corners.send_again(frame);
     }
 
     /// Records the copy that is due, if one is.
     ///
     /// # Safety
-    /// As [`Streamed::cmd_send`].
-    pub(crate) unsafe fn cmd_send(&mut self, device: &ash::Device, cmd: vk::CommandBuffer, frame: u32) {
-        if self.is_due(frame) {
-            self.largest = self.largest_written[frame as usize];
+    /// `cmd` is being recorded, outside rendering.
+    pub(crate) unsafe fn cmd_send(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        frame: u32,
+    ) -> Result<(), GpuError> {
+        if self.of_corners.is_elsewhere(frame) {
+            self.of_corners.write(frame, &self.written)?;
         }
+        self.largest = self.largest_written;
         // SAFETY: as the caller promises.
         unsafe { self.of_corners.cmd_send(device, cmd, frame) };
+        Ok(())
     }
 
     pub(crate) fn buffer(&self) -> &Buffer {

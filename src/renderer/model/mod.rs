@@ -6,12 +6,14 @@ mod drawn;
 mod edge_factors;
 mod pipelines;
 mod positions;
+mod sent;
 mod streamed;
 mod tables;
 
 pub(crate) use displacements::Displacements;
 use pipelines::MadeCut;
 pub(crate) use pipelines::ModelPipelines;
+pub(crate) use sent::Sent;
 
 use crate::gpu::{Buffer, DeviceContext, DeviceProperties, GpuError};
 use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, path};
@@ -235,15 +237,15 @@ impl Model {
         self.edge_factors.as_ref().map(EdgeFactors::largest)
     }
 
-    pub(crate) fn needs_copies(&self, frame: u32) -> bool {
+    pub(crate) fn needs_copies(&self) -> bool {
         let indices = self.lattice.as_ref().is_some_and(|lattice| !lattice.prepared);
-        let factors = self.edge_factors.as_ref().is_some_and(|factors| factors.is_due(frame));
-        !self.prepared || indices || factors || self.positions.is_due(frame)
+        let factors = self.edge_factors.as_ref().is_some_and(|factors| factors.is_due());
+        !self.prepared || indices || factors || self.positions.is_due()
     }
 
     /// Whether nothing has to be copied or computed in this frame.
-    pub(crate) fn is_at_rest(&self, frame: u32) -> bool {
-        !self.needs_copies(frame) && !self.stale_points && !self.stale_refinement
+    pub(crate) fn is_at_rest(&self) -> bool {
+        !self.needs_copies() && !self.stale_points && !self.stale_refinement
     }
 
     /// Whether compute shaders make something of it.
@@ -265,13 +267,13 @@ impl Model {
     }
 
     /// Has what follows from the copies of this frame computed after them; before they are recorded.
-    pub(crate) fn mark_stale(&mut self, frame: u32) {
-        let moved = !self.prepared || self.positions.is_due(frame);
+    pub(crate) fn mark_stale(&mut self) {
+        let moved = !self.prepared || self.positions.is_due();
         self.stale_refinement |= moved && self.tables.refinement().is_some();
         if self.control_points.is_some() {
             self.stale_points |= moved;
             // They depend on the lattice and on the factors of edges, too.
-            self.stale_vertices = self.stale_points || self.needs_copies(frame);
+            self.stale_vertices = self.stale_points || self.needs_copies();
         }
     }
 
@@ -334,26 +336,35 @@ impl Model {
         }
     }
 
-    /// Records the copies that are due, and gives away the staging buffers to be kept until the frame is done.
+    /// Records the copies that are due, and gives the staging buffers to `sent`, to be kept until the frame is done.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering.
-    pub(crate) unsafe fn cmd_copy(&mut self, device: &ash::Device, cmd: vk::CommandBuffer, frame: u32) -> Vec<Buffer> {
-        self.uploads.extend(self.lattice.as_mut().and_then(Lattice::take_upload));
+    pub(crate) unsafe fn cmd_copy(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        frame: u32,
+        sent: &mut Sent,
+    ) -> Result<(), Error> {
+        let copy = |staged: &Buffer, target: vk::Buffer| {
+            let region = vk::BufferCopy { size: staged.size(), ..vk::BufferCopy::default() };
+            // SAFETY: as the caller promises; both buffers hold the whole range.
+            unsafe { device.cmd_copy_buffer(cmd, staged.raw(), target, &[region]) };
+        };
+        sent.uploads = std::mem::take(&mut self.uploads);
+        sent.uploads.iter().for_each(|(staged, target)| copy(staged, *target));
+        sent.indices = self.lattice.as_mut().and_then(Lattice::take_upload);
+        sent.indices.iter().for_each(|(staged, indices)| copy(staged, indices.buffer.raw()));
         // SAFETY: as the caller promises; both buffers hold the whole range.
         unsafe {
-            self.positions.cmd_send(device, cmd, frame);
+            self.positions.cmd_send(device, cmd, frame)?;
             if let Some(factors) = &mut self.edge_factors {
-                factors.cmd_send(device, cmd, frame);
-            }
-            for (staged, target) in &self.uploads {
-                let region = vk::BufferCopy { size: staged.size(), ..vk::BufferCopy::default() };
-                device.cmd_copy_buffer(cmd, staged.raw(), *target, &[region]);
+                factors.cmd_send(device, cmd, frame)?;
             }
         }
-        let uploads = std::mem::take(&mut self.uploads);
         self.prepared = true;
-        uploads.into_iter().map(|(staged, _)| staged).collect()
+        Ok(())
     }
 
     pub(crate) fn add_memory(&self, usage: &mut MemoryUsage) {

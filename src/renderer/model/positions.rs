@@ -37,17 +37,31 @@ impl Positions {
     }
 
     /// Whether the device's are out of date.
-    pub(crate) fn is_due(&self, frame: u32) -> bool {
-        self.streamed.is_due(frame)
+    pub(crate) fn is_due(&self) -> bool {
+        self.streamed.is_due()
+    }
+
+    /// As [`Streamed::send_again`].
+    pub(crate) fn send_again(&mut self, frame: u32) {
+        self.streamed.send_again(frame);
     }
 
     /// Records the copy that is due, if one is.
     ///
     /// # Safety
-    /// As [`Streamed::cmd_send`].
-    pub(crate) unsafe fn cmd_send(&mut self, device: &ash::Device, cmd: vk::CommandBuffer, frame: u32) {
+    /// `cmd` is being recorded, outside rendering.
+    pub(crate) unsafe fn cmd_send(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        frame: u32,
+    ) -> Result<(), GpuError> {
+        if self.streamed.is_elsewhere(frame) {
+            self.streamed.write(frame, &self.stored)?;
+        }
         // SAFETY: as the caller promises.
         unsafe { self.streamed.cmd_send(device, cmd, frame) };
+        Ok(())
     }
 
     /// What shaders read.

@@ -11,8 +11,9 @@ pub(crate) struct Streamed {
     staged: Buffer,
     /// Bytes of the array.
     size: u64,
-    /// Frames whose copy is new since it was last sent.
-    dirty: Vec<bool>,
+    /// The frame whose copy is the newest, if that was not sent.
+    pending: Option<u32>,
+    /// Whether any was.
     sent: bool,
 }
 
@@ -50,32 +51,43 @@ impl Streamed {
         for frame in 0..u64::from(frames) {
             staged.write(frame * size, contents)?;
         }
-        Ok(Self { buffer, staged, size, dirty: vec![false; frames as usize], sent: false })
+        Ok(Self { buffer, staged, size, pending: None, sent: false })
     }
 
+    /// Takes new contents, for the copy of this frame, or of a later one that [writes them again](Streamed::is_elsewhere).
     pub(crate) fn write<T: NoUninit>(&mut self, frame: u32, contents: &[T]) -> Result<(), GpuError> {
         self.staged.write(u64::from(frame) * self.size, contents)?;
-        self.dirty[frame as usize] = true;
+        self.pending = Some(frame);
         Ok(())
     }
 
-    pub(crate) fn is_due(&self, frame: u32) -> bool {
-        self.dirty[frame as usize] || !self.sent
+    /// Whether the newest contents were not sent and are in the copy of another frame, from which this one must not send them.
+    pub(crate) fn is_elsewhere(&self, frame: u32) -> bool {
+        self.pending.is_some_and(|pending| pending != frame)
+    }
+
+    /// Has the copy of this frame sent again, which was lost.
+    pub(crate) fn send_again(&mut self, frame: u32) {
+        self.pending = Some(frame);
+    }
+
+    pub(crate) fn is_due(&self) -> bool {
+        self.pending.is_some() || !self.sent
     }
 
     /// Records the copy that is due, if one is.
     ///
     /// # Safety
-    /// `cmd` is being recorded, outside rendering.
+    /// `cmd` is being recorded, outside rendering; the newest contents are not elsewhere.
     pub(crate) unsafe fn cmd_send(&mut self, device: &ash::Device, cmd: vk::CommandBuffer, frame: u32) {
         // Before the first copy every frame's holds the first contents, or newer ones.
-        if self.is_due(frame) {
+        if self.is_due() {
             let src_offset = u64::from(frame) * self.size;
             let region = vk::BufferCopy { src_offset, dst_offset: 0, size: self.size };
             // SAFETY: as the caller promises; both buffers hold the range.
             unsafe { device.cmd_copy_buffer(cmd, self.staged.raw(), self.buffer.raw(), &[region]) };
         }
-        self.dirty[frame as usize] = false;
+        self.pending = None;
         self.sent = true;
     }
 

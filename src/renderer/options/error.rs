@@ -32,18 +32,22 @@ pub enum Error {
     TableTooLarge { id: ModelId, table: &'static str, bytes: u64, max: u64 },
     #[error("model {}: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw", id.number)]
     NotPrepared { id: ModelId },
-    #[error("frame index {given}: Options::frames_in_flight is {frames}, so frames are 0 to {}", frames - 1)]
-    NoSuchFrame { given: u32, frames: u32 },
-    #[error("{max} views were already drawn or culled in frame {frame}: raise Options::views_per_frame")]
-    TooManyViews { frame: u32, max: u32 },
+    #[error(
+        "the frame is over: another one began since, it was lost, or it is another renderer's: name what begin_frame gave last"
+    )]
+    OldFrame,
+    #[error("the frame was not prepared: record cmd_prepare before cmd_draw and cmd_cull, outside rendering")]
+    FrameNotPrepared,
+    #[error("{max} views were already drawn or culled in the frame: raise Options::views_per_frame")]
+    TooManyViews { max: u32 },
     #[error(
         "Options: frames_in_flight times views_per_frame take {bytes} bytes for views, {max} are possible: ask for fewer"
     )]
     ViewsTooLarge { bytes: u64, max: u64 },
     #[error(
-        "frame {frame}: what can be seen was found before it was prepared, for another frame or by another renderer: call cmd_cull after cmd_prepare, and draw in the same frame"
+        "what can be seen was found in another frame, or by another renderer: call cmd_cull, and draw in the same frame"
     )]
-    OtherFrame { frame: u32 },
+    OtherFrame,
     #[error(
         "cmd_cull goes with Options::visible_lists only: set it, and make the device with what requirements lists then"
     )]
@@ -100,6 +104,20 @@ pub enum Error {
         "{what} is no SPIR-V: give whole modules, as words in this machine's order of bytes (the first is 0x07230203)"
     )]
     NotSpirv { what: String },
+    #[error("{what} has no entry point `main` of its stage: compile it for that, and call its function main")]
+    OtherStage { what: String },
+    #[error(
+        "{what}: the pipeline's layout has no such descriptor at set {set}, binding {binding}: sets 0 and 1 are the crate's, sets from 2 on those of Options::set_layouts"
+    )]
+    OtherBinding { what: String, set: u32, binding: u32 },
+    #[error(
+        "Target: {format:?} is given as the format of the {attachment} attachment, which it cannot be: name formats in the order of Pass::Dynamic"
+    )]
+    BadFormat { format: vk::Format, attachment: &'static str },
+    #[error("Target::depth is {depth}, but Pass::Dynamic has {} format of a depth attachment: have both, or none", if *depth { "no" } else { "the" })]
+    OtherDepth { depth: bool },
+    #[error("Pass::RenderPass has a null render pass: give the one that is drawn in")]
+    NoRenderPass,
     #[error("Target::samples is {}: give one number of samples, such as TYPE_1", if given.is_empty() { "empty".into() } else { format!("{given:?}") })]
     BadSamples { given: vk::SampleCountFlags },
     #[error("{what} of Options is {given}: it must be at least 1")]

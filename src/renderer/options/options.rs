@@ -10,7 +10,7 @@ use ash::vk;
 /// What the renderer is to be able to do.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// Frames that may be on the device at once: frame indices run from 0 to one less.
+    /// Frames that may be on the device at once, the one that is being recorded among them.
     pub frames_in_flight: u32,
     /// Calls of [`Renderer::cmd_draw`](crate::renderer::Renderer::cmd_draw) and [`Renderer::cmd_cull`](crate::renderer::Renderer::cmd_cull) in a frame, at
     /// most.

@@ -9,6 +9,6 @@ mod vertex_input;
 pub(crate) use compute::ComputePipelines;
 pub(crate) use draw::DrawPipelines;
 pub(crate) use recipe::{MadeFor, Recipe, RecipeStage};
-pub(crate) use requirements::check_properties;
 pub use requirements::{Requirements, check, requirements};
+pub(crate) use requirements::{check_passes, check_properties};
 pub(crate) use vertex_input::{VertexInput, vertex_bytes};

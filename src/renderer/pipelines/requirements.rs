@@ -1,8 +1,8 @@
 //! What a device must have for what the caller asks.
 
-use crate::gpu::{ContextOptions, DeviceProperties, Features};
+use crate::gpu::{ContextOptions, DeviceProperties, Features, aspects};
 use crate::renderer::options::{Error, Fragment, Options, Pass, Target};
-use crate::renderer::shader::{ViewData, is_spirv, stage_storage_buffers};
+use crate::renderer::shader::{Fault, ShaderId, ViewData, check_spirv, has_binding, stage_storage_buffers};
 use ash::vk;
 
 /// What draws of lists need, in [`Features`].
@@ -60,7 +60,8 @@ impl Options {
 ///
 /// # Errors
 /// [`Error::Unsupported`] names everything that is missing at once; [`Error::BadOption`], [`Error::ViewsTooLarge`],
-/// [`Error::BadSamples`], [`Error::ShaderOfStyle`], [`Error::NotSpirv`].
+/// [`Error::BadSamples`], [`Error::BadFormat`], [`Error::OtherDepth`], [`Error::ShaderOfStyle`], [`Error::NotSpirv`],
+/// [`Error::OtherStage`], [`Error::OtherBinding`]. A render pass is not looked at: it may be null, as there is no device yet.
 ///
 /// # Safety
 /// `physical_device` comes from `instance`, whose version is at least 1.1.
@@ -72,7 +73,8 @@ pub unsafe fn check(
 ) -> Result<(), Error> {
     // SAFETY: as the caller promises.
     let properties = unsafe { DeviceProperties::query(instance, physical_device) };
-    check_properties(&properties, properties.features, target, options)
+    let formats = |format| unsafe { instance.get_physical_device_format_properties(physical_device, format) };
+    check_properties(&properties, properties.features, &formats, target, options)
 }
 
 /// What no device could do.
@@ -97,21 +99,62 @@ fn check_options(target: &Target, options: &Options) -> Result<(), Error> {
         if id.is_of_style() {
             return Err(Error::ShaderOfStyle { name });
         }
-        if !is_spirv(code) {
-            return Err(Error::NotSpirv { what: format!("Options::shaders: {name}") });
-        }
+        check_shader(code, *id, options, || format!("Options::shaders: {name}"))?;
     }
     for (number, style) in options.styles.iter().enumerate() {
-        if matches!(&style.fragment, Fragment::Spirv(code) if !is_spirv(code)) {
-            return Err(Error::NotSpirv { what: format!("Options::styles: Fragment::Spirv of style {number}") });
+        if let Fragment::Spirv(code) = &style.fragment {
+            let what = || format!("Options::styles: Fragment::Spirv of style {number}");
+            check_shader(code, ShaderId::ShadeFlatFrag, options, what)?;
         }
     }
-    Ok(())
+    targets(target, options).try_for_each(check_formats)
+}
+
+/// Checks a shader of the caller's that has the stage of one of ours.
+fn check_shader(code: &[u32], like: ShaderId, options: &Options, what: impl Fn() -> String) -> Result<(), Error> {
+    let own = 2..2 + options.set_layouts.len() as u32;
+    let has = |set, binding, types: &[_]| if set < 2 { has_binding(set, binding, types) } else { own.contains(&set) };
+    check_spirv(code, like.code(), has).map_err(|fault| match fault {
+        Fault::NotSpirv => Error::NotSpirv { what: what() },
+        Fault::OtherStage => Error::OtherStage { what: what() },
+        Fault::OtherBinding([set, binding]) => Error::OtherBinding { what: what(), set, binding },
+    })
+}
+
+/// Formats, with the names of their attachments, what they must have, and for what.
+fn attachments(target: &Target) -> Vec<(vk::Format, &'static str, vk::ImageAspectFlags, vk::FormatFeatureFlags)> {
+    use {vk::FormatFeatureFlags as Use, vk::ImageAspectFlags as Aspect};
+    let Pass::Dynamic { color, depth, stencil } = &target.pass else { return Vec::new() };
+    let colors = color.iter().map(|&format| (format, "colour", Aspect::COLOR, Use::COLOR_ATTACHMENT));
+    let depths = [(*depth, "depth", Aspect::DEPTH), (*stencil, "stencil", Aspect::STENCIL)];
+    let depths = depths.map(|(format, name, aspect)| (format, name, aspect, Use::DEPTH_STENCIL_ATTACHMENT));
+    colors.chain(depths).filter(|(format, ..)| *format != vk::Format::UNDEFINED).collect()
+}
+
+fn check_formats(target: &Target) -> Result<(), Error> {
+    let is_bad = |&(format, _, aspect, _): &(_, _, _, _)| !aspects(format).contains(aspect);
+    if let Some((format, attachment, ..)) = attachments(target).into_iter().find(is_bad) {
+        return Err(Error::BadFormat { format, attachment });
+    }
+    match target.pass {
+        Pass::Dynamic { depth, .. } if target.depth != (depth != vk::Format::UNDEFINED) => {
+            Err(Error::OtherDepth { depth: target.depth })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Checks that render passes are there, which the device that they are of has made.
+pub(crate) fn check_passes(target: &Target, options: &Options) -> Result<(), Error> {
+    let is_null =
+        |pass: &Pass| matches!(pass, Pass::RenderPass { render_pass, .. } if *render_pass == vk::RenderPass::null());
+    if targets(target, options).any(|target| is_null(&target.pass)) { Err(Error::NoRenderPass) } else { Ok(()) }
 }
 
 pub(crate) fn check_properties(
     properties: &DeviceProperties,
     features: Features,
+    formats: &dyn Fn(vk::Format) -> vk::FormatProperties,
     target: &Target,
     options: &Options,
 ) -> Result<(), Error> {
@@ -133,6 +176,11 @@ pub(crate) fn check_properties(
     for count in counts {
         let has: Vec<String> = properties.sample_counts().iter().map(u32::to_string).collect();
         missing.push(format!("{count} samples a pixel (it has {})", has.join(", ")));
+    }
+    for (format, attachment, _, needed) in targets(target, options).flat_map(attachments) {
+        if !formats(format).optimal_tiling_features.contains(needed) {
+            missing.push(format!("{format:?} as the format of a {attachment} attachment"));
+        }
     }
     let (least, has) = (stage_storage_buffers(), properties.max_stage_storage_buffers);
     if has < least {
@@ -157,7 +205,11 @@ mod tests {
         let properties =
             DeviceProperties { name: "small".into(), max_stage_storage_buffers: 4, ..headless.properties().clone() };
         let target = Target::dynamic(vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT, vk::SampleCountFlags::TYPE_1);
-        let error = check_properties(&properties, properties.features, &target, &Options::default()).unwrap_err();
+        let all = |_| vk::FormatProperties {
+            optimal_tiling_features: vk::FormatFeatureFlags::from_raw(!0),
+            ..vk::FormatProperties::default()
+        };
+        let error = check_properties(&properties, properties.features, &all, &target, &Options::default()).unwrap_err();
         let told = error.to_string();
         assert!(told.contains("7 storage buffers a shader stage (it has 4)"), "{told}");
     }

@@ -102,6 +102,12 @@ fn model_bindings() -> Vec<vk::DescriptorType> {
 /// What set 2 has where compute evaluates, by binding.
 const VERTICES_BINDINGS: [vk::DescriptorType; 1] = [vk::DescriptorType::STORAGE_BUFFER];
 
+/// Whether set 0 or set 1 has a descriptor of one of these types at a binding.
+pub(crate) fn has_binding(set: u32, binding: u32, types: &[vk::DescriptorType]) -> bool {
+    let all = if set == 0 { VIEW_BINDINGS.to_vec() } else { model_bindings() };
+    all.get(binding as usize).is_some_and(|ty| types.contains(ty))
+}
+
 /// Storage buffers that a device must have for a shader stage: of all sets, in evaluation by compute.
 pub(crate) fn stage_storage_buffers() -> u32 {
     let all = VIEW_BINDINGS.into_iter().chain(model_bindings()).chain(VERTICES_BINDINGS);

@@ -22,6 +22,6 @@ pub(crate) use gpu_data::{DrawConstants, ItemRecord, ViewData, displacement_flag
 pub use ids::ShaderId;
 pub(crate) use key::{Capture, GeometryKey, PatchStages, PipelineKey, reads_texels};
 pub(crate) use layout::{
-    MODEL_BUFFERS, MODEL_TEXELS, STAGES, SetLayouts, TABLE_TEXELS, VECTOR_TEXEL, stage_storage_buffers,
+    MODEL_BUFFERS, MODEL_TEXELS, STAGES, SetLayouts, TABLE_TEXELS, VECTOR_TEXEL, has_binding, stage_storage_buffers,
 };
-pub(crate) use spirv::{is_spirv, spaced};
+pub(crate) use spirv::{Fault, check_spirv, spaced};

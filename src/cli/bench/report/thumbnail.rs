@@ -25,12 +25,14 @@ pub(in super::super) fn thumbnail(headless: &Headless, subject: &Subject) -> Res
     let options = ModelOptions { name: subject.name.clone(), refine: subject.refine, ..ModelOptions::default() };
     let model = renderer.add_model(&subject.mesh, &options)?;
     let view = View::framing(subject.mesh.bounds(), [-0.5, 0.3, 1.0], 1.0);
+    // SAFETY: there was no frame before.
+    let frame = unsafe { renderer.begin_frame() };
     // SAFETY: the command buffer is being recorded, outside rendering.
-    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, 0) })?;
+    headless.try_submit(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) })?;
     let item = DrawItem::new(model, 4.0).color([0.72, 0.64, 0.55, 1.0]);
     let mut pixels = target.draw(headless, [0.0; 4], |cmd| {
         // SAFETY: inside rendering that fits the target, after the frame was prepared.
-        unsafe { renderer.cmd_draw(cmd, 0, &view, &[item]) }
+        unsafe { renderer.cmd_draw(cmd, frame, &view, &[item]) }
     })?;
     unpremultiply(&mut pixels, true);
     let mut png = Cursor::new(Vec::new());

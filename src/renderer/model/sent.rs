@@ -1,0 +1,67 @@
+//! What a frame sends of a model to the device, for it to be taken back if the frame is lost.
+
+use super::Model;
+use crate::gpu::Buffer;
+use crate::renderer::evaluate::SharedIndices;
+use ash::vk;
+use std::sync::Arc;
+
+/// What a frame's preparation records for a model, and how the model was before.
+pub(crate) struct Sent {
+    /// Copied, and whereto.
+    pub(super) uploads: Vec<(Buffer, vk::Buffer)>,
+    pub(super) indices: Option<(Buffer, Arc<SharedIndices>)>,
+    was_prepared: bool,
+    was_lattice_prepared: bool,
+    /// Positions, and factors of edges.
+    were_due: [bool; 2],
+    /// Control points, refined vertices, evaluated vertices.
+    were_stale: [bool; 3],
+}
+
+impl Sent {
+    /// The staging buffers, to be kept until the frame is done.
+    pub(crate) fn into_staged(self) -> impl Iterator<Item = Buffer> {
+        let indices = self.indices.map(|(staged, _)| staged);
+        self.uploads.into_iter().map(|(staged, _)| staged).chain(indices)
+    }
+
+    /// Has the model, if it is still there, send all of it again, the copies of the frame with this index among it.
+    pub(crate) fn take_back(self, model: Option<&mut Model>, frame: u32) {
+        // Other models count on them, too.
+        if let Some((staged, indices)) = self.indices {
+            indices.give_back(staged);
+        }
+        let Some(model) = model else { return };
+        model.uploads.extend(self.uploads);
+        model.prepared &= self.was_prepared;
+        if let Some(lattice) = &mut model.lattice {
+            lattice.prepared &= self.was_lattice_prepared;
+        }
+        let [positions, factors] = self.were_due;
+        if positions {
+            model.positions.send_again(frame);
+        }
+        if let Some(of_edges) = model.edge_factors.as_mut().filter(|_| factors) {
+            of_edges.send_again(frame);
+        }
+        let [points, refinement, vertices] = self.were_stale;
+        model.stale_points |= points;
+        model.stale_refinement |= refinement;
+        model.stale_vertices |= vertices;
+    }
+}
+
+impl Model {
+    /// How it is before a frame is prepared, of which nothing is sent yet.
+    pub(crate) fn before(&self) -> Sent {
+        Sent {
+            uploads: Vec::new(),
+            indices: None,
+            was_prepared: self.prepared,
+            was_lattice_prepared: self.lattice.as_ref().is_some_and(|lattice| lattice.prepared),
+            were_due: [self.positions.is_due(), self.edge_factors.as_ref().is_some_and(|factors| factors.is_due())],
+            were_stale: [self.stale_points, self.stale_refinement, self.stale_vertices],
+        }
+    }
+}
