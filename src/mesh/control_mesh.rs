@@ -140,7 +140,7 @@ pub struct ControlMesh {
 }
 
 /// The parts of a mesh, and what was found while they were checked.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Checked {
     data: MeshData,
     face_offsets: Vec<u32>,
@@ -179,6 +179,28 @@ impl ControlMesh {
         let corners = data.face_vertices.len() as u32;
         data.face_sizes = vec![4; corners as usize / 4];
         let face_offsets = (0..=corners).step_by(4).collect();
+        let vertex_sharpness = vertex_sharpness(&data);
+        Ok(Self { checked: Arc::new(Checked { data, face_offsets, twins, edge_sharpness, vertex_sharpness }) })
+    }
+
+    /// The same mesh with other sharpness of its creases and corners, in the order of [`MeshData::creases`] and
+    /// [`MeshData::corners`].
+    ///
+    /// # Errors
+    /// [`MeshError::SharpnessCount`]; sharpness that is negative or no number.
+    pub fn with_sharpness(&self, creases: &[f32], corners: &[f32]) -> Result<Self, MeshError> {
+        let Checked { mut data, face_offsets, twins, .. } = (*self.checked).clone();
+        for (what, given, needed) in
+            [("creases", creases.len(), data.creases.len()), ("corners", corners.len(), data.corners.len())]
+        {
+            if given != needed {
+                return Err(MeshError::SharpnessCount { what, given, needed });
+            }
+        }
+        data.creases.iter_mut().zip(creases).for_each(|(crease, &sharpness)| crease.sharpness = sharpness);
+        data.corners.iter_mut().zip(corners).for_each(|(corner, &sharpness)| corner.sharpness = sharpness);
+        check_tags(&data)?;
+        let edge_sharpness = edge_sharpness(&data, &face_offsets, &twins)?;
         let vertex_sharpness = vertex_sharpness(&data);
         Ok(Self { checked: Arc::new(Checked { data, face_offsets, twins, edge_sharpness, vertex_sharpness }) })
     }

@@ -40,6 +40,8 @@ pub enum MeshError {
         "{what} {index} has sharpness {sharpness}: sharpness is a number from 0 up (10 and more is infinitely sharp)"
     )]
     BadSharpness { what: &'static str, index: usize, sharpness: f32 },
+    #[error("sharpness of {given} {what} is given, but the mesh has {needed}")]
+    SharpnessCount { what: &'static str, given: usize, needed: usize },
     #[error("corner {corner} names vertex {vertex}, but the mesh has {count} vertices")]
     NoSuchVertex { corner: usize, vertex: u32, count: usize },
     #[error("hole tag names face {face}, but the mesh has {count} faces")]

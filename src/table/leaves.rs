@@ -174,8 +174,7 @@ fn mask_fours(rows: &adaptive::Rows) -> (Vec<[f32; 4]>, Vec<u32>) {
     let (mut fours, mut starts) = (Vec::new(), Vec::with_capacity(rows.masks.len()));
     for &adaptive::Mask { weights, inputs, outputs } in &rows.masks {
         starts.push(fours.len() as u32);
-        for output in 0..outputs as usize {
-            let output = if outputs == 1 { output } else { CAP_ORDER[output] };
+        for &output in if outputs == 1 { &[0][..] } else { &CAP_ORDER } {
             let weights = &rows.weights[weights as usize + output * inputs as usize..][..inputs as usize];
             let four = |four: &[f64]| std::array::from_fn(|i| four.get(i).map_or(0.0, |&weight| weight as f32));
             fours.extend(weights.chunks(4).map(four));

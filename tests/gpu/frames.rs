@@ -3,7 +3,9 @@
 use crate::common::random::Random;
 use crate::common::stage::{Stage, begin};
 use ash_subdiv::adaptive::AdaptiveOptions;
+use ash_subdiv::mesh::Crease;
 use ash_subdiv::renderer::{Evaluation, Factor};
+use ash_subdiv::topology::SHARP_FROM;
 use ash_subdiv::{Construction, ControlMesh, DrawItem, Error, Frame, ModelId, ModelOptions, Options, Renderer, shape};
 
 const SEGMENTS: u32 = 3;
@@ -203,6 +205,90 @@ fn what_models_share_is_sent_after_all() {
     let frame = stage.frame(&mut renderer);
     let pixels = stage.draw(&mut renderer, frame, &[DrawItem::new(second, SEGMENTS as f32)]).expect("a picture");
     assert!(pixels.chunks(4).filter(|pixel| pixel[3] > 0).count() > 1000);
+    drop(renderer);
+    stage.finish();
+}
+
+/// Other tables in a model's place, also while those of before are on their way: it is drawn as a new one would be. A crease
+/// sharpens, and faces change.
+#[test]
+fn a_model_takes_another_mesh() {
+    let stage = Stage::new();
+    let mut data = shape("cube").expect("built in").into_data();
+    data.creases = [[0, 1], [1, 3], [3, 2], [2, 0]].map(|vertices| Crease { vertices, sharpness: 0.0 }).into();
+    let soft = ControlMesh::new(data).expect("edges of the cube");
+    let [half, sharp] = [0.7, 2.5].map(|sharpness| soft.with_sharpness(&[sharpness; 4], &[]).expect("sharpness"));
+    let other = shape("valences").expect("built in");
+    for options in ways() {
+        let adaptive = options.adaptive;
+        let mut pictures = Vec::new();
+        for frames_in_flight in 1..=2 {
+            let mut renderer = stage.renderer(&Options { frames_in_flight, ..Options::default() });
+            let mut add = |mesh: &ControlMesh| {
+                let model = renderer.add_model(mesh, &options).expect("a model");
+                if options.evaluation.needs_segments() {
+                    renderer.set_segments(model, SEGMENTS).expect("segments");
+                }
+                model
+            };
+            let model = add(&soft);
+            let meshes = [&soft, &half, &sharp, &other, &soft];
+            let news: Vec<ModelId> = meshes.iter().map(|mesh| add(mesh)).collect();
+            let factor = if options.edge_factors { Factor::Edges(1.0) } else { Factor::Uniform(SEGMENTS as f32) };
+            for (i, (&mesh, &new)) in meshes.iter().zip(&news).enumerate() {
+                let frame = begin(&mut renderer);
+                if i % 2 == 1 {
+                    // What the lost frame was to send, and what the next one still sends, is of tables that are gone.
+                    lose(&stage, &mut renderer, frame);
+                } else {
+                    stage.prepare(&mut renderer, frame);
+                }
+                renderer.set_mesh(model, mesh).expect("another mesh");
+                let frame = stage.frame(&mut renderer);
+                let [drawn, expected] = [model, new]
+                    .map(|model| stage.draw(&mut renderer, frame, &[DrawItem::new(model, factor)]).expect("a picture"));
+                assert!(drawn == expected, "{options:?}: mesh {i}");
+                pictures.push(drawn);
+            }
+            let frame = stage.frame(&mut renderer);
+            renderer.set_mesh(model, &sharp).expect("another mesh");
+            let early = stage.draw(&mut renderer, frame, &[DrawItem::new(model, factor)]).unwrap_err();
+            assert!(matches!(early, Error::NotPrepared { .. }), "{early}");
+            stage.prepare(&mut renderer, frame);
+            let again = stage.draw(&mut renderer, frame, &[DrawItem::new(model, factor)]).expect("a picture");
+            assert!(again == pictures[2]);
+        }
+        // Without a depth, sharpness is rounded.
+        assert_eq!(pictures[0] != pictures[1], adaptive.is_some() || SHARP_FROM < 0.7, "{options:?}");
+        assert!(pictures[0] != pictures[2] && pictures[2] != pictures[3] && pictures[0] == pictures[4]);
+    }
+    stage.finish();
+}
+
+/// Where edges stay, so do their factors.
+#[test]
+fn factors_of_edges_outlive_their_tables() {
+    let stage = Stage::new();
+    let mesh = shape("cube").expect("built in");
+    let mut renderer = stage.renderer(&Options::default());
+    let options = ModelOptions { edge_factors: true, ..ModelOptions::default() };
+    let model = renderer.add_model(&mesh, &options).expect("a model");
+    let picture = |renderer: &mut Renderer, factor: Option<f32>| {
+        let frame = begin(renderer);
+        let edges = renderer.tables(model).expect("a model").edges().expect("asked for").vertices.len();
+        if let Some(factor) = factor {
+            renderer.set_edge_factors(model, frame, &vec![factor; edges]).expect("factors");
+        }
+        stage.prepare(renderer, frame);
+        stage.draw(renderer, frame, &[DrawItem::new(model, Factor::Edges(1.0))]).expect("a picture")
+    };
+    let [coarse, fine] = [None, Some(5.0)].map(|factor| picture(&mut renderer, factor));
+    assert!(coarse != fine);
+    renderer.set_mesh(model, &mesh).expect("the same");
+    assert!(picture(&mut renderer, None) == fine);
+    renderer.set_mesh(model, &shape("valences").expect("built in")).expect("another");
+    renderer.set_mesh(model, &mesh).expect("the first");
+    assert!(picture(&mut renderer, None) == coarse);
     drop(renderer);
     stage.finish();
 }

@@ -30,7 +30,7 @@ pub(crate) struct Begun {
     is_open: bool,
     pub(super) is_prepared: bool,
     /// What was recorded to be sent to the device, in order.
-    pub(super) sent: Vec<(ModelId, Sent)>,
+    pub(super) sent: Vec<(Option<ModelId>, Sent)>,
 }
 
 impl Begun {
@@ -38,6 +38,13 @@ impl Begun {
     pub(super) fn new(renderer: u64, frames_in_flight: u32) -> Self {
         let frame = Frame { renderer, number: 0, index: frames_in_flight - 1 };
         Self { frame, is_open: false, is_prepared: false, sent: Vec::new() }
+    }
+
+    /// Has what was sent of a model be nobody's: it has other tables now.
+    pub(super) fn forget(&mut self, id: ModelId) {
+        for (of, _) in self.sent.iter_mut().filter(|(of, _)| *of == Some(id)) {
+            *of = None;
+        }
     }
 }
 
@@ -78,7 +85,7 @@ impl Renderer {
     pub fn frame_lost(&mut self, frame: Frame) -> Result<(), Error> {
         self.check_frame(frame)?;
         for (id, sent) in std::mem::take(&mut self.begun.sent).into_iter().rev() {
-            let model = self.models.get_mut(&id);
+            let model = id.and_then(|id| self.models.get_mut(&id));
             sent.take_back(model, frame.index);
         }
         self.begun.is_open = false;

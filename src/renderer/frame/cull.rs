@@ -108,7 +108,7 @@ impl Renderer {
     fn listed_groups(&self, item: &DrawItem) -> Result<impl Iterator<Item = (usize, PatchStages, &PatchGroup)>, Error> {
         let model = self.model(item.model)?;
         let surface = self.style(item)?.geometry == Geometry::Surface;
-        let any = surface && item.cull != Cull::NONE && model.evaluation.culls();
+        let any = surface && item.cull != Cull::NONE && model.options.evaluation.culls();
         let groups = model.stages.iter().zip(model.tables.plan().groups()).enumerate();
         let groups = groups.map(|(number, (&stages, group))| (number, stages, group));
         Ok(groups.filter(move |(_, stages, _)| any && stages.has_hull()))
@@ -121,7 +121,8 @@ impl Renderer {
             let layout = ListLayout::new(stages);
             for (first, count) in pieces(group, layout) {
                 let properties = self.context.properties();
-                let patches_per_instance = path(model.evaluation).patches_per_instance(properties, stages, count, most);
+                let patches_per_instance =
+                    path(model.options.evaluation).patches_per_instance(properties, stages, count, most);
                 let list = List { group: number, first, count, offset: 0, patches_per_instance };
                 lists.push((list, layout.bytes(count)));
             }

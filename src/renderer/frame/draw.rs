@@ -68,7 +68,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::NoSuchModel`]; failed Vulkan calls.
     pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
-        if self.options.visible_lists && cull != Cull::NONE && self.model(id)?.evaluation.culls() {
+        if self.options.visible_lists && cull != Cull::NONE && self.model(id)?.options.evaluation.culls() {
             self.make_cuts(id, factor, cull, true)?;
         }
         self.make_cuts(id, factor, cull, false)
@@ -81,7 +81,7 @@ impl Renderer {
         // Of patches that are not looked at, all are drawn.
         let cuts = if lists { [Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { [cut; 2] };
         for each in cuts {
-            let level = path(model.evaluation).level(factor);
+            let level = path(model.options.evaluation).level(factor);
             if !model.made.iter().any(|made| made.is_of(each, level)) {
                 let made = self.pipelines.make(&model.stages, each, factor)?;
                 model.made.push(made);
@@ -159,7 +159,7 @@ impl Renderer {
             Some(lattice) => unsafe { lattice.cmd_bind(recorder.device, recorder.cmd, &mut recorder.bound.lattice) },
             None => recorder.bound.lattice = BoundLattice::default(),
         }
-        let path = path(model.evaluation);
+        let path = path(model.options.evaluation);
         let level = path.level(item.factor);
         let made = |cut| model.made.iter().find(|made| made.is_of(cut, level));
         let of_all = made(Cut::new(item.factor, if lists.is_some() { Cull::NONE } else { item.cull }));

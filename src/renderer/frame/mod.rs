@@ -7,6 +7,7 @@ mod cull;
 mod draw;
 mod lists;
 mod prepare;
+mod replace;
 mod resolved;
 pub(crate) mod segments;
 #[cfg(all(test, feature = "headless"))]
@@ -17,7 +18,7 @@ use crate::gpu::{Buffer, BufferDesc, DeviceContext, MemoryLocation};
 use crate::mesh::ControlMesh;
 use crate::renderer::evaluate::Lattice;
 use crate::renderer::model::ModelPipelines;
-use crate::renderer::model::{Displacements, Model, Surroundings};
+use crate::renderer::model::{Displacements, Model};
 use crate::renderer::options::{
     Cull, DisplacementId, DisplacementMap, Error, Factor, MemoryUsage, ModelId, ModelOptions, Options, Target,
 };
@@ -155,13 +156,9 @@ impl Renderer {
         options: &ModelOptions,
     ) -> Result<ModelId, Error> {
         let id = self.next_id;
-        if positions.len() != tables.control_vertices {
-            return Err(Error::PositionCount { id, given: positions.len(), needed: tables.control_vertices });
-        }
         let options = ModelOptions { construction: tables.options().construction, ..options.clone() };
         let map = self.displacements.get(options.displacement)?;
-        let from = Surroundings { context: &self.context, pipelines: &self.pipelines, options: &self.options };
-        let model = Model::new(from, id, &options, tables, positions, map)?;
+        let model = self.new_model(id, tables, positions, &options, map)?;
         self.next_id.number += 1;
         self.models.insert(id, model);
         let made = self.make_pipelines(id, Factor::Uniform(1.0), Cull::NONE);
@@ -185,7 +182,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::NoSuchDisplacement`]; [`Error::DisplacementInUse`] if there is still a model with it.
     pub fn remove_displacement(&mut self, id: DisplacementId) -> Result<(), Error> {
-        let uses = |(&number, model): (&ModelId, &Model)| (model.displacement == Some(id)).then_some(number);
+        let uses = |(&number, model): (&ModelId, &Model)| (model.options.displacement == Some(id)).then_some(number);
         match self.models.iter().filter_map(uses).min() {
             Some(model) => Err(Error::DisplacementInUse { id, model }),
             None => self.displacements.remove(id),

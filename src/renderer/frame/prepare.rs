@@ -52,7 +52,7 @@ impl Renderer {
                 let mut sent = model.before();
                 model.mark_stale();
                 let copied = model.needs_copies().then(|| model.cmd_copy(device, cmd, frame_index, &mut sent));
-                self.begun.sent.push((id, sent));
+                self.begun.sent.push((Some(id), sent));
                 copied.transpose()?;
             }
             device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
@@ -123,7 +123,7 @@ impl Renderer {
         }
         // The queue may be one that does not compute.
         let lists = self.options.visible_lists;
-        if self.models.values().any(|model| model.computes() || lists && model.evaluation.culls()) {
+        if self.models.values().any(|model| model.computes() || lists && model.options.evaluation.culls()) {
             readers |= Stage::COMPUTE_SHADER;
         }
         readers

@@ -49,7 +49,7 @@ impl Renderer {
     /// if the vertices are more than a shader of the device can see. The model is as it was before.
     pub fn set_segments(&mut self, id: ModelId, segments: u32) -> Result<(), Error> {
         let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
-        let evaluation = model.evaluation;
+        let evaluation = model.options.evaluation;
         if !evaluation.needs_segments() {
             return Err(Error::NoSegments { id, evaluation });
         }
@@ -79,7 +79,7 @@ impl Renderer {
     /// [`Error::NoSuchModel`], [`Error::NotComputed`].
     pub fn evaluated_vertices(&self, id: ModelId) -> Result<Option<EvaluatedVertices>, Error> {
         let model = self.model(id)?;
-        if model.evaluation != Evaluation::Compute {
+        if model.options.evaluation != Evaluation::Compute {
             return Err(Error::NotComputed { id });
         }
         let kept = model.lattice.as_ref().and_then(|lattice| Some((lattice, lattice.vertices.as_ref()?)));

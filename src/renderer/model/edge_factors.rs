@@ -50,6 +50,11 @@ impl EdgeFactors {
         Ok(())
     }
 
+    /// What was last written, corner by corner.
+    pub(crate) fn written(&self) -> &[f32] {
+        &self.written
+    }
+
     /// The largest of what the device has; at least 1.
     pub(crate) fn largest(&self) -> f32 {
         self.largest

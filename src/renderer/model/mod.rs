@@ -17,9 +17,7 @@ pub(crate) use sent::Sent;
 
 use crate::gpu::{Buffer, DeviceContext, DeviceProperties, GpuError};
 use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, path};
-use crate::renderer::options::{
-    DisplacementId, DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options,
-};
+use crate::renderer::options::{DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options};
 use crate::renderer::shader::{PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
 use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
@@ -32,6 +30,7 @@ use tables::Tables;
 
 pub(crate) struct Model {
     pub id: ModelId,
+    pub options: ModelOptions,
     pub tables: ModelTables,
     /// How each group of patches is drawn, in the order of the plan.
     pub stages: Vec<PatchStages>,
@@ -45,7 +44,6 @@ pub(crate) struct Model {
     /// What the cached construction keeps of corners, and of rings.
     pub control_points: Option<Buffer>,
     frames: Option<Buffer>,
-    pub evaluation: Evaluation,
     /// What is drawn instead of patches, once it is known how finely.
     pub lattice: Option<Lattice>,
     /// Whether control points are out of date.
@@ -59,7 +57,6 @@ pub(crate) struct Model {
     /// What was not copied to the device yet.
     uploads: Vec<(Buffer, vk::Buffer)>,
     pub(crate) map: DisplacementMap,
-    pub displacement: Option<DisplacementId>,
     pub prepared: bool,
 }
 
@@ -195,6 +192,7 @@ impl Model {
         let set = unsafe { ModelSet::new(context, &pipelines.sets, name, &buffers)? };
         Ok(Self {
             id,
+            options: model_options.clone(),
             stages: stages(&tables, model_options, pipelines),
             made: Vec::new(),
             tables,
@@ -204,7 +202,6 @@ impl Model {
             edge_factors,
             control_points,
             frames,
-            evaluation: model_options.evaluation,
             lattice: None,
             stale_points: false,
             stale_refinement: false,
@@ -212,7 +209,6 @@ impl Model {
             control,
             uploads,
             map,
-            displacement: model_options.displacement,
             prepared: false,
         })
     }
@@ -230,6 +226,15 @@ impl Model {
             (Some(edges), Some(own)) => own.write(self.id, frame, edges, factors),
             _ => Err(Error::NoEdgeFactors { id: self.id }),
         }
+    }
+
+    /// The factors of the edges, where other tables have the same.
+    pub(crate) fn edge_factors_for(&self, tables: &ModelTables) -> Option<Vec<f32>> {
+        let (own, other) = (self.tables.edges()?, tables.edges()?);
+        let factors = self.edge_factors.as_ref().filter(|_| own.vertices == other.vertices)?;
+        let mut of_edges = vec![1.0; own.vertices.len()];
+        own.of_corners.iter().zip(factors.written()).for_each(|(&edge, &factor)| of_edges[edge as usize] = factor);
+        Some(of_edges)
     }
 
     /// The largest factor of an edge, if they have any: of the frame that was last prepared.
@@ -251,7 +256,7 @@ impl Model {
     /// Whether compute shaders make something of it.
     pub(crate) fn computes(&self) -> bool {
         self.tables.refinement().is_some()
-            || self.control_points.is_some() && self.evaluation != Evaluation::GeometryTwoPass
+            || self.control_points.is_some() && self.options.evaluation != Evaluation::GeometryTwoPass
     }
 
     /// Has control points and refined vertices computed anew in the next frame, even though nothing moved.
@@ -328,7 +333,7 @@ impl Model {
         // SAFETY: as the caller promises.
         unsafe {
             match &pipelines.conversion {
-                Some(conversion) if self.evaluation == Evaluation::GeometryTwoPass => {
+                Some(conversion) if self.options.evaluation == Evaluation::GeometryTwoPass => {
                     conversion.cmd_convert(cmd, set, stages, plan);
                 }
                 _ => pipelines.cached.cmd_points(cmd, set, stages, plan),
