@@ -3,6 +3,7 @@
 use super::build::{Builder, GHOST, Piece};
 use super::caps::{Caps, FRAME, POINTS};
 use super::error::AdaptiveError;
+use super::options::Sums;
 use super::plan::{Leaf, LeafKind, Plan};
 use super::rows::{BlocksMut, Rows};
 use crate::limit::{MaskedRows, Masks};
@@ -149,7 +150,7 @@ impl Builder {
                 leaf.points += cap_points.start;
             }
         });
-        Ok(Plan {
+        let mut plan = Plan {
             options: self.options,
             control_vertices: control,
             rows,
@@ -166,7 +167,11 @@ impl Builder {
             nodes: self.nodes,
             refined: self.refined,
             rounded_caps: self.rounded_caps,
-        })
+        };
+        if plan.options.sums == Sums::Composed {
+            plan.compose()?;
+        }
+        Ok(plan)
     }
 }
 

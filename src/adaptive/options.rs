@@ -1,9 +1,22 @@
 //! What a caller chooses.
 
 use super::error::AdaptiveError;
+use crate::named::named;
 
 /// The greatest depth.
 pub const MAX_DEPTH: u32 = crate::constants::MAX_DEPTH;
+
+named! {
+    /// What refined vertices are sums of, each frame in which the control vertices moved. The surface is the same.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Sums {
+        /// Of those one level above: short sums, which take a step for each level.
+        #[default]
+        Levels = "levels",
+        /// Of control vertices alone: long sums, which can be made all at once.
+        Composed = "composed",
+    }
+}
 
 /// Depths to which faces are refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -17,6 +30,8 @@ pub struct AdaptiveOptions {
     /// Whether faces along creases of finite sharpness are refined, too, down to [`AdaptiveOptions::sharp_depth`]. The surface is
     /// the same: to compare with leaves that follow the crease.
     pub refine_creases: bool,
+    /// What refined vertices are sums of.
+    pub sums: Sums,
 }
 
 impl AdaptiveOptions {

@@ -24,6 +24,8 @@ pub struct Plan {
     /// | refined | vertices of the level before, centres |
     /// | ghost, frame | vertices of any level |
     /// | control point of a cap | vertices of any level, centres, frames |
+    ///
+    /// With [`Sums::Composed`](super::Sums::Composed) all are sums of control vertices.
     pub rows: Rows,
     /// The refined vertices of levels 1, 2, ..: their numbers. Each level follows on the one before.
     pub levels: Vec<Range<u32>>,

@@ -1,9 +1,11 @@
 //! The vertices of a plan as sums.
 
 use super::caps::POINTS;
+use super::error::AdaptiveError;
+use super::options::Sums;
 use super::plan::Plan;
 use crate::blend::Blend;
-use crate::limit::Stencils;
+use crate::limit::{Masks, Stencils};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -116,11 +118,57 @@ impl Plan {
     }
 
     /// The ranges of vertices that can be made one after the other, each all at once: the points of faces other than
-    /// quads, level 1, the other levels, ghosts with frames, end caps. Some may be empty.
+    /// quads, level 1, the other levels, ghosts with frames, end caps; with [`Sums::Composed`] all but end caps are one. Some may be
+    /// empty.
     pub fn steps(&self) -> impl Iterator<Item = Range<u32>> + '_ {
+        if self.options.sums == Sums::Composed {
+            return vec![self.control_vertices..self.cap_points.start, self.cap_points.clone()].into_iter();
+        }
         let levels = self.levels.iter().map(|level| level.start.max(self.centres.end)..level.end);
         let rest = [self.ghosts.start..self.frames.end, self.cap_points.clone()];
-        std::iter::once(self.centres.clone()).chain(levels).chain(rest)
+        std::iter::once(self.centres.clone()).chain(levels).chain(rest).collect::<Vec<_>>().into_iter()
+    }
+
+    /// Makes all rows sums of control vertices.
+    ///
+    /// # Errors
+    /// [`AdaptiveError::TooLarge`].
+    pub(super) fn compose(&mut self) -> Result<(), AdaptiveError> {
+        let all = self.composed();
+        let single = (self.cap_points.start - self.control_vertices) as usize;
+        let (mut rows, mut masks) = (Rows::default(), Masks::default());
+        let mut terms = Vec::new();
+        for row in 0..single {
+            // The greatest weights first: rows that look alike have one mask.
+            terms.clear();
+            terms.extend(all.row(row));
+            terms.sort_by(|a, b| b.1.total_cmp(&a.1));
+            let mask = masks.number(terms.iter().map(|&(_, weight)| weight));
+            if mask as usize == rows.masks.len() {
+                rows.add_mask(terms.len(), std::iter::once((0..).zip(terms.iter().map(|&(_, weight)| weight))));
+            }
+            rows.blocks.push(Block { mask, vertices: rows.vertices.len() as u32 });
+            rows.vertices.extend(terms.iter().map(|&(vertex, _)| vertex));
+        }
+        for cap in (single..all.len()).step_by(POINTS as usize) {
+            let outputs = cap..cap + POINTS as usize;
+            let mut read: Vec<u32> = outputs.clone().flat_map(|row| all.row(row)).map(|(vertex, _)| vertex).collect();
+            read.sort_unstable();
+            read.dedup();
+            let number = |(vertex, weight)| (read.partition_point(|&v| v < vertex) as u32, weight);
+            rows.blocks.push(Block { mask: rows.masks.len() as u32, vertices: rows.vertices.len() as u32 });
+            rows.add_mask(read.len(), outputs.map(|row| all.row(row).map(number)));
+            rows.vertices.extend(read);
+        }
+        let depth = self.options.depth.max(self.options.sharp_depth());
+        for (what, count) in [("vertices read by sums", rows.vertices.len()), ("weights of masks", rows.weights.len())]
+        {
+            if count > u32::MAX as usize {
+                return Err(AdaptiveError::TooLarge { depth, what, count, max: u32::MAX as usize });
+            }
+        }
+        self.rows = rows;
+        Ok(())
     }
 
     /// All vertices, by number, where the control vertices are at `positions`.

@@ -158,6 +158,7 @@ impl Contestant {
             depth,
             sharp_depth: (self.creases != Creases::Direct).then(|| depth.max(levels_of_creases(mesh, refine))),
             refine_creases: self.creases == Creases::Refined,
+            sums: self.sums,
         })
     }
 }

@@ -44,6 +44,7 @@ pub use recording::{Crowd, Recording};
 pub use row::{Row, Series};
 pub use subject::{Subject, Subset};
 
+use crate::adaptive::Sums;
 use crate::named::named;
 use crate::patch::Scheme;
 use crate::renderer::{Construction, Cull, Evaluation};
@@ -190,6 +191,8 @@ pub struct Contestant {
     pub depth: Option<u32>,
     /// How it follows creases, if it is adaptive.
     pub creases: Creases,
+    /// What its refined vertices are sums of, if it is adaptive.
+    pub sums: Sums,
     /// Source of its normals.
     pub normals: Normals,
     /// Patches that it culls.
@@ -206,6 +209,7 @@ impl Contestant {
             patches,
             depth: None,
             creases: Creases::Direct,
+            sums: Sums::Levels,
             normals: Normals::Own,
             cull: Cull::NONE,
             cull_by: CullBy::usual(patches),
@@ -242,12 +246,13 @@ impl Contestant {
         normals.flat_map(with).collect()
     }
 
-    /// The same, and adaptive surfaces of these depths, with each way to follow creases, where the scheme has end caps and the
-    /// path draws them.
-    pub fn at_depths(self, depths: &[u32], creases: &[Creases]) -> Vec<Self> {
+    /// The same, and adaptive surfaces of these depths, with each way to follow creases and each kind of sums, where the scheme has
+    /// end caps and the path draws them.
+    pub fn at_depths(self, depths: &[u32], creases: &[Creases], sums: &[Sums]) -> Vec<Self> {
         let caps = matches!(self.patches, Some((Scheme::Gregory | Scheme::GregoryFitted, _)));
         let depths = if caps { depths } else { &[] };
-        let at = |&depth| creases.iter().map(move |&creases| Self { depth: Some(depth), creases, ..self });
+        let of = |depth, creases| sums.iter().map(move |&sums| Self { depth: Some(depth), creases, sums, ..self });
+        let at = |&depth| creases.iter().flat_map(move |&creases| of(depth, creases));
         [self].into_iter().chain(depths.iter().flat_map(at)).collect()
     }
 

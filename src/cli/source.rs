@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::output::Progress;
 use super::parse;
-use ash_subdiv::adaptive::AdaptiveOptions;
+use ash_subdiv::adaptive::{AdaptiveOptions, Sums};
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, read, shape};
 use ash_subdiv::table::{CpuSurface, Notice, TableOptions};
@@ -51,6 +51,10 @@ pub(super) struct SourceArgs {
     /// With --adaptive: another depth around darts, corners and creases whose sharpness varies
     #[arg(long, value_name = "DEPTH", requires = "adaptive")]
     sharp_depth: Option<u32>,
+
+    /// With --adaptive: what refined vertices are sums of, those one level above or control vertices
+    #[arg(long, value_name = "OF", requires = "adaptive", default_value = "levels", value_parser = parse::one_of(Sums::ALL, Sums::name))]
+    sums: Sums,
 }
 
 impl MeshArgs {
@@ -113,6 +117,7 @@ impl SourceArgs {
         self.adaptive.map(|depth| AdaptiveOptions {
             depth,
             sharp_depth: self.sharp_depth,
+            sums: self.sums,
             ..AdaptiveOptions::default()
         })
     }

@@ -2,7 +2,7 @@
 
 use crate::adaptive::{Distance, Planned, distance, positions};
 use crate::common::random::{Random, random_mesh};
-use ash_subdiv::adaptive::{AdaptiveError, AdaptiveOptions, Leaf, LeafKind, Plan};
+use ash_subdiv::adaptive::{AdaptiveError, AdaptiveOptions, Leaf, LeafKind, Plan, Sums};
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::mesh::{BoundaryRule, Corner, Crease, CreaseMethod, TriangleRule};
 use ash_subdiv::topology::{PatchKind, Topology};
@@ -238,6 +238,30 @@ fn chaikins_creases_leave_no_leaves_two_levels_apart() {
         check_neighbours(&planned, &format!("depth {depth}"));
         let Distance { exact, .. } = distance(&planned, &surface);
         assert!(exact < 1e-8, "{exact:e}");
+    }
+}
+
+#[test]
+fn composed_sums_are_of_control_vertices() {
+    for (name, depth) in [("creature", 3), ("polygons", 1), ("machine-part", 4), ("valences", 2)] {
+        let mesh = shape(name).expect("built in");
+        let options = AdaptiveOptions { depth, ..AdaptiveOptions::default() };
+        let [levels, composed] = [Sums::Levels, Sums::Composed]
+            .map(|sums| Planned::new(&mesh, Scheme::Gregory, &AdaptiveOptions { sums, ..options }));
+        assert!(levels.plan.steps().count() > composed.plan.steps().count());
+        let control = composed.plan.control_vertices;
+        for vertex in control..composed.plan.vertex_count() as u32 {
+            let row = || composed.plan.row(vertex);
+            assert!(
+                row().all(|(v, _)| v < control as usize) && (row().map(|(_, w)| w).sum::<f64>() - 1.0).abs() < 1e-12
+            );
+        }
+        // All else is the same.
+        assert_eq!((&levels.plan.leaves, &levels.plan.grids), (&composed.plan.leaves, &composed.plan.grids), "{name}");
+        assert_eq!(levels.points.len(), composed.points.len());
+        for (a, b) in levels.points.iter().zip(&composed.points) {
+            assert!((*a - *b).length() < 1e-13 * mesh.diagonal(), "{name}");
+        }
     }
 }
 

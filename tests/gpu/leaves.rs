@@ -2,7 +2,7 @@
 
 use crate::common;
 use crate::common::limit::{mesh_and_limit, names, on_limit};
-use ash_subdiv::adaptive::AdaptiveOptions;
+use ash_subdiv::adaptive::{AdaptiveOptions, Sums};
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::Headless;
 use ash_subdiv::limit::LimitSurface;
@@ -58,8 +58,11 @@ fn samples_come_to_the_limit_surface() {
     for info in shapes() {
         let mesh = shape(info.name).expect("built in");
         let mut before = f64::INFINITY;
-        for (depth, construction) in [0, 2, 5].into_iter().zip(Construction::ALL) {
-            let [positions, normals] = distance(&headless, &mesh, &adaptive(depth, construction));
+        let ways = [(0, Sums::Levels), (2, Sums::Composed), (5, Sums::Levels)];
+        for ((depth, sums), construction) in ways.into_iter().zip(Construction::ALL) {
+            let adaptive = Some(AdaptiveOptions { depth, sums, ..AdaptiveOptions::default() });
+            let options = ModelOptions { adaptive, construction, ..ModelOptions::default() };
+            let [positions, normals] = distance(&headless, &mesh, &options);
             println!("{:16} depth {depth}: {positions:8.1e} normals {normals:8.1e}", info.name);
             assert!(positions < 1.001 * before || positions < 1e-6, "{} at depth {depth}: {positions:e}", info.name);
             before = positions;

@@ -6,6 +6,7 @@ use super::super::parse;
 use super::super::source::DeviceArgs;
 use super::presets::{self, Preset};
 use super::results::Results;
+use ash_subdiv::adaptive::Sums;
 use ash_subdiv::bench::{Camera, Contestant, Creases, CullBy, Motion, Normals, Path, Subset};
 use ash_subdiv::renderer::Cull;
 use ash_subdiv::{Construction, Scheme, Spacing};
@@ -43,6 +44,10 @@ pub(in super::super) struct BenchArgs {
     /// them as often.
     #[arg(long, value_name = "HOW", value_delimiter = ',', value_parser = parse::one_of(Creases::ALL, Creases::name))]
     pub(super) creases: Vec<Creases>,
+    /// With --adaptive: what refined vertices are sums of, with commas: `levels`, of those one level above, in a step for each
+    /// level; `composed`, of control vertices, all at once.
+    #[arg(long, value_name = "OF", value_delimiter = ',', default_value = "levels", value_parser = parse::one_of(Sums::ALL, Sums::name))]
+    pub(super) sums: Vec<Sums>,
     /// Measure each row of the tessellation stages and of instances again with patches culled that are not seen: `back`
     /// those that face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
@@ -205,7 +210,8 @@ impl BenchArgs {
         let cull_by = pick(&self.cull_by, Some(&[]), &CullBy::ALL);
         let depths = if self.adaptive.is_empty() { self.preset.map_or(&[][..], |p| p.depths) } else { &self.adaptive };
         let creases = pick(&self.creases, Some(self.preset.map_or(&[Creases::Direct], |p| p.creases)), &Creases::ALL);
-        let adaptive = all.into_iter().flat_map(|contestant| contestant.at_depths(depths, &creases));
+        let sums = pick(&self.sums, None, &Sums::ALL);
+        let adaptive = all.into_iter().flat_map(|contestant| contestant.at_depths(depths, &creases, &sums));
         adaptive.flat_map(|contestant| contestant.variants(&normals, &culls, &cull_by)).collect()
     }
 

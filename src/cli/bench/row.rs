@@ -2,6 +2,7 @@
 
 use super::super::cull;
 use super::super::described::described;
+use ash_subdiv::adaptive::Sums;
 use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Creases, CullBy, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use ash_subdiv::renderer::Cull;
@@ -52,6 +53,10 @@ fn direct() -> String {
     Creases::Direct.name().to_owned()
 }
 
+fn levels() -> String {
+    Sums::Levels.name().to_owned()
+}
+
 described! {
     /// Contestant of a row.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -66,6 +71,9 @@ described! {
         /// How it follows creases.
         #[serde(default = "direct")]
         pub creases: String,
+        /// What its refined vertices are sums of.
+        #[serde(default = "levels")]
+        pub sums: String,
         /// And by what, if that is not what usually does.
         pub cull: String,
     }
@@ -202,6 +210,7 @@ impl Who {
             normals: contestant.normals.name().to_owned(),
             adaptive: contestant.depth,
             creases: contestant.creases.name().to_owned(),
+            sums: contestant.sums.name().to_owned(),
             cull: cull::name(cull) + &by,
         }
     }
@@ -232,7 +241,8 @@ impl Who {
     fn leaves(&self) -> impl Iterator<Item = String> + use<> {
         let depth = self.adaptive.map(|depth| format!("adaptive {depth}"));
         let creases = (self.creases != Creases::Direct.name()).then(|| format!("{} creases", self.creases));
-        depth.into_iter().chain(creases)
+        let sums = (self.sums != Sums::Levels.name()).then(|| format!("{} sums", self.sums));
+        depth.into_iter().chain(creases).chain(sums)
     }
 
     fn drawn(&self) -> impl Iterator<Item = String> {

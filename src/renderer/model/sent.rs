@@ -15,8 +15,6 @@ pub(crate) struct Sent {
     was_lattice_prepared: bool,
     /// Positions, and factors of edges.
     were_due: [bool; 2],
-    /// Control points, refined vertices, evaluated vertices.
-    were_stale: [bool; 3],
 }
 
 impl Sent {
@@ -45,10 +43,6 @@ impl Sent {
         if let Some(of_edges) = model.edge_factors.as_mut().filter(|_| factors) {
             of_edges.send_again(frame);
         }
-        let [points, refinement, vertices] = self.were_stale;
-        model.stale_points |= points;
-        model.stale_refinement |= refinement;
-        model.stale_vertices |= vertices;
     }
 }
 
@@ -61,7 +55,6 @@ impl Model {
             was_prepared: self.prepared,
             was_lattice_prepared: self.lattice.as_ref().is_some_and(|lattice| lattice.prepared),
             were_due: [self.positions.is_due(), self.edge_factors.as_ref().is_some_and(|factors| factors.is_due())],
-            were_stale: [self.stale_points, self.stale_refinement, self.stale_vertices],
         }
     }
 }

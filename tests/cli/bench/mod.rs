@@ -62,6 +62,7 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
                 "scheme",
                 "setup_ms",
                 "spacing",
+                "sums",
                 "tables_ms",
                 "tes_invocations",
                 "traffic_bytes",
@@ -181,7 +182,8 @@ fn bench_records_crowds() {
             "normals",
             "path",
             "prepare_ms",
-            "scheme"
+            "scheme",
+            "sums"
         ]
     );
     let crowds: Vec<_> = recording.iter().take(3).map(|r| r["crowd"].as_str().unwrap()).collect();
@@ -196,7 +198,7 @@ fn bench_records_crowds() {
     assert!(page.contains("What the host takes to record a frame"));
     assert!(!page.contains("Plots") && !page.contains("<h2>Rows"));
     let csv = fs::read_to_string(report.join("results.csv")).unwrap();
-    let columns = "mesh,scheme,construction,path,normals,adaptive,creases,cull,crowd,models,";
+    let columns = "mesh,scheme,construction,path,normals,adaptive,creases,sums,cull,crowd,models,";
     assert!(csv.starts_with(columns) && csv.lines().count() == 7, "{csv}");
     fails("bench --recording 0", 2, "invalid value '0' for '--recording <MODELS>': 0 is not in 1..=100000");
 }
