@@ -99,8 +99,10 @@ fn lost_frames_change_nothing() {
         let options = Options { frames_in_flight, ..Options::default() };
         let mut renderer = stage.renderer(&options);
         let mut all: Vec<Expected> = Vec::new();
+        let mut index = 0;
         for _ in 0..60 {
             let frame = begin(&mut renderer);
+            assert_eq!(frame.index(), index, "lost ones are not counted");
             match random.below(6) {
                 0 | 1 if all.len() < 5 => {
                     let way = random.below(ways.len());
@@ -132,6 +134,7 @@ fn lost_frames_change_nothing() {
                 lose(&stage, &mut renderer, frame);
                 continue;
             }
+            index = (index + 1) % frames_in_flight;
             stage.prepare(&mut renderer, frame);
             if all.is_empty() || random.below(4) > 0 {
                 continue;
@@ -237,13 +240,17 @@ fn a_model_takes_another_mesh() {
             let factor = if options.edge_factors { Factor::Edges(1.0) } else { Factor::Uniform(SEGMENTS as f32) };
             for (i, (&mesh, &new)) in meshes.iter().zip(&news).enumerate() {
                 let frame = begin(&mut renderer);
-                if i % 2 == 1 {
-                    // What the lost frame was to send, and what the next one still sends, is of tables that are gone.
-                    lose(&stage, &mut renderer, frame);
-                } else {
-                    stage.prepare(&mut renderer, frame);
+                // What the lost frame was to send is of tables that are gone.
+                // SAFETY: recorded outside rendering, and never run.
+                let lost = |cmd| unsafe { renderer.cmd_prepare(cmd, frame) };
+                match i % 2 {
+                    1 => stage.headless.record(lost).expect("recorded"),
+                    _ => stage.prepare(&mut renderer, frame),
                 }
                 renderer.set_mesh(model, mesh).expect("another mesh");
+                if i % 2 == 1 {
+                    renderer.frame_lost(frame).expect("the newest");
+                }
                 let frame = stage.frame(&mut renderer);
                 let [drawn, expected] = [model, new]
                     .map(|model| stage.draw(&mut renderer, frame, &[DrawItem::new(model, factor)]).expect("a picture"));

@@ -53,7 +53,7 @@ impl Renderer {
     ///
     /// # Safety
     /// * The device is done with the frame that began [`Options::frames_in_flight`](crate::renderer::Options::frames_in_flight)
-    ///   frames ago, and with those before it: as after waiting for the fence of its submission.
+    ///   frames ago, lost ones not counted, and with those before it: as after waiting for the fence of its submission.
     /// * Of each frame before, what [`Renderer::cmd_prepare`] recorded was submitted, in the order in which frames began, to one
     ///   queue; or the frame was [lost](Renderer::frame_lost).
     pub unsafe fn begin_frame(&mut self) -> Frame {
