@@ -6,6 +6,7 @@ use super::output::{self, Progress, Table};
 use super::parse;
 use super::source::MeshArgs;
 use ash_subdiv::adaptive::{AdaptiveOptions, LevelCounts, Reason};
+use ash_subdiv::mesh::{Repair, Repairs};
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions};
@@ -60,6 +61,20 @@ described! {
         /// By table, and `total`.
         bytes: BTreeMap<&'static str, u64> = "by table, and total",
         notices: Vec<String>,
+        repairs: Vec<Repaired> = "of the file",
+    }
+}
+
+described! {
+    /// What was mended in the file.
+    #[derive(Serialize)]
+    struct Repaired {
+        kind: &'static str,
+        count: usize,
+        first: String,
+        /// Of the file, if its reader knows.
+        line: Option<usize> = "of the first, from 1",
+        note: String,
     }
 }
 
@@ -190,17 +205,24 @@ impl Display for Patches {
 
 pub(super) fn run(args: &InfoArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let (mesh, repairs) = args.mesh.source.load_repaired()?;
     progress.now("building tables");
     let options = args.mesh.model_options(args.construction);
     let tables = ModelTables::new(&mesh, &options)?;
-    let info = Info::new(&mesh, &tables, &options);
+    let info = Info::new(&mesh, &tables, &options, &repairs);
     drop(progress);
     if json { output::json_pretty(&info) } else { info.print() }
 }
 
+impl Repaired {
+    fn new(repair: &Repair) -> Self {
+        let &Repair { kind, count, first, line, .. } = repair;
+        Self { kind: kind.name(), count, first: first.to_string(), line, note: repair.to_string() }
+    }
+}
+
 impl Info {
-    fn new(mesh: &ControlMesh, tables: &ModelTables, options: &ModelOptions) -> Self {
+    fn new(mesh: &ControlMesh, tables: &ModelTables, options: &ModelOptions, repairs: &Repairs) -> Self {
         let data = mesh.data();
         let mut face_sizes = BTreeMap::new();
         data.face_sizes.iter().for_each(|&size| *face_sizes.entry(size).or_insert(0) += 1);
@@ -225,6 +247,7 @@ impl Info {
             connectivity_types: tables.type_count(),
             bytes,
             notices: tables.notices().iter().map(ToString::to_string).collect(),
+            repairs: repairs.list.iter().map(Repaired::new).collect(),
         }
     }
 
@@ -257,6 +280,7 @@ impl Info {
         if let Some(leaves) = &self.adaptive {
             leaves.print()?;
         }
+        self.repairs.iter().for_each(|repaired| output::note(&repaired.note));
         self.notices.iter().for_each(output::note);
         Ok(())
     }

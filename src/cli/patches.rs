@@ -111,7 +111,7 @@ pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
         ));
     }
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let mesh = args.mesh.load(&progress)?;
     let refine = steps(&args.mesh, &mesh, &progress);
     match args.construction {
         Maker::Cpu => {

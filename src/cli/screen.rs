@@ -167,7 +167,7 @@ impl ScreenArgs {
 
 pub(super) fn run(args: &ScreenArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let mesh = args.mesh.load(&progress)?;
     progress.now("building tables");
     let options = ModelOptions { spacing: args.spacing, ..args.mesh.model_options(args.construction) };
     let [width, height] = args.size;

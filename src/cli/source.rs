@@ -5,12 +5,12 @@ use super::output::Progress;
 use super::parse;
 use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
-use ash_subdiv::mesh::{ReadOptions, read, shape};
+use ash_subdiv::mesh::{ReadOptions, RepairOptions, Repairs, read, read_repaired, shape};
 use ash_subdiv::table::{CpuSurface, Notice, TableOptions};
 use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme};
 use clap::Args;
 use glam::DVec3;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The mesh, and the surface it is the control mesh of.
 #[derive(Debug, Args)]
@@ -30,9 +30,8 @@ pub(super) struct SourceArgs {
     /// A built-in shape instead of a file: see `subdiv shapes`.
     #[arg(long, value_name = "NAME")]
     shape: Option<String>,
-    /// Take out vertices that belong to no face, instead of refusing the file (OBJ).
-    #[arg(long)]
-    drop_isolated: bool,
+    #[command(flatten)]
+    reading: ReadingArgs,
     /// Mesh of a glTF scene, by its name or its node's; all of them if not given.
     #[arg(long, value_name = "NAME", conflicts_with = "shape")]
     mesh_name: Option<String>,
@@ -76,9 +75,9 @@ impl MeshArgs {
         self.source.cpu_surface(mesh, self.scheme, progress)
     }
 
-    /// Reads the file, or makes the shape.
-    pub(super) fn load(&self) -> Result<ControlMesh, CliError> {
-        self.source.load()
+    /// Reads the file, or makes the shape; reports repairs.
+    pub(super) fn load(&self, progress: &Progress) -> Result<ControlMesh, CliError> {
+        self.source.load(progress)
     }
 }
 
@@ -134,14 +133,18 @@ impl SourceArgs {
         self.fallback.unwrap_or_default()
     }
 
+    /// Reads the file, or makes the shape; reports repairs.
+    pub(super) fn load(&self, progress: &Progress) -> Result<ControlMesh, CliError> {
+        let (mesh, repairs) = self.load_repaired()?;
+        report_repairs(&repairs, progress);
+        Ok(mesh)
+    }
+
     /// Reads the file, or makes the shape.
-    pub(super) fn load(&self) -> Result<ControlMesh, CliError> {
+    pub(super) fn load_repaired(&self) -> Result<(ControlMesh, Repairs), CliError> {
         match (&self.mesh, &self.shape) {
-            (Some(path), None) => {
-                let options = ReadOptions { drop_isolated: self.drop_isolated, mesh: self.mesh_name.clone() };
-                Ok(read(path, &options)?)
-            }
-            (None, Some(name)) => Ok(shape(name)?),
+            (Some(path), None) => self.reading.read(path, self.mesh_name.clone()),
+            (None, Some(name)) => Ok((shape(name)?, Repairs::default())),
             (Some(path), Some(name)) => {
                 let path = path.display();
                 Err(CliError::Usage(format!("both a mesh ({path}) and --shape {name} are given: leave one out")))
@@ -151,6 +154,33 @@ impl SourceArgs {
             )),
         }
     }
+}
+
+/// How files are read.
+#[derive(Debug, Args)]
+pub(super) struct ReadingArgs {
+    /// Refuse files that have to be mended: repeated corners, vertices without faces, edges of three faces, faces turned over …
+    #[arg(long)]
+    strict: bool,
+    /// With --strict: take out vertices that belong to no face, instead of refusing the file (OBJ).
+    #[arg(long)]
+    drop_isolated: bool,
+}
+
+impl ReadingArgs {
+    /// Reads a file, or one mesh of it.
+    pub(super) fn read(&self, path: &Path, mesh: Option<String>) -> Result<(ControlMesh, Repairs), CliError> {
+        let options = ReadOptions { drop_isolated: self.drop_isolated, mesh };
+        match self.strict {
+            true => Ok((read(path, &options)?, Repairs::default())),
+            false => Ok(read_repaired(path, &options, &RepairOptions::default())?),
+        }
+    }
+}
+
+/// Reports what was mended in a file.
+pub(super) fn report_repairs(repairs: &Repairs, progress: &Progress) {
+    repairs.list.iter().for_each(|repair| progress.note(repair));
 }
 
 /// Reports the notices on how a mesh is drawn.

@@ -173,7 +173,7 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
     args.check()?;
     let start = Instant::now();
     let progress = Progress::new("reading the mesh");
-    let mesh = args.source.load()?;
+    let mesh = args.source.load(&progress)?;
     let texels = args.displacement.texels()?;
     progress.now("choosing depths");
     let topology = Topology::new(&mesh);

@@ -154,7 +154,7 @@ impl WatertightArgs {
 
 pub(super) fn run(args: &WatertightArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
-    let given = args.source.load()?;
+    let given = args.source.load(&progress)?;
     let mesh = if given.data().texcoords.is_some() { given } else { with_seams_everywhere(&given)? };
     let closed = mesh.boundary_edge_count() == 0 && mesh.data().holes.is_empty();
     progress.now("building tables");

@@ -251,6 +251,11 @@ impl ControlMesh {
         if self.checked.twins[half_edge as usize] == adjacency::NO_TWIN {
             return SHARPNESS_INFINITE;
         }
+        self.crease_sharpness(half_edge)
+    }
+
+    /// The sharpness of the crease on a half-edge's edge, a boundary too; else 0.
+    pub(crate) fn crease_sharpness(&self, half_edge: u32) -> f32 {
         self.checked.edge_sharpness.get(half_edge as usize).copied().unwrap_or(0.0)
     }
 

@@ -1,4 +1,4 @@
-//! Control meshes: what they are, how they are checked, and how files and built-in shapes become one.
+//! Control meshes: what they are, how they are checked, and how files and built-in shapes become one; repair of what is not.
 
 mod adjacency;
 mod control_mesh;
@@ -7,6 +7,7 @@ mod error;
 mod gltf;
 mod obj;
 mod read;
+mod repair;
 mod shapes;
 pub mod write;
 
@@ -19,7 +20,8 @@ pub use error::MeshError;
 #[cfg(feature = "gltf")]
 pub use gltf::GltfOptions;
 pub use obj::ObjOptions;
-pub use read::{ReadOptions, read};
+pub use read::{ReadOptions, read, read_repaired};
+pub use repair::{Place, Repair, RepairKind, RepairOptions, Repairs, repair};
 pub use shapes::{ShapeInfo, grid_torus, replicate, shape, shapes};
 
 pub(crate) use adjacency::NO_TWIN;

@@ -1,4 +1,4 @@
-use super::{ControlMesh, MeshError, ObjOptions};
+use super::{ControlMesh, MeshError, ObjOptions, RepairOptions, Repairs};
 use std::path::Path;
 
 /// How [`read`] reads a file.
@@ -16,7 +16,24 @@ pub struct ReadOptions {
 /// [`MeshError::Unreadable`] where there is no such file or its ending is unknown; otherwise what the reader says,
 /// with the path ([`MeshError::InFile`]).
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<ControlMesh, MeshError> {
-    let path = path.as_ref();
+    read_with(path.as_ref(), options, None).map(|(mesh, _)| mesh)
+}
+
+/// As [`read`], with what is odd about the file mended: see [`repair`](super::repair()).
+///
+/// # Errors
+/// As [`read`], for what can't be mended.
+pub fn read_repaired(
+    path: impl AsRef<Path>,
+    options: &ReadOptions,
+    repair: &RepairOptions,
+) -> Result<(ControlMesh, Repairs), MeshError> {
+    read_with(path.as_ref(), options, Some(repair))
+}
+
+type Read = Result<(ControlMesh, Repairs), MeshError>;
+
+fn read_with(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
     let unreadable = |message: String| MeshError::Unreadable { path: path.to_owned(), message };
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     let reader = match ending.as_deref() {
@@ -34,24 +51,36 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<ControlMesh
         std::io::ErrorKind::NotFound => unreadable("there is no such file".into()),
         _ => unreadable(error.to_string()),
     })?;
-    reader(path, &bytes, options).map_err(|error| MeshError::InFile { path: path.to_owned(), error: Box::new(error) })
+    reader(path, &bytes, options, repair)
+        .map_err(|error| MeshError::InFile { path: path.to_owned(), error: Box::new(error) })
 }
 
-fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions) -> Result<ControlMesh, MeshError> {
+fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
     if let Some(mesh) = &options.mesh {
         let message = format!("\"{mesh}\" can't be chosen: an OBJ file is read as one mesh; leave the name out");
         return Err(MeshError::Format { message });
     }
-    ControlMesh::from_obj_bytes(bytes, &ObjOptions { drop_isolated: options.drop_isolated })
+    match repair {
+        Some(repair) => ControlMesh::from_obj_bytes_repaired(bytes, repair),
+        None => unrepaired(ControlMesh::from_obj_bytes(bytes, &ObjOptions { drop_isolated: options.drop_isolated })),
+    }
 }
 
 #[cfg(feature = "gltf")]
-fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<ControlMesh, MeshError> {
+fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
     let folder = path.parent().map(Path::to_owned);
-    ControlMesh::from_gltf_bytes(bytes, &super::GltfOptions { mesh: options.mesh.clone(), folder })
+    let options = super::GltfOptions { mesh: options.mesh.clone(), folder };
+    match repair {
+        Some(repair) => ControlMesh::from_gltf_bytes_repaired(bytes, &options, repair),
+        None => unrepaired(ControlMesh::from_gltf_bytes(bytes, &options)),
+    }
 }
 
 #[cfg(not(feature = "gltf"))]
-fn read_gltf(_: &Path, _: &[u8], _: &ReadOptions) -> Result<ControlMesh, MeshError> {
+fn read_gltf(_: &Path, _: &[u8], _: &ReadOptions, _: Option<&RepairOptions>) -> Read {
     Err(MeshError::Format { message: "this build can't read glTF: turn on the cargo feature \"gltf\"".into() })
+}
+
+fn unrepaired(mesh: Result<ControlMesh, MeshError>) -> Read {
+    mesh.map(|mesh| (mesh, Repairs::default()))
 }

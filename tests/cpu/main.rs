@@ -24,6 +24,8 @@ mod properties;
 mod reader_properties;
 mod readers;
 mod records;
+mod repair;
+
 mod schemes;
 mod topology;
 mod twin_comments;

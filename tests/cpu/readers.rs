@@ -16,7 +16,7 @@ fn shared_meshes_have_the_vertices_and_faces_their_text_has() {
     let mut read_count = 0;
     for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes")).unwrap() {
         let path = entry.unwrap().path();
-        // Three faces meet at edges of the fan: the test below.
+        // Three faces meet at edges of the fan: the test below, and those of `repair`.
         if path.extension().is_none_or(|ending| ending != "obj") || path.ends_with("catmark_fan.obj") {
             continue;
         }

@@ -81,7 +81,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     args.check_shading()?;
     let legend = if args.shading.is_painted() { Legend::height(args.size)? } else { 0 };
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let mesh = args.mesh.load(&progress)?;
     let painting = args.painting(&mesh, &progress)?;
     progress.now("building tables");
     let evaluation = args.factor.level.map_or(args.evaluation.evaluation, |_| Evaluation::Subdivision);

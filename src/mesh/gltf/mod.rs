@@ -31,7 +31,7 @@ fn check_count(name: &str, accessor: &Accessor, positions: &Accessor) -> Result<
 #[cfg(test)]
 mod tests;
 
-use super::{ControlMesh, FaceVarying, MeshData, MeshError};
+use super::{ControlMesh, FaceVarying, MeshData, MeshError, RepairOptions, Repairs};
 use ::gltf::json;
 use accessor::Accessor;
 use error::format_error;
@@ -90,23 +90,39 @@ impl ControlMesh {
     /// [`MeshError::Format`] for a file that is broken or requires extensions that change the shape,
     /// [`MeshError::UnknownMesh`], and those of [`ControlMesh::new`].
     pub fn from_gltf_bytes(bytes: &[u8], options: &GltfOptions) -> Result<Self, MeshError> {
-        let (json, binary) = container::split(bytes)?;
-        let root = container::parse(json)?;
-        check_extensions(&root)?;
-        let mut instances = scene::instances(&root)?;
-        if let Some(name) = &options.mesh {
-            instances = scene::choose(instances, name)?;
-        }
-        let buffers = container::buffers(&root, binary, options.folder.as_deref())?;
-        let mut builder = Builder::default();
-        for instance in &instances {
-            builder.add_instance(&root, &buffers, instance)?;
-        }
-        if builder.data.face_sizes.is_empty() {
-            return Err(format_error("the scene has no triangles: points and lines have no surface"));
-        }
-        Self::new(builder.finish())
+        Self::new(read(bytes, options)?)
     }
+
+    /// As [`ControlMesh::from_gltf_bytes`], with what is odd about the file mended: see [`repair`](super::repair).
+    ///
+    /// # Errors
+    /// As [`ControlMesh::from_gltf_bytes`], for what can't be mended.
+    pub fn from_gltf_bytes_repaired(
+        bytes: &[u8],
+        options: &GltfOptions,
+        repair: &RepairOptions,
+    ) -> Result<(Self, Repairs), MeshError> {
+        Self::repaired(read(bytes, options)?, repair)
+    }
+}
+
+fn read(bytes: &[u8], options: &GltfOptions) -> Result<MeshData, MeshError> {
+    let (json, binary) = container::split(bytes)?;
+    let root = container::parse(json)?;
+    check_extensions(&root)?;
+    let mut instances = scene::instances(&root)?;
+    if let Some(name) = &options.mesh {
+        instances = scene::choose(instances, name)?;
+    }
+    let buffers = container::buffers(&root, binary, options.folder.as_deref())?;
+    let mut builder = Builder::default();
+    for instance in &instances {
+        builder.add_instance(&root, &buffers, instance)?;
+    }
+    if builder.data.face_sizes.is_empty() {
+        return Err(format_error("the scene has no triangles: points and lines have no surface"));
+    }
+    Ok(builder.finish())
 }
 
 fn check_extensions(root: &json::Root) -> Result<(), MeshError> {

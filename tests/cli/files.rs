@@ -1,0 +1,174 @@
+//! Files as people have them: what is odd about them is mended and said once, or refused with `--strict`.
+
+use super::{fails, folder, json, run, subdiv};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+    f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+/// What `info` finds in a file, and the notes on standard error.
+#[track_caller]
+fn info(path: &Path) -> (Value, Vec<String>) {
+    let info = subdiv().arg("info").arg(path).arg("--json").output().unwrap();
+    assert!(info.status.success(), "{}: {}", path.display(), String::from_utf8_lossy(&info.stderr));
+    let text = subdiv().arg("info").arg(path).output().unwrap();
+    let stderr = String::from_utf8(text.stderr).unwrap();
+    let notes = stderr.lines().map(|line| line.strip_prefix("note: ").unwrap().to_owned()).collect();
+    (serde_json::from_slice(&info.stdout).unwrap(), notes)
+}
+
+fn written(test: &str, text: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder(test).join("mesh.obj");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn what_is_odd_about_a_file_is_said_once_and_refused_when_strict() {
+    let cases = [
+        (
+            format!("{CUBE}v 9 9 9\nv 8 8 nan\nl 1 9\np 10\n"),
+            "isolated_vertices",
+            "2 vertices belong to no face and are left out (the first: vertex 8, line 15)",
+            "line 16: \"nan\" is not a finite number: write it like 1.5 or -2e3",
+        ),
+        (
+            CUBE.replace("f 5 6 7 8", "f 5 5 6 7 8"),
+            "repeated_corners",
+            "1 repeated corner is left out (face 1, line 10)",
+            "line 10: face 1 names vertex 4 twice: remove the repeated vertex, or split the face there",
+        ),
+        (
+            format!("{CUBE}f 1 2\n"),
+            "small_faces",
+            "1 face of fewer than three corners is left out (face 6, line 15)",
+            "line 15: face 6 has 2 vertices: a face needs at least three",
+        ),
+        (
+            format!("{CUBE}f 6 7 8 5\n"),
+            "doubled_faces",
+            "1 face on another is left out (face 6, line 15)",
+            "line 15: face 6 is the third face at the edge 5-6: an edge has one or two faces; separate the surfaces there",
+        ),
+        (
+            CUBE.replace("f 2 3 7 6", "f 2 6 7 3"),
+            "turned_faces",
+            "1 face is turned over to go with its neighbours (face 3, line 12)",
+            "line 12: faces 2 and 3 both run along the edge 1-5 in the same direction: turn one of them round so that all \
+             faces are counter-clockwise from outside",
+        ),
+        (
+            format!("{CUBE}v 2 0 0\nv 2 0 1\nf 2 9 10 6\n"),
+            "crowded_edges",
+            "1 edge of three or more faces is sharp (edge 1-5 of face 6, line 17)",
+            "line 17: face 6 is the third face at the edge 1-5: an edge has one or two faces; separate the surfaces there",
+        ),
+        (
+            format!("{CUBE}t crease 2/1/0 0 6 2\nt corner 1/1/0 8 2\n"),
+            "tags_on_nothing",
+            "2 tags on nothing are left out (the first: crease 0, line 15)",
+            "line 16: corner 0 names vertex 8, but the mesh has 8 vertices",
+        ),
+        (
+            CUBE.replace("f 1 4 3 2", "vn -nan(ind) 0 1\nf 1//1 4//1 3//1 2//1"),
+            "normals",
+            "4 corners have normals that are not there or no numbers: the surface has its own (the first: face 0, line 10)",
+            "line 9: \"-nan(ind)\" is not a finite number: write it like 1.5 or -2e3",
+        ),
+        (
+            CUBE.replace("f 1 4 3 2", "vn 0 0 1\nf 1//1 4//0 3//7 2//1"),
+            "normals",
+            "2 corners have normals that are not there or no numbers: the surface has its own (the first: face 0, line 10)",
+            "line 10: \"0\" is not the index of a normal: indices count from 1, or back from -1",
+        ),
+        (
+            CUBE.replace("f 1 4 3 2", "vt 0 0\nf 1/1 4/1 3 2/1"),
+            "texture_coordinates",
+            "1 corner has a texture coordinate that is not there or no number: it gets (0, 0) (face 0, line 10)",
+            "line 10: some corners of the face have a texture coordinate and some have none: give it to all or none",
+        ),
+    ];
+    for (number, (text, kind, note, error)) in cases.into_iter().enumerate() {
+        let path = written(&format!("odd{number}"), &text);
+        let (info, notes) = info(&path);
+        assert_eq!(notes, [note], "{kind}");
+        let repairs = info["repairs"].as_array().unwrap();
+        assert_eq!((repairs.len(), &repairs[0]["kind"], &repairs[0]["note"]), (1, &kind.into(), &note.into()));
+        assert!(repairs[0]["line"].is_u64());
+        let faces = if kind == "crowded_edges" { 7 } else { 6 };
+        assert_eq!((&info["faces"], &info["boundary_edges"]), (&faces.into(), &((faces - 6) * 4).into()), "{kind}");
+        fails(&format!("info --strict {}", path.display()), 1, &format!("{}: {error}", path.display()));
+    }
+}
+
+#[test]
+fn files_without_fault_are_read_without_a_word() {
+    let (info, notes) = info(&written("clean", CUBE));
+    assert_eq!((notes.len(), info["repairs"].as_array().unwrap().len()), (0, 0));
+}
+
+#[test]
+fn positions_that_are_needed_must_be_numbers() {
+    let path = written("needed", CUBE.replace("v 1 1 1", "v 1 nan 1"));
+    let shown = path.display();
+    let error =
+        format!("{shown}: line 7: vertex 6 is at (1, NaN, 1): positions must be finite numbers of at most 3.4e38");
+    fails(&format!("info {shown}"), 1, &error);
+}
+
+#[test]
+fn every_command_mends_and_says_so() {
+    let path = written("commands", format!("{CUBE}v 9 9 9\n"));
+    let shown = path.display();
+    let note = "note: 1 vertex belongs to no face and is left out (vertex 8, line 15)\n";
+    for command in ["patches --construction cpu", "sample --cpu --grid 2", "error --samples 2", "info"] {
+        let output = run(&format!("{command} {shown}"));
+        assert!(output.status.success(), "{command}");
+        assert_eq!(String::from_utf8_lossy(&output.stderr), note, "{command}");
+    }
+}
+
+/// A file of the shared cases.
+fn case(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/cases").join(name)
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn the_cases_are_read() {
+    // Faces, boundary edges, repairs.
+    let cases: [(&str, u64, u64, &[&str]); 13] = [
+        ("obj_nan_normals/nan_vn.obj", 6, 0, &["normals"]),
+        ("obj_zero_normal_index/zero_vn.obj", 6, 0, &["normals"]),
+        ("obj_zero_normal_index/missing_vn.obj", 6, 0, &["normals"]),
+        ("obj_corner_without_uv/mixed_corners.obj", 6, 0, &["texture_coordinates"]),
+        ("obj_repeated_corner/repeated.obj", 6, 0, &["repeated_corners"]),
+        ("one_face_turned/oneflip.obj", 6, 0, &["turned_faces"]),
+        ("obj_loose_lines/lines.obj", 6, 0, &["isolated_vertices"]),
+        ("fin/fin.obj", 7, 4, &["crowded_edges"]),
+        ("more/fin.obj", 7, 4, &["crowded_edges"]),
+        ("more/isolated_crease_line.obj", 6, 0, &["tags_on_nothing"]),
+        ("more/vnmissing.obj", 6, 0, &["normals"]),
+        ("obj_cr_lines/cr.obj", 6, 0, &[]),
+        ("obj_latin1/latin1.obj", 6, 0, &[]),
+    ];
+    for (name, faces, boundary, kinds) in cases {
+        let (info, notes) = info(&case(name));
+        let found: Vec<&Value> = info["repairs"].as_array().unwrap().iter().map(|repair| &repair["kind"]).collect();
+        assert_eq!(found, kinds, "{name}");
+        assert_eq!((&info["faces"], &info["boundary_edges"]), (&faces.into(), &boundary.into()), "{name}");
+        assert_eq!(notes.len(), kinds.len(), "{name}: {notes:?}");
+    }
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn every_shared_mesh_is_read() {
+    for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|ending| ending == "obj") {
+            json(&format!("info {}", path.display()));
+        }
+    }
+}
