@@ -4,7 +4,7 @@ use super::described::{described, help};
 use super::error::CliError;
 use super::output::{self, Progress, Table};
 use super::parse;
-use super::source::MeshArgs;
+use super::source::{MeshArgs, notes};
 use ash_subdiv::adaptive::{AdaptiveOptions, LevelCounts, Reason};
 use ash_subdiv::mesh::{Repair, Repairs};
 use ash_subdiv::renderer::ModelTables;
@@ -62,6 +62,8 @@ described! {
         bytes: BTreeMap<&'static str, u64> = "by table, and total",
         notices: Vec<String>,
         repairs: Vec<Repaired> = "of the file",
+        /// Edges on boundaries that lie on others.
+        loose_edges: usize = "on boundaries, on others",
     }
 }
 
@@ -211,7 +213,13 @@ pub(super) fn run(args: &InfoArgs, json: bool) -> Result<(), CliError> {
     let tables = ModelTables::new(&mesh, &options)?;
     let info = Info::new(&mesh, &tables, &options, &repairs);
     drop(progress);
-    if json { output::json_pretty(&info) } else { info.print() }
+    if json {
+        return output::json_pretty(&info);
+    }
+    info.print()?;
+    notes(&repairs).iter().for_each(output::note);
+    info.notices.iter().for_each(output::note);
+    Ok(())
 }
 
 impl Repaired {
@@ -248,6 +256,7 @@ impl Info {
             bytes,
             notices: tables.notices().iter().map(ToString::to_string).collect(),
             repairs: repairs.list.iter().map(Repaired::new).collect(),
+            loose_edges: repairs.loose_edges,
         }
     }
 
@@ -280,8 +289,7 @@ impl Info {
         if let Some(leaves) = &self.adaptive {
             leaves.print()?;
         }
-        self.repairs.iter().for_each(|repaired| output::note(&repaired.note));
-        self.notices.iter().for_each(output::note);
+
         Ok(())
     }
 }

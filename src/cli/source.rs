@@ -162,6 +162,9 @@ pub(super) struct ReadingArgs {
     /// Refuse files that have to be mended: repeated corners, vertices without faces, edges of three faces, faces turned over …
     #[arg(long)]
     strict: bool,
+    /// Join loose faces: edges on boundaries whose ends are this near, as a part of the bounding box's diagonal.
+    #[arg(long, value_name = "TOLERANCE", conflicts_with = "strict", value_parser = parse::weld)]
+    weld: Option<f64>,
     /// With --strict: take out vertices that belong to no face, instead of refusing the file (OBJ).
     #[arg(long)]
     drop_isolated: bool,
@@ -173,14 +176,24 @@ impl ReadingArgs {
         let options = ReadOptions { drop_isolated: self.drop_isolated, mesh };
         match self.strict {
             true => Ok((read(path, &options)?, Repairs::default())),
-            false => Ok(read_repaired(path, &options, &RepairOptions::default())?),
+            false => Ok(read_repaired(path, &options, &RepairOptions { weld: self.weld })?),
         }
     }
 }
 
-/// Reports what was mended in a file.
-pub(super) fn report_repairs(repairs: &Repairs, progress: &Progress) {
-    repairs.list.iter().for_each(|repair| progress.note(repair));
+/// What to say about how a file was mended, one note a line.
+pub(super) fn notes(repairs: &Repairs) -> Vec<String> {
+    let mut notes: Vec<String> = repairs.list.iter().map(ToString::to_string).collect();
+    if repairs.loose_edges > 0 {
+        let count = repairs.loose_edges;
+        notes.push(format!("{count} edges on boundaries lie on others without being joined: --weld 1e-6 joins them"));
+    }
+    notes
+}
+
+/// Reports how a file was mended.
+fn report_repairs(repairs: &Repairs, progress: &Progress) {
+    notes(repairs).iter().for_each(|note| progress.note(note));
 }
 
 /// Reports the notices on how a mesh is drawn.

@@ -129,6 +129,75 @@ fn every_command_mends_and_says_so() {
     }
 }
 
+/// The faces of the cube, each with vertices of its own, moved by up to `off`.
+fn loose_cube(off: f64) -> String {
+    let positions: Vec<&str> = CUBE.lines().filter(|line| line.starts_with("v ")).collect();
+    let (mut text, mut count) = (String::new(), 0);
+    for face in CUBE.lines().filter_map(|line| line.strip_prefix("f ")) {
+        for vertex in face.split(' ') {
+            let xyz: Vec<f64> =
+                positions[vertex.parse::<usize>().unwrap() - 1][2..].split(' ').map(|x| x.parse().unwrap()).collect();
+            count += 1;
+            let shift = off * f64::from(count % 3) / 2.0;
+            text += &format!("v {} {} {}\n", xyz[0] + shift, xyz[1] - shift, xyz[2]);
+        }
+        text += &format!("f {} {} {} {}\n", count - 3, count - 2, count - 1, count);
+    }
+    text
+}
+
+#[test]
+fn loose_faces_are_joined_on_request_and_said_otherwise() {
+    let path = written("loose", loose_cube(0.0));
+    let (loose, notes) = info(&path);
+    assert_eq!((&loose["boundary_edges"], &loose["loose_edges"]), (&24.into(), &24.into()));
+    assert_eq!(notes, ["24 edges on boundaries lie on others without being joined: --weld 1e-6 joins them"]);
+    let welded = json(&format!("info {} --weld 0", path.display()));
+    assert_eq!(
+        (&welded["vertices"], &welded["boundary_edges"], &welded["loose_edges"]),
+        (&8.into(), &0.into(), &0.into())
+    );
+    assert_eq!(welded["repairs"][0]["note"], "16 vertices are joined with others (the first: vertex 8, line 11)");
+    // Nearly there: half of the tolerance (of the diagonal, 1.73) is enough, and more than it is not.
+    let near = written("near", loose_cube(1e-4));
+    assert_eq!(info(&near).1.len(), 0, "too far off for the note");
+    for (tolerance, boundary) in [("3e-4", 0), ("2e-5", 24)] {
+        let info = json(&format!("info {} --weld {tolerance}", near.display()));
+        assert_eq!(info["boundary_edges"], boundary, "{tolerance}");
+    }
+    let message =
+        "invalid value '2' for '--weld <TOLERANCE>': it must be a part of the diagonal, from 0 to 0.1, such as 1e-6";
+    fails("info x.obj --weld 2", 2, message);
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn cases_of_loose_faces() {
+    for (name, faces) in [("obj_unwelded/soup.obj", 6), ("gltf_seam_last_bit/sphere_seam.glb", 0)] {
+        let path = case(name);
+        let (loose, notes) = info(&path);
+        assert!(loose["boundary_edges"].as_u64() > Some(0));
+        assert!(notes.len() == 1 && notes[0].ends_with("--weld 1e-6 joins them"), "{name}: {notes:?}");
+        let welded = json(&format!("info {} --weld 1e-6", path.display()));
+        assert_eq!(welded["boundary_edges"], 0, "{name}");
+        assert!(faces == 0 || welded["faces"] == faces, "{name}");
+    }
+    for (name, faces, edges) in [
+        ("gltf_touching_parts/cubes_touch_edge.glb", 12, 24),
+        ("gltf_touching_parts/cubes_touch_face.glb", 12, 24),
+        ("more/cubes_touch_edge.glb", 12, 24),
+        ("more/decal_same_mesh.glb", 0, 0),
+        ("gltf_degenerate/sphere_degenerate.glb", 0, 0),
+    ] {
+        let (info, notes) = info(&case(name));
+        assert_eq!(notes, [""; 0], "{name}");
+        if faces > 0 {
+            assert_eq!((&info["faces"], &info["edges"]), (&faces.into(), &edges.into()), "{name}");
+            assert_eq!((&info["vertices"], &info["boundary_edges"]), (&16.into(), &0.into()), "{name}");
+        }
+    }
+}
+
 /// A file of the shared cases.
 fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/cases").join(name)

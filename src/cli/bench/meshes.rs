@@ -2,6 +2,7 @@
 
 use super::super::error::CliError;
 use super::super::output;
+use super::super::source::notes;
 use super::args::BenchArgs;
 use super::facts::{MeshOut, sharpness_in_name};
 use super::unique;
@@ -58,7 +59,7 @@ impl BenchArgs {
             let alone = self.mesh.iter().all(|other| other == path || name(other) != name(path));
             let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
             let (mesh, repairs) = self.reading.read(path, None)?;
-            repairs.list.iter().for_each(|repair| output::note(format_args!("{name}: {repair}")));
+            notes(&repairs).iter().for_each(|note| output::note(format_args!("{name}: {note}")));
             meshes.push((name, mesh));
         }
         let usual = [self.preset.map_or("creature", |preset| preset.shape).to_owned()];

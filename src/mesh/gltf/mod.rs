@@ -31,6 +31,7 @@ fn check_count(name: &str, accessor: &Accessor, positions: &Accessor) -> Result<
 #[cfg(test)]
 mod tests;
 
+use super::repair::weld;
 use super::{ControlMesh, FaceVarying, MeshData, MeshError, RepairOptions, Repairs};
 use ::gltf::json;
 use accessor::Accessor;
@@ -78,8 +79,9 @@ impl ControlMesh {
     /// * Polygons are those that the extension `FB_ngon_encoding` marks: triangles in a row that share their first
     ///   corner and go on where the last ended. Without it, triangles, strips and fans give triangles. Points, lines
     ///   and triangles with two corners at one place are passed over.
-    /// * Vertices of one mesh whose positions are equal in every bit become one vertex, so that seams of texture
-    ///   coordinates or normals are no boundaries of the surface. `TEXCOORD_0` and `NORMAL` are kept a face corner;
+    /// * Edges of one mesh that lie on one another (their ends are equal in every bit) become one edge, so that seams of texture
+    ///   coordinates, normals or materials are no boundaries of the surface. Where more than two lie on one another, each is joined
+    ///   with the one that bounds the same solid. A sheet and its back are not joined, nor are pieces that only touch. `TEXCOORD_0` and `NORMAL` are kept a face corner;
     ///   where only some primitives have them, the others get (0, 0) and (0, 0, 0).
     /// * The transforms of the nodes are applied; one that mirrors turns the faces round. That of a node with a skin is
     ///   not, as the format has it. Skins and morph targets are not applied.
@@ -149,6 +151,8 @@ struct Builder {
     attributes: Vec<u32>,
     has_texcoords: bool,
     has_normals: bool,
+    /// Of every vertex, the first one of its instance that has its position.
+    places: Vec<u32>,
 }
 
 /// What a vertex of a primitive became.
@@ -165,9 +169,9 @@ impl Builder {
         buffers: &[Cow<'_, [u8]>],
         instance: &Instance<'_>,
     ) -> Result<(), MeshError> {
-        let mut welded = HashMap::new();
+        let mut places = HashMap::new();
         for primitive in &instance.mesh.primitives {
-            self.add_primitive(root, buffers, instance, primitive, &mut welded)?;
+            self.add_primitive(root, buffers, instance, primitive, &mut places)?;
         }
         Ok(())
     }
@@ -178,7 +182,7 @@ impl Builder {
         buffers: &[Cow<'_, [u8]>],
         instance: &Instance<'_>,
         primitive: &Primitive,
-        welded: &mut HashMap<[u64; 3], u32>,
+        places: &mut HashMap<[u64; 3], u32>,
     ) -> Result<(), MeshError> {
         let Checked::Valid(mode) = primitive.mode else {
             return Err(format_error("a primitive has an unknown mode: it must be 0 to 6"));
@@ -219,7 +223,7 @@ impl Builder {
             }
             for &corner in corners {
                 let local = *locals.entry(corner).or_insert_with(|| {
-                    let vertex = self.weld(positions.get(corner as usize), instance, welded);
+                    let vertex = self.add_vertex(positions.get(corner as usize), instance, places);
                     let texcoord = texcoords.as_ref().map_or([0.0; 2], |texcoords| texcoords.get(corner as usize));
                     let normal = normals.as_ref().map_or([0.0; 3], |normals| normals.get(corner as usize));
                     let normal = (normal_transform * DVec3::from(normal)).normalize_or_zero();
@@ -243,20 +247,22 @@ impl Builder {
         Ok(())
     }
 
-    /// The vertex at a position of an instance's mesh, new if none is there yet.
-    fn weld(&mut self, position: [f64; 3], instance: &Instance<'_>, welded: &mut HashMap<[u64; 3], u32>) -> u32 {
+    /// Adds a vertex of an instance's mesh, and notes which others have its position.
+    fn add_vertex(&mut self, position: [f64; 3], instance: &Instance<'_>, places: &mut HashMap<[u64; 3], u32>) -> u32 {
+        let vertex = self.data.positions.len() as u32;
         // Adding zero makes -0 and 0 the same.
-        *welded.entry(position.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
-            let position = DVec3::from(position);
-            let placed = instance.transform.transform_point3(position);
-            // An infinite coordinate would make the others NaN, and hide from the message what is wrong.
-            let placed = if position.is_finite() { placed } else { position };
-            self.data.positions.push(placed.to_array());
-            self.data.positions.len() as u32 - 1
-        })
+        self.places.push(*places.entry(position.map(|x| (x + 0.0).to_bits())).or_insert(vertex));
+        let position = DVec3::from(position);
+        let placed = instance.transform.transform_point3(position);
+        // An infinite coordinate would make the others NaN, and hide from the message what is wrong.
+        let placed = if position.is_finite() { placed } else { position };
+        self.data.positions.push(placed.to_array());
+        vertex
     }
 
+    /// Joins what the file split, edge by edge.
     fn finish(mut self) -> MeshData {
+        weld::join(&mut self.data, &self.places);
         if self.has_texcoords {
             self.data.texcoords = Some(FaceVarying { values: self.texcoords, indices: self.attributes.clone() });
         }

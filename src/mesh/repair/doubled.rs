@@ -12,11 +12,12 @@ pub(super) fn mend(work: &mut Work, joints: &Joints) -> bool {
     work.repairs.add(RepairKind::DoubledFaces, count, first.map(Place::Face));
     if count > 0 {
         let vertices = std::mem::take(&mut work.data.face_vertices);
-        faces::rebuild(work, &vertices, |face, corners, kept| {
+        let before = faces::rebuild(work, &vertices, |face, corners, kept| {
             if !goes(face) {
                 kept.extend(corners);
             }
         });
+        work.repairs.renumber_faces(before);
     }
     count > 0
 }

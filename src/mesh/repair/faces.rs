@@ -10,7 +10,7 @@ pub(super) fn mend(work: &mut Work) -> bool {
     let (mut repeated, mut first_repeated) = (0, None);
     let (mut small, mut first_small) = (0, None);
     let vertices = std::mem::take(&mut work.data.face_vertices);
-    rebuild(work, &vertices, |face, corners, kept| {
+    let before = rebuild(work, &vertices, |face, corners, kept| {
         let size = corners.len();
         if !odd[face as usize] {
             kept.extend(corners);
@@ -26,11 +26,11 @@ pub(super) fn mend(work: &mut Work) -> bool {
             first_repeated.get_or_insert(Place::Face(face));
         }
     });
-    // The places are numbers from before.
-    let numbers = std::mem::take(&mut work.repairs.faces);
     work.repairs.add(RepairKind::RepeatedCorners, repeated, first_repeated);
     work.repairs.add(RepairKind::SmallFaces, small, first_small);
-    work.repairs.faces = numbers;
+    if small > 0 {
+        work.repairs.renumber_faces(before);
+    }
     true
 }
 
@@ -102,12 +102,12 @@ pub(super) fn crossed(data: &MeshData) -> Vec<u32> {
 }
 
 /// Makes the faces anew out of corners of the old ones: `corners_of` adds those that a face keeps, none if it goes. Holes keep
-/// their faces.
+/// their faces. Gives the number that each face had before.
 pub(super) fn rebuild(
     work: &mut Work,
     vertices: &[u32],
     mut corners_of: impl FnMut(u32, Range<usize>, &mut Vec<usize>),
-) {
+) -> Vec<u32> {
     let data = &mut work.data;
     let (mut before, mut corners, mut kept) = (Vec::new(), Vec::with_capacity(vertices.len()), Vec::new());
     let mut numbers = vec![u32::MAX; data.face_sizes.len()];
@@ -136,7 +136,5 @@ pub(super) fn rebuild(
         *hole = numbers[*hole as usize];
         *hole != u32::MAX
     });
-    if before.len() < numbers.len() {
-        work.repairs.renumber_faces(before);
-    }
+    before
 }

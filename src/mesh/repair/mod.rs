@@ -4,6 +4,7 @@
 //! |---|---|
 //! | attributes that are not there or no numbers | `attributes` |
 //! | repeated corners, small faces | `faces` |
+//! | loose faces | `weld` |
 //! | doubled faces | `doubled` |
 //! | faces turned over, sheets with one side | `orient` |
 //! | edges of three and more faces: vertices parted | `part` |
@@ -20,6 +21,7 @@ mod report;
 mod tags;
 #[cfg(test)]
 mod tests;
+pub(super) mod weld;
 
 use super::adjacency::{Edges, NO_TWIN};
 use super::{ControlMesh, MAX_CORNERS, MeshData, MeshError};
@@ -27,8 +29,11 @@ pub use report::{Place, Repair, RepairKind, Repairs};
 
 /// What [`repair`] does beyond what a mesh needs.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[non_exhaustive]
-pub struct RepairOptions {}
+pub struct RepairOptions {
+    /// Join edges on boundaries that lie on others: their ends differ in no coordinate by more than this part of the bounding box's
+    /// diagonal. Those within half of it surely are joined. At 0 they must be equal.
+    pub weld: Option<f64>,
+}
 
 /// Mends what keeps `data` from being a [`ControlMesh`](super::ControlMesh). A mesh without fault comes back as it is.
 ///
@@ -37,6 +42,7 @@ pub struct RepairOptions {}
 /// * Normals and texture coordinates that are not there or not finite become zero. The surface does not use normals.
 /// * A corner that repeats the one before it, and a spike (out to a vertex and back), is left out; then faces of fewer than
 ///   three corners are.
+/// * Where [`RepairOptions::weld`] says so, loose faces are joined.
 /// * Of faces that lie on one another, the first stays. Two faces back to back stay both where all their edges have two faces (a
 ///   pillow), or where each belongs to a solid of its own.
 /// * Faces are turned over where neighbours disagree, as few as possible in each piece. A sheet with one side is parted along
@@ -67,15 +73,21 @@ pub struct RepairOptions {}
 /// # Ok::<(), ash_subdiv::MeshError>(())
 /// ```
 pub fn repair(data: MeshData, options: &RepairOptions) -> (MeshData, Repairs) {
-    let RepairOptions {} = options;
     if !is_sound(&data) {
         return (data, Repairs::default());
     }
     let mut work = Work { data, repairs: Repairs::default() };
     attributes::mend(&mut work);
     let holes = tags::drop_holes(&mut work.data);
-    let were_odd = faces::mend(&mut work);
+    let mut were_odd = faces::mend(&mut work);
+    if let Some(tolerance) = options.weld {
+        weld::mend(&mut work, tolerance);
+        were_odd |= faces::mend(&mut work);
+    }
     let mut joints = join_faces(&mut work);
+    if options.weld.is_none() {
+        work.repairs.loose_edges = weld::loose_edges(&work.data, &joints);
+    }
     tags::mend(&mut work, &joints, holes);
     let crossed = if were_odd { faces::crossed(&work.data) } else { Vec::new() };
     part::mend(&mut work, &mut joints, &crossed);

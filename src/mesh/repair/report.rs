@@ -16,6 +16,8 @@ named! {
         RepeatedCorners = "repeated_corners",
         /// Faces of fewer than three corners: left out.
         SmallFaces = "small_faces",
+        /// Vertices on boundaries that were joined with others, as asked.
+        WeldedVertices = "welded_vertices",
         /// Faces on others of the same vertices: left out.
         DoubledFaces = "doubled_faces",
         /// Faces whose neighbours run the other way round: turned.
@@ -72,6 +74,8 @@ pub struct Repairs {
     pub vertices: Vec<u32>,
     /// The given face that each face is; empty if they have the numbers that they had.
     pub faces: Vec<u32>,
+    /// Edges on boundaries that lie on others (to a millionth of the diagonal), where welding was not asked for.
+    pub loose_edges: usize,
 }
 
 impl Repairs {
@@ -96,7 +100,10 @@ impl Repairs {
             }
             tag => tag,
         };
-        self.list.push(Repair { kind, count, first, line: None });
+        match self.list.iter_mut().find(|repair| repair.kind == kind) {
+            Some(repair) => repair.count += count,
+            None => self.list.push(Repair { kind, count, first, line: None }),
+        }
     }
 
     /// Vertices were numbered anew: the number that each had before.
@@ -140,6 +147,7 @@ impl Display for Repair {
             Kind::SmallFaces => {
                 ["face of fewer than three corners is left out", "faces of fewer than three corners are left out"]
             }
+            Kind::WeldedVertices => ["vertex is joined with another", "vertices are joined with others"],
             Kind::DoubledFaces => ["face on another is left out", "faces on others are left out"],
             Kind::TurnedFaces => {
                 ["face is turned over to go with its neighbours", "faces are turned over to go with their neighbours"]
