@@ -61,10 +61,9 @@ fn open_half_edges(joints: &Joints) -> Vec<u32> {
     (0..joints.twins.len() as u32).filter(is_open).collect()
 }
 
-/// A number for the place of each vertex at the end of a half-edge: the same in neighbouring cells of a grid half as wide as the
+/// A number for the place of each vertex of faces on boundaries: the same in neighbouring cells of a grid half as wide as the
 /// tolerance.
 fn places(data: &MeshData, joints: &Joints, open: &[u32], tolerance: f64) -> Vec<u32> {
-    let vertex = |h: u32| data.face_vertices[h as usize];
     let mut places = vec![u32::MAX; data.positions.len()];
     let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     for position in data.face_vertices.iter().map(|&v| DVec3::from(data.positions[v as usize])) {
@@ -75,7 +74,9 @@ fn places(data: &MeshData, joints: &Joints, open: &[u32], tolerance: f64) -> Vec
     let spacing = (bounds[1] - bounds[0]).length() * tolerance / 2.0;
     let mut cells: HashMap<[u64; 3], u32> = HashMap::new();
     let mut roots: Vec<u32> = Vec::new();
-    for at in open.iter().flat_map(|&h| [vertex(h), vertex(joints.next(h))]) {
+    let mut faces: Vec<u32> = open.iter().map(|&h| joints.faces[h as usize]).collect();
+    faces.dedup();
+    for at in faces.into_iter().flat_map(|face| joints.corners(face)).map(|corner| data.face_vertices[corner]) {
         let position = DVec3::from(data.positions[at as usize]);
         if places[at as usize] != u32::MAX {
             continue;
