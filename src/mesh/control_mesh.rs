@@ -105,7 +105,7 @@ pub struct MeshData {
     pub face_sizes: Vec<u32>,
     /// The vertices of every face, counter-clockwise seen from outside, one face after the other.
     pub face_vertices: Vec<u32>,
-    /// Texture coordinates, origin wherever the image says.
+    /// Texture coordinates: (0, 0) is the upper left of the image, as in glTF and Vulkan.
     pub texcoords: Option<FaceVarying<[f32; 2]>>,
     /// Authored normals. The smooth surface has normals of its own; these are kept for callers.
     pub normals: Option<FaceVarying<[f32; 3]>>,

@@ -240,3 +240,65 @@ fn every_shared_mesh_is_read() {
         }
     }
 }
+
+/// The pixels of a picture that the program draws.
+fn pixels(arguments: &str, name: &str) -> image::RgbaImage {
+    let path = folder(&format!("pixels-{name}")).join("a.png");
+    let output = run(&format!("render {arguments} --size 96x96 -o {}", path.display()));
+    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
+    image::open(path).unwrap().into_rgba8()
+}
+
+const SHEET: &str = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n\
+    vt 0 0\nvt 0.5 0\nvt 1 0\nvt 0 0.5\nvt 0.5 0.5\nvt 1 0.5\nvt 0 1\nvt 0.5 1\nvt 1 1\n\
+    f 1/1 2/2 5/5 4/4\nf 2/2 3/3 6/6 5/5\nf 4/4 5/5 8/8 7/7\nf 5/5 6/6 9/9 8/8\n";
+
+#[test]
+fn in_obj_v_runs_up_the_image() {
+    let folder = folder("upside");
+    // White above, black below.
+    let map = folder.join("map.png");
+    image::GrayImage::from_fn(8, 8, |_, y| image::Luma([if y < 4 { 255 } else { 0 }])).save(&map).unwrap();
+    let mesh = folder.join("sheet.obj");
+    std::fs::write(&mesh, SHEET).unwrap();
+    let smooth = folder.join("smooth.obj");
+    let options = "--displacement-scale 0.1 --depth 4";
+    json(&format!("tessellate {} --displacement {} {options} -o {}", mesh.display(), map.display(), smooth.display()));
+    let text = std::fs::read_to_string(smooth).unwrap();
+    let vertices = text.lines().filter_map(|line| line.strip_prefix("v "));
+    let [mut above, mut below] = [0, 0];
+    for vertex in vertices {
+        let [_, y, z] =
+            <[f64; 3]>::try_from(vertex.split(' ').map(|x| x.parse().unwrap()).collect::<Vec<_>>()).unwrap();
+        if (1.3..1.7).contains(&y) {
+            assert!(z > 0.2, "the upper half comes out: {vertex}");
+            above += 1;
+        } else if (0.3..0.7).contains(&y) {
+            assert!(z.abs() < 1e-6, "the lower half stays: {vertex}");
+            below += 1;
+        }
+    }
+    assert!(above > 50 && below > 50);
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn cases_that_are_drawn_alike() {
+    let at = |name: &str| case(name).display().to_string();
+    let pairs = [
+        (
+            "displacement_upside_down/sheet_uv.obj",
+            "displacement_upside_down/sheet_uv.glb",
+            "displacement_upside_down/tophalf.png",
+        ),
+        ("exr_one_channel/sheet_uv.obj", "exr_one_channel/sheet_uv.obj", "exr_one_channel/e_y.exr"),
+    ];
+    for (number, (one, other, map)) in pairs.into_iter().enumerate() {
+        let other_map = map.replace("e_y", "e_rgb");
+        let draw = |mesh: &str, map: &str, name: &str| {
+            let options = "--displacement-scale 0.1 --factor 16 --yaw 30";
+            pixels(&format!("{} --displacement {} {options}", at(mesh), at(map)), &format!("{name}{number}"))
+        };
+        assert!(draw(one, map, "one") == draw(other, &other_map, "other"), "{one} {map}");
+    }
+}

@@ -43,7 +43,8 @@ impl ControlMesh {
     /// Reads the text of an OBJ file. Objects, groups, materials and smoothing are passed over: all faces of the file
     /// become one mesh, and polygons stay polygons.
     ///
-    /// Understood are `v` (more than three components are ignored), `vt` (one to three; the third is ignored), `vn`,
+    /// Understood are `v` (more than three components are ignored), `vt` (one to three; the third is ignored; v is
+    /// turned round, for in OBJ it runs up from the bottom of the image), `vn`,
     /// `f` with indices that count from one or back, and the tags `t crease`, `corner`, `hole`,
     /// `interpolateboundary`, `creasemethod`, `smoothtriangles` and `facevaryinginterpolateboundary`, whose vertices
     /// and faces count from zero. A crease may be a chain of more than two vertices. Where only some faces have
@@ -222,10 +223,17 @@ fn components<'a, T: Copy + Default, const N: usize>(
     Ok(components)
 }
 
-/// One number or more; the first two count.
+/// One number or more; the first two count. In OBJ v runs up from the bottom of the image, here down from its top.
 fn texcoord<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f32; 2], String> {
     let u = number_f32(words.next().ok_or("\"vt\" needs one number or more, but has none")?)?;
-    Ok([u, words.next().map_or(Ok(0.0), number_f32)?])
+    let v = words.next().map_or(Ok(0.0), |word| number_f32(word).and_then(|_| number(word)))?;
+    Ok([u, from_top(v) as f32])
+}
+
+/// Puts a texture coordinate's v from the bottom of the image to its top, and back. In double precision, so that v comes back as
+/// it was.
+pub(crate) fn from_top(v: f64) -> f64 {
+    1.0 - v
 }
 
 /// Gives the corners of faces that have no values at all the value `fill`, if other faces have some.

@@ -72,14 +72,14 @@ fn further_components_are_accepted() {
     let text = QUAD.replace(" 0\n", " 0 1 0.5 0.5\n");
     assert_eq!(read(&text), read(QUAD));
     let data = read_after_quad("v 2 0 0\nvt 0.5\nvt 0.5 0.25\nvt 0.5 0.25 9\nf 3/1 2/2 5/3\n");
-    assert_eq!(data.texcoords.unwrap().values[..3], [[0.5, 0.0], [0.5, 0.25], [0.5, 0.25]]);
+    assert_eq!(data.texcoords.unwrap().values[..3], [[0.5, 1.0], [0.5, 0.75], [0.5, 0.75]], "v runs up the image");
 }
 
 #[test]
 fn face_corners_of_every_form() {
     let attributes = "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n";
     let quad = |face: &str| read(&QUAD.replace("f 1 2 3 4", &format!("{attributes}f {face}"))).into_data();
-    let texcoords = Some(FaceVarying { values: vec![[0., 0.], [1., 0.], [1., 1.]], indices: vec![0, 1, 2, 0] });
+    let texcoords = Some(FaceVarying { values: vec![[0., 1.], [1., 1.], [1., 0.]], indices: vec![0, 1, 2, 0] });
     let normals = Some(FaceVarying { values: vec![[0., 0., 1.]], indices: vec![0; 4] });
     for (face, has_texcoords, has_normals) in [
         ("1 2 3 4", false, false),
@@ -112,7 +112,7 @@ fn indices_may_point_forward() {
 #[test]
 fn faces_without_attributes_get_zero_where_others_have_them() {
     let data = read_after_quad("v 2 0 0\nvt 1 1\nvn 1 0 0\nf 3/1/1 2/1/1 5/1/1\n");
-    let texcoords = FaceVarying { values: vec![[1., 1.], [0., 0.]], indices: vec![1, 1, 1, 1, 0, 0, 0] };
+    let texcoords = FaceVarying { values: vec![[1., 0.], [0., 0.]], indices: vec![1, 1, 1, 1, 0, 0, 0] };
     assert_eq!(data.texcoords, Some(texcoords));
     let normals = FaceVarying { values: vec![[1., 0., 0.], [0., 0., 0.]], indices: vec![1, 1, 1, 1, 0, 0, 0] };
     assert_eq!(data.normals, Some(normals));

@@ -1,6 +1,7 @@
 //! OBJ: every position once, whatever normals and texture coordinates it has.
 
 use super::Polygons;
+use crate::mesh::obj::from_top;
 use std::io::{self, Write};
 
 /// Writes a mesh as OBJ.
@@ -12,7 +13,7 @@ pub fn write_obj(mesh: &Polygons, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "v {x} {y} {z}")?;
     }
     for [u, v] in mesh.texcoords.unwrap_or_default() {
-        writeln!(out, "vt {u} {v}")?;
+        writeln!(out, "vt {u} {}", from_top(f64::from(*v)))?;
     }
     for [x, y, z] in mesh.normals {
         writeln!(out, "vn {x} {y} {z}")?;
