@@ -9,6 +9,7 @@
 //! | `error_rows`, `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
 //! | `leaves` | what `patches` needs |
+//! | `local` | the space in which the device sees a mesh |
 //! | `obj` | what `shapes` writes |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
@@ -30,6 +31,7 @@ mod evaluation;
 mod info;
 mod interrupt;
 mod leaves;
+mod local;
 mod memory;
 mod obj;
 mod output;

@@ -301,4 +301,59 @@ fn cases_that_are_drawn_alike() {
         };
         assert!(draw(one, map, "one") == draw(other, &other_map, "other"), "{one} {map}");
     }
+    let house = |name: &str| pixels(&format!("{} --up 0,0,1", at(&format!("far_from_origin/{name}.obj"))), name);
+    let (far, near) = (house("utm_house"), house("utm_house_local"));
+    let worst = far.iter().zip(near.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+    assert!(worst <= 2, "{worst}");
+}
+
+/// The cube, `size` wide, from `low` on.
+fn placed(test: &str, size: f64, low: f64) -> String {
+    let place = |line: &str| match line.strip_prefix("v ") {
+        Some(xyz) => {
+            let xyz: Vec<String> =
+                xyz.split(' ').map(|x| (low + size * x.parse::<f64>().unwrap()).to_string()).collect();
+            format!("v {}\n", xyz.join(" "))
+        }
+        None => format!("{line}\n"),
+    };
+    written(test, CUBE.lines().map(place).collect::<String>()).display().to_string()
+}
+
+#[test]
+fn size_and_place_do_not_matter() {
+    let like = pixels(&placed("size0", 1.0, 0.0), "size0");
+    for (number, (size, low)) in
+        [(1e-10, 0.0), (1e-30, 0.0), (1e10, 0.0), (1e30, 0.0), (20.0, 2e7)].into_iter().enumerate()
+    {
+        let path = placed(&format!("size{}", number + 1), size, low);
+        let picture = pixels(&path, &format!("size{}", number + 1));
+        let worst = like.iter().zip(picture.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+        assert!(worst <= 2, "{size} from {low}: {worst}");
+        // The eye stands where the file has it.
+        let eye = |size: f64, low: f64| [3.0, 2.0, 5.0].map(|x: f64| (low + size * x).to_string()).join(",");
+        let one = pixels(&format!("{} --eye {}", placed("size0", 1.0, 0.0), eye(1.0, 0.0)), "eye0");
+        let other = pixels(&format!("{path} --eye {}", eye(size, low)), "eye");
+        let worst = one.iter().zip(other.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+        assert!(worst <= 2, "{size} from {low} by hand: {worst}");
+    }
+}
+
+#[test]
+fn figures_are_in_the_units_of_the_file() {
+    let (size, low) = (20.0, 2e7);
+    let [one, other] = [placed("units0", 1.0, 0.0), placed("units1", size, low)];
+    for command in ["sample --grid 3", "patches --construction two-stage", "patches --construction stencil"] {
+        let [one, other] = [&one, &other].map(|path| json(&format!("{command} {path}")));
+        let key = if command.starts_with("sample") { "faces" } else { "patches" };
+        let points = if command.starts_with("sample") { "positions" } else { "points" };
+        let all = |value: &Value| {
+            let parts = value[key].as_array().unwrap().iter().map(|part| super::numbers(&part[points]));
+            parts.collect::<Vec<_>>().concat()
+        };
+        let (one, other) = (all(&one), all(&other));
+        assert!(!one.is_empty() && one.len() == other.len(), "{command}");
+        let worst = one.iter().zip(&other).map(|(a, b)| (low + size * a - b).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-5, "{command}: {worst}");
+    }
 }
