@@ -40,7 +40,7 @@ pub(super) struct CameraArgs {
 impl CameraArgs {
     /// The same camera in local space.
     pub(super) fn in_space(&self, local: Local) -> Self {
-        let place = |point: Option<DVec3>| point.map(|point| local.from_file(point));
+        let place = |point: Option<DVec3>| point.map(|point| local.to_local(point));
         Self { eye: place(self.eye), target: place(self.target), ..self.clone() }
     }
 

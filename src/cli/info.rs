@@ -64,6 +64,8 @@ described! {
         repairs: Vec<Repaired> = "of the file",
         /// Edges on boundaries that lie on others.
         loose_edges: usize = "on boundaries, on others",
+        /// Put together out of triangles.
+        rebuilt_quads: usize = "out of triangles",
     }
 }
 
@@ -257,6 +259,7 @@ impl Info {
             notices: tables.notices().iter().map(ToString::to_string).collect(),
             repairs: repairs.list.iter().map(Repaired::new).collect(),
             loose_edges: repairs.loose_edges,
+            rebuilt_quads: repairs.rebuilt_quads,
         }
     }
 

@@ -28,7 +28,7 @@ impl Local {
             return Ok((mesh, local));
         }
         let mut data: MeshData = mesh.into_data();
-        data.positions.iter_mut().for_each(|position| *position = local.from_file((*position).into()).into());
+        data.positions.iter_mut().for_each(|position| *position = local.to_local((*position).into()).into());
         Ok((ControlMesh::new(data)?, local))
     }
 
@@ -48,7 +48,7 @@ impl Local {
     }
 
     /// A point of the file.
-    pub(super) fn from_file(self, point: DVec3) -> DVec3 {
+    pub(super) fn to_local(self, point: DVec3) -> DVec3 {
         (point - self.centre) / self.size
     }
 
@@ -71,7 +71,7 @@ mod tests {
         for (middle, size) in [(0.0, 1e-10), (0.0, 1e10), (5e6, 10.0), (0.0, 1e37), (0.0, 1e-30)] {
             let bounds = bounds(middle, size);
             let local = Local::around(bounds);
-            let [low, high] = bounds.map(|corner| local.from_file(corner));
+            let [low, high] = bounds.map(|corner| local.to_local(corner));
             assert!((2.0..8.0).contains(&(high - low).length()) && (low + high).length() < 1e-6, "{local:?}");
             let back = local.in_file(high);
             assert!((back - bounds[1]).length() <= 1e-15 * bounds[1].length(), "{back}");

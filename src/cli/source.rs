@@ -165,15 +165,36 @@ pub(super) struct ReadingArgs {
     /// Join loose faces: edges on boundaries whose ends are this near, as a part of the bounding box's diagonal.
     #[arg(long, value_name = "TOLERANCE", conflicts_with = "strict", value_parser = parse::weld)]
     weld: Option<f64>,
+    /// Put quads of glTF together that an exporter split into triangles: auto where most triangles are parts of quads, off never.
+    #[arg(long, value_name = "WHEN", default_value = RebuildQuads::Auto.name(), value_parser = parse::one_of(RebuildQuads::ALL, RebuildQuads::name))]
+    rebuild_quads: RebuildQuads,
     /// With --strict: take out vertices that belong to no face, instead of refusing the file (OBJ).
     #[arg(long)]
     drop_isolated: bool,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum RebuildQuads {
+    Auto,
+    Off,
+}
+
+impl RebuildQuads {
+    const ALL: [Self; 2] = [Self::Auto, Self::Off];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Off => "off",
+        }
+    }
+}
+
 impl ReadingArgs {
     /// Reads a file, or one mesh of it.
     pub(super) fn read(&self, path: &Path, mesh: Option<String>) -> Result<(ControlMesh, Repairs), CliError> {
-        let options = ReadOptions { drop_isolated: self.drop_isolated, mesh };
+        let quads = self.rebuild_quads == RebuildQuads::Auto;
+        let options = ReadOptions { drop_isolated: self.drop_isolated, mesh, quads };
         match self.strict {
             true => Ok((read(path, &options)?, Repairs::default())),
             false => Ok(read_repaired(path, &options, &RepairOptions { weld: self.weld })?),
@@ -184,6 +205,10 @@ impl ReadingArgs {
 /// What to say about how a file was mended, one note a line.
 pub(super) fn notes(repairs: &Repairs) -> Vec<String> {
     let mut notes: Vec<String> = repairs.list.iter().map(ToString::to_string).collect();
+    if repairs.rebuilt_quads > 0 {
+        let count = repairs.rebuilt_quads;
+        notes.push(format!("{count} quads are put together out of triangles: --rebuild-quads off keeps the triangles"));
+    }
     if repairs.loose_edges > 0 {
         let count = repairs.loose_edges;
         notes.push(format!("{count} edges on boundaries lie on others without being joined: --weld 1e-6 joins them"));

@@ -8,6 +8,8 @@ pub struct ReadOptions {
     pub drop_isolated: bool,
     /// Which mesh of a glTF scene, by the name of the mesh or of its node; all as one mesh if `None`.
     pub mesh: Option<String>,
+    /// Put quads of glTF together that were split into triangles: `GltfOptions::quads`.
+    pub quads: bool,
 }
 
 /// Reads a control mesh from a file whose name ends in `.obj`, `.gltf` or `.glb` (in any case).
@@ -33,6 +35,7 @@ pub fn read_repaired(
 
 type Read = Result<(ControlMesh, Repairs), MeshError>;
 
+/// Reads a file; with `None` nothing is mended, but quads may be put together.
 fn read_with(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
     let unreadable = |message: String| MeshError::Unreadable { path: path.to_owned(), message };
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
@@ -62,25 +65,27 @@ fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&Repai
     }
     match repair {
         Some(repair) => ControlMesh::from_obj_bytes_repaired(bytes, repair),
-        None => unrepaired(ControlMesh::from_obj_bytes(bytes, &ObjOptions { drop_isolated: options.drop_isolated })),
+        None => {
+            let options = ObjOptions { drop_isolated: options.drop_isolated };
+            Ok((ControlMesh::from_obj_bytes(bytes, &options)?, Repairs::default()))
+        }
     }
 }
 
 #[cfg(feature = "gltf")]
 fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
     let folder = path.parent().map(Path::to_owned);
-    let options = super::GltfOptions { mesh: options.mesh.clone(), folder };
+    let options = super::GltfOptions { mesh: options.mesh.clone(), folder, quads: options.quads };
     match repair {
         Some(repair) => ControlMesh::from_gltf_bytes_repaired(bytes, &options, repair),
-        None => unrepaired(ControlMesh::from_gltf_bytes(bytes, &options)),
+        None => {
+            let (data, rebuilt_quads) = super::gltf::read(bytes, &options)?;
+            Ok((ControlMesh::new(data)?, Repairs { rebuilt_quads, ..Repairs::default() }))
+        }
     }
 }
 
 #[cfg(not(feature = "gltf"))]
 fn read_gltf(_: &Path, _: &[u8], _: &ReadOptions, _: Option<&RepairOptions>) -> Read {
     Err(MeshError::Format { message: "this build can't read glTF: turn on the cargo feature \"gltf\"".into() })
-}
-
-fn unrepaired(mesh: Result<ControlMesh, MeshError>) -> Read {
-    mesh.map(|mesh| (mesh, Repairs::default()))
 }

@@ -357,3 +357,14 @@ fn figures_are_in_the_units_of_the_file() {
         assert!(worst < 1e-5, "{command}: {worst}");
     }
 }
+
+#[test]
+fn quads_of_gltf_are_put_together() {
+    let path = folder("quads").join("cube.glb");
+    json(&format!("tessellate --shape cube --depth 2 -o {}", path.display()));
+    let (quads, notes) = info(&path);
+    assert_eq!((&quads["face_sizes"], &quads["rebuilt_quads"]), (&serde_json::json!({ "4": 96 }), &96.into()));
+    assert_eq!(notes, ["96 quads are put together out of triangles: --rebuild-quads off keeps the triangles"]);
+    let triangles = json(&format!("info {} --rebuild-quads off", path.display()));
+    assert_eq!(triangles["face_sizes"], serde_json::json!({ "3": 192 }));
+}

@@ -128,7 +128,7 @@ mod gltf {
     }
 
     fn read_gltf(bytes: &[u8]) -> bool {
-        let named = GltfOptions { mesh: Some("node".into()), folder: None };
+        let named = GltfOptions { mesh: Some("node".into()), folder: None, quads: true };
         let _ = ControlMesh::from_gltf_bytes(bytes, &named);
         ControlMesh::from_gltf_bytes(bytes, &GltfOptions::default()).is_ok()
     }

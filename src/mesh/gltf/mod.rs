@@ -31,7 +31,7 @@ fn check_count(name: &str, accessor: &Accessor, positions: &Accessor) -> Result<
 #[cfg(test)]
 mod tests;
 
-use super::repair::weld;
+use super::repair::{quads, weld};
 use super::{ControlMesh, FaceVarying, MeshData, MeshError, RepairOptions, Repairs};
 use ::gltf::json;
 use accessor::Accessor;
@@ -52,6 +52,9 @@ pub struct GltfOptions {
     pub mesh: Option<String>,
     /// Where files that the glTF names are looked for.
     pub folder: Option<PathBuf>,
+    /// Put quads together that were split into triangles, as exporters do: by their order in the file, or else by shape. Only where
+    /// most triangles are parts of quads, and never across seams of texture coordinates or materials.
+    pub quads: bool,
 }
 
 const NGONS: &str = "FB_ngon_encoding";
@@ -92,7 +95,7 @@ impl ControlMesh {
     /// [`MeshError::Format`] for a file that is broken or requires extensions that change the shape,
     /// [`MeshError::UnknownMesh`], and those of [`ControlMesh::new`].
     pub fn from_gltf_bytes(bytes: &[u8], options: &GltfOptions) -> Result<Self, MeshError> {
-        Self::new(read(bytes, options)?)
+        Self::new(read(bytes, options)?.0)
     }
 
     /// As [`ControlMesh::from_gltf_bytes`], with what is odd about the file mended: see [`repair`](super::repair).
@@ -104,11 +107,14 @@ impl ControlMesh {
         options: &GltfOptions,
         repair: &RepairOptions,
     ) -> Result<(Self, Repairs), MeshError> {
-        Self::repaired(read(bytes, options)?, repair)
+        let (data, rebuilt_quads) = read(bytes, options)?;
+        let (mesh, repairs) = Self::repaired(data, repair)?;
+        Ok((mesh, Repairs { rebuilt_quads, ..repairs }))
     }
 }
 
-fn read(bytes: &[u8], options: &GltfOptions) -> Result<MeshData, MeshError> {
+/// The data of a file, and how many quads were put together.
+pub(super) fn read(bytes: &[u8], options: &GltfOptions) -> Result<(MeshData, usize), MeshError> {
     let (json, binary) = container::split(bytes)?;
     let root = container::parse(json)?;
     check_extensions(&root)?;
@@ -124,7 +130,10 @@ fn read(bytes: &[u8], options: &GltfOptions) -> Result<MeshData, MeshError> {
     if builder.data.face_sizes.is_empty() {
         return Err(format_error("the scene has no triangles: points and lines have no surface"));
     }
-    Ok(builder.finish())
+    let groups = std::mem::take(&mut builder.groups);
+    let mut data = builder.finish();
+    let rebuilt = if options.quads { quads::rebuild(&mut data, &groups) } else { 0 };
+    Ok((data, rebuilt))
 }
 
 fn check_extensions(root: &json::Root) -> Result<(), MeshError> {
@@ -153,6 +162,9 @@ struct Builder {
     has_normals: bool,
     /// Of every vertex, the first one of its instance that has its position.
     places: Vec<u32>,
+    /// Of every face, the number of its primitive; `u32::MAX` where the file says which triangles are polygons.
+    groups: Vec<u32>,
+    primitives: u32,
 }
 
 /// What a vertex of a primitive became.
@@ -210,6 +222,8 @@ impl Builder {
         let linear = DMat3::from_mat4(instance.transform);
         let mirrored = linear.determinant() < 0.0;
         let normal_transform = cofactors(linear) * if mirrored { -1.0 } else { 1.0 };
+        let group = if ngons { u32::MAX } else { self.primitives };
+        self.primitives += 1;
         let mut locals: HashMap<u32, Local> = HashMap::new();
         polygons::for_each_face(&indices, mode, ngons, |corners| {
             let first = self.data.face_vertices.len();
@@ -240,6 +254,7 @@ impl Builder {
                 self.attributes[first + 1..].reverse();
             }
             self.data.face_sizes.push(corners.len() as u32);
+            self.groups.push(group);
             Ok(())
         })?;
         self.has_texcoords |= texcoords.is_some();

@@ -17,6 +17,10 @@ mod faces;
 mod isolated;
 mod orient;
 mod part;
+#[cfg(feature = "gltf")]
+pub(super) mod quads;
+#[cfg(all(test, feature = "gltf"))]
+mod quads_tests;
 mod report;
 mod tags;
 #[cfg(test)]

@@ -76,6 +76,8 @@ pub struct Repairs {
     pub faces: Vec<u32>,
     /// Edges on boundaries that lie on others (to a millionth of the diagonal), where welding was not asked for.
     pub loose_edges: usize,
+    /// Quads that were put together out of triangles, where the reader was asked to.
+    pub rebuilt_quads: usize,
 }
 
 impl Repairs {
