@@ -25,7 +25,7 @@ pub(super) struct MeshArgs {
 /// The mesh, whatever becomes of it.
 #[derive(Debug, Args)]
 pub(super) struct SourceArgs {
-    /// The control mesh: a file ending in .obj, .gltf or .glb.
+    /// The control mesh: a file ending in .obj, .ply, .gltf or .glb.
     mesh: Option<PathBuf>,
     /// A built-in shape instead of a file: see `subdiv shapes`.
     #[arg(long, value_name = "NAME")]

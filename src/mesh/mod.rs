@@ -6,6 +6,7 @@ mod error;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod obj;
+mod ply;
 mod read;
 mod repair;
 mod shapes;

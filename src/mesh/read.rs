@@ -12,7 +12,7 @@ pub struct ReadOptions {
     pub quads: bool,
 }
 
-/// Reads a control mesh from a file whose name ends in `.obj`, `.gltf` or `.glb` (in any case).
+/// Reads a control mesh from a file whose name ends in `.obj`, `.ply`, `.gltf` or `.glb` (in any case).
 ///
 /// # Errors
 /// [`MeshError::Unreadable`] where there is no such file or its ending is unknown; otherwise what the reader says,
@@ -41,11 +41,12 @@ fn read_with(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>)
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     let reader = match ending.as_deref() {
         Some("obj") => read_obj,
+        Some("ply") => read_ply,
         Some("gltf" | "glb") => read_gltf,
         Some(other) => {
-            return Err(unreadable(format!("files ending in .{other} can't be read: use .obj, .gltf or .glb")));
+            return Err(unreadable(format!("files ending in .{other} can't be read: use .obj, .ply, .gltf or .glb")));
         }
-        None => return Err(unreadable("the name has no ending: it must be .obj, .gltf or .glb".into())),
+        None => return Err(unreadable("the name has no ending: it must be .obj, .ply, .gltf or .glb".into())),
     };
     if path.is_dir() {
         return Err(unreadable("this is a directory: name a file in it".into()));
@@ -59,10 +60,7 @@ fn read_with(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>)
 }
 
 fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
-    if let Some(mesh) = &options.mesh {
-        let message = format!("\"{mesh}\" can't be chosen: an OBJ file is read as one mesh; leave the name out");
-        return Err(MeshError::Format { message });
-    }
+    whole(options, "an OBJ file")?;
     match repair {
         Some(repair) => ControlMesh::from_obj_bytes_repaired(bytes, repair),
         None => {
@@ -70,6 +68,22 @@ fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&Repai
             Ok((ControlMesh::from_obj_bytes(bytes, &options)?, Repairs::default()))
         }
     }
+}
+
+fn read_ply(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
+    whole(options, "a PLY file")?;
+    match repair {
+        Some(repair) => ControlMesh::from_ply_bytes_repaired(bytes, repair),
+        None => Ok((ControlMesh::from_ply_bytes(bytes)?, Repairs::default())),
+    }
+}
+
+/// No mesh of several is asked for.
+fn whole(options: &ReadOptions, file: &str) -> Result<(), MeshError> {
+    let Some(mesh) = &options.mesh else { return Ok(()) };
+    Err(MeshError::Format {
+        message: format!("\"{mesh}\" can't be chosen: {file} is read as one mesh; leave the name out"),
+    })
 }
 
 #[cfg(feature = "gltf")]

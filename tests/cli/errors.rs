@@ -88,7 +88,7 @@ fn wrong_usage_is_said_in_one_line() {
 #[test]
 fn work_that_fails_is_said_in_one_line() {
     fails("info no-such.obj", 1, "no-such.obj: there is no such file");
-    fails("info model.stl", 1, "model.stl: files ending in .stl can't be read: use .obj, .gltf or .glb");
+    fails("info model.stl", 1, "model.stl: files ending in .stl can't be read: use .obj, .ply, .gltf or .glb");
     let known: Vec<String> =
         json("shapes").as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap().to_owned()).collect();
     let message = format!("there is no shape named \"dragon\": choose one of {}", known.join(", "));

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = help::<Results>(NOTES, EXAMPLES), allow_negative_numbers = true)]
 pub(in super::super) struct BenchArgs {
-    /// Control meshes: files ending in .obj, .gltf or .glb.
+    /// Control meshes: files ending in .obj, .ply, .gltf or .glb.
     pub(super) mesh: Vec<PathBuf>,
     /// A built-in shape, see `subdiv shapes`; several with commas. The creature if no mesh is given.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]

@@ -126,7 +126,7 @@ struct Work {
 }
 
 /// Whether the arrays go together, so that they can be walked.
-fn is_sound(data: &MeshData) -> bool {
+pub(super) fn is_sound(data: &MeshData) -> bool {
     let corners = data.face_vertices.len();
     let sizes: u64 = data.face_sizes.iter().map(|&size| u64::from(size)).sum();
     let is_whole = |indices: Option<usize>| indices.is_none_or(|count| count == corners);

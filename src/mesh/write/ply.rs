@@ -1,6 +1,7 @@
 //! PLY, binary: a vertex for each normal and texture coordinate.
 
 use super::Polygons;
+use crate::mesh::obj::from_top;
 use std::io::{self, Write};
 
 /// Writes a mesh as binary PLY (little endian).
@@ -19,7 +20,9 @@ pub fn write_ply(mesh: &Polygons, out: &mut dyn Write) -> io::Result<()> {
         out.write_all(bytemuck::bytes_of(&position.map(little)))?;
         out.write_all(bytemuck::bytes_of(&normal.map(little)))?;
         if let Some(texcoords) = mesh.texcoords {
-            out.write_all(bytemuck::bytes_of(&texcoords[i].map(little)))?;
+            // In PLY v runs up from the bottom of the image.
+            let [u, v] = texcoords[i];
+            out.write_all(bytemuck::bytes_of(&[u, from_top(v.into()) as f32].map(little)))?;
         }
     }
     for face in mesh.faces() {
