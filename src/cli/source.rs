@@ -217,7 +217,7 @@ pub(super) fn notes(repairs: &Repairs) -> Vec<String> {
 }
 
 /// Reports how a file was mended.
-fn report_repairs(repairs: &Repairs, progress: &Progress) {
+pub(super) fn report_repairs(repairs: &Repairs, progress: &Progress) {
     notes(repairs).iter().for_each(|note| progress.note(note));
 }
 

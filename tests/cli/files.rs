@@ -368,3 +368,32 @@ fn quads_of_gltf_are_put_together() {
     let triangles = json(&format!("info {} --rebuild-quads off", path.display()));
     assert_eq!(triangles["face_sizes"], serde_json::json!({ "3": 192 }));
 }
+
+#[test]
+fn meshes_are_converted() {
+    let folder = folder("convert");
+    let at = |name: &str| folder.join(name).display().to_string();
+    let obj = at("fin.obj");
+    std::fs::write(&obj, format!("{CUBE}v 9 9 9\nt crease 2/1/0 0 1 2.5\n")).unwrap();
+    let output = run(&format!("convert {obj} {}", at("a.glb")));
+    assert_eq!(
+        String::from_utf8_lossy(&output.stderr),
+        "note: 1 vertex belongs to no face and is left out (vertex 8, line 15)\n\
+         note: creases are left out: only OBJ has a place for them\n"
+    );
+    assert!(String::from_utf8_lossy(&output.stdout).ends_with("a.glb: 8 vertices, 6 faces\n"));
+    json(&format!("convert {} {}", at("a.glb"), at("b.ply")));
+    json(&format!("convert {} {}", at("b.ply"), at("c.obj")));
+    json(&format!("convert {obj} {}", at("d.obj")));
+    for (name, creases) in [("a.glb", 0), ("b.ply", 0), ("c.obj", 0), ("d.obj", 1)] {
+        let info = json(&format!("info {}", at(name)));
+        assert_eq!((&info["face_sizes"], &info["edges"]), (&serde_json::json!({ "4": 6 }), &12.into()), "{name}");
+        assert_eq!((&info["creased_edges"], &info["vertices"]), (&creases.into(), &8.into()), "{name}");
+    }
+    let wrong = at("x.stl");
+    fails(
+        &format!("convert {obj} {wrong}"),
+        2,
+        &format!("{wrong}: control meshes are written to files ending in .obj, .glb or .ply"),
+    );
+}
