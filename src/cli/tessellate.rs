@@ -10,7 +10,7 @@ use super::parse;
 use super::source::SourceArgs;
 use ash_subdiv::ControlMesh;
 use ash_subdiv::dice::{Camera, Depth, DiceOptions, MAX_DEPTH, Plan, Sizes, Tessellation};
-use ash_subdiv::mesh::write::{Polygons, write_glb, write_obj, write_ply};
+use ash_subdiv::mesh::write::{Kept, Polygons, write_glb, write_obj, write_ply};
 use ash_subdiv::topology::Topology;
 use clap::Args;
 use serde::Serialize;
@@ -194,7 +194,7 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
         tessellation.displace(|texcoord| scale * texels.sample(texcoord) + bias)?;
     }
     progress.now("writing");
-    let [quads, triangles] = write(args, kind, &tessellation)?;
+    let [vertices, quads, triangles] = write(args, kind, &tessellation)?;
     drop(progress);
     let out = TessellateOut {
         mesh: args.source.name(),
@@ -202,7 +202,7 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
         faces: quads + triangles,
         quads,
         triangles,
-        vertices: sizes.vertices,
+        vertices,
         depth_histogram: tessellation.plan().depth_histogram(),
         largest_error,
         seconds: start.elapsed().as_secs_f64(),
@@ -219,8 +219,8 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
     })
 }
 
-/// Writes the file. Gives the numbers of its quads and triangles.
-fn write(args: &TessellateArgs, kind: Kind, tessellation: &Tessellation<f32>) -> Result<[usize; 2], CliError> {
+/// Writes the file. Gives the numbers of its vertices, quads and triangles.
+fn write(args: &TessellateArgs, kind: Kind, tessellation: &Tessellation<f32>) -> Result<[usize; 3], CliError> {
     let cut = if args.quads { None } else { Some(tessellation.all_triangles()) };
     let (quads, triangles) = match &cut {
         Some(triangles) => (&[][..], triangles.as_slice()),
@@ -233,7 +233,7 @@ fn write(args: &TessellateArgs, kind: Kind, tessellation: &Tessellation<f32>) ->
     let sizes = plan.sizes();
     let owned = sizes.positions as u32;
     let copies: Vec<u32> = (owned..sizes.vertices as u32).map(|copy| plan.position_of(copy)).collect();
-    let polygons = Polygons {
+    let all = Polygons {
         positions: tessellation.positions(),
         normals: tessellation.normals(),
         texcoords: turned.as_deref().or(tessellation.texcoords()),
@@ -241,16 +241,18 @@ fn write(args: &TessellateArgs, kind: Kind, tessellation: &Tessellation<f32>) ->
         quads,
         triangles,
     };
+    let kept = Kept::of(&all, &plan.unused());
+    let polygons = kept.as_ref().map_or(all, Kept::polygons);
     let write = |part: &Path| -> io::Result<()> {
         let _watch = Watch::start();
         let mut out = BufWriter::with_capacity(1 << 20, Interruptible(File::create(part)?));
         match kind {
             Kind::Obj => write_obj(&polygons, &mut out)?,
             Kind::Ply => write_ply(&polygons, &mut out)?,
-            Kind::Glb => write_glb(&polygons, triangles, &mut out)?,
+            Kind::Glb => write_glb(&polygons, polygons.triangles, &mut out)?,
         }
         out.flush()
     };
     write_file(&args.output, |part| write(part).map_err(|error| error.to_string()))?;
-    Ok([quads.len(), triangles.len()])
+    Ok([polygons.positions.len(), quads.len(), triangles.len()])
 }

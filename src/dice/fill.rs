@@ -1,7 +1,7 @@
 //! Positions, normals and texture coordinates of a plan.
 
 use super::error::DiceError;
-use super::evaluate::{Arena, Surface};
+use super::evaluate::{Arena, Faces, Surface};
 use super::layout::Facet;
 use super::plan::Plan;
 use super::real::{Real, Vector, cross, subtract, unit};
@@ -119,6 +119,10 @@ fn check(what: &'static str, given: usize, count: usize) -> Result<(), DiceError
     if given == count { Ok(()) } else { Err(DiceError::Count { what, given, count }) }
 }
 
+fn arrays(vectors: Vec<DVec3>) -> Vec<Vector<f64>> {
+    vectors.into_iter().map(Into::into).collect()
+}
+
 impl<T: Real> Plan<T> {
     /// Fills the caller's arrays for these control vertices.
     ///
@@ -134,19 +138,28 @@ impl<T: Real> Plan<T> {
         let count = self.layout.vertices();
         check("positions", out.positions.len(), count)?;
         check("normals", out.normals.len(), count)?;
-        let vertices: Vec<Vector<f64>> = self.stencils.apply(control).into_iter().map(Into::into).collect();
-        let surface = Surface { patches: &self.patches, bases: &self.bases, vertices: &vertices };
+        let mut vertices = self.stencils.apply(control);
+        self.edits.apply(&mut vertices);
+        let of_levels: Vec<Vec<Vector<f64>>> = self.finer.vertices(&vertices).into_iter().map(arrays).collect();
+        let vertices = arrays(vertices);
+        let levels = self.finer_patches.iter().zip(&of_levels);
+        let levels: Vec<Faces<T>> = levels.map(|(patches, vertices)| Faces { patches, vertices }).collect();
+        let surface = Surface {
+            bases: &self.bases,
+            facets: Faces { patches: &self.patches, vertices: &vertices },
+            finer: (!levels.is_empty()).then_some((&self.finer, levels)),
+        };
         let facets = self.facets();
         let owned = self.layout.owned;
         let positions = slots(facets, owned, out.positions);
         let normals = slots(facets, owned, out.normals);
         let work = facets.par_iter().enumerate().zip(positions).zip(normals).with_min_len(MIN_LEN);
         work.for_each_init(Arena::default, |arena, (((index, facet), mut positions), mut normals)| {
-            surface.evaluate(index, facet.depth, true, arena);
+            surface.evaluate(index, facet.facet, facet.depth, true, arena);
             facet.write(&mut positions, &arena.positions);
             facet.write(&mut normals, &arena.normals);
             for k in facet.finer_copies() {
-                surface.evaluate(index, facet.edges[k], true, arena);
+                surface.evaluate(index, facet.facet, facet.edges[k], true, arena);
                 facet.write_edge(&mut normals, k, &arena.normals);
             }
         });
@@ -188,13 +201,13 @@ impl<T: Real> Plan<T> {
                 facet.for_each_written(|vertex, uv| *slots.at(vertex) = bilinear(corners, uv));
             }),
             Texcoords::Smooth { patches, values } => {
-                let surface = Surface { patches, bases: &self.bases, vertices: values };
+                let surface = Surface { bases: &self.bases, facets: Faces { patches, vertices: values }, finer: None };
                 let flat = |p: &[T; 3]| [p[0], p[1]].map(|x| x.wide() as f32);
                 work.for_each_init(Arena::default, |arena, ((index, facet), mut slots)| {
-                    surface.evaluate(index, facet.depth, false, arena);
+                    surface.evaluate(index, facet.facet, facet.depth, false, arena);
                     facet.write(&mut slots, &arena.positions.iter().map(flat).collect::<Vec<_>>());
                     for k in facet.finer_copies() {
-                        surface.evaluate(index, facet.edges[k], false, arena);
+                        surface.evaluate(index, facet.facet, facet.edges[k], false, arena);
                         facet.write_edge(&mut slots, k, &arena.positions.iter().map(flat).collect::<Vec<_>>());
                     }
                 });

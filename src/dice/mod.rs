@@ -28,6 +28,7 @@ mod error;
 mod evaluate;
 mod faces;
 mod fill;
+mod finer;
 mod kinds;
 mod layout;
 mod options;

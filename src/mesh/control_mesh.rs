@@ -1,3 +1,4 @@
+use super::edits::{Edit, make_edits};
 use super::{MeshError, adjacency};
 use glam::DVec3;
 use std::sync::Arc;
@@ -123,6 +124,8 @@ pub struct MeshData {
     pub triangle_rule: TriangleRule,
     /// How texture coordinates are refined ([`crate::limit::refine`]). Within a patch they are interpolated linearly.
     pub face_varying_rule: FaceVaryingRule,
+    /// Changes at finer levels, in the order in which they are made.
+    pub edits: Vec<Edit>,
 }
 
 /// A checked, oriented control mesh whose edges have one or two faces.
@@ -157,10 +160,13 @@ impl ControlMesh {
     /// # Errors
     /// Empty meshes, faces with fewer than three vertices, repeated vertices or indices out of range, positions that
     /// are not finite, isolated vertices, edges with three faces or with two faces in the same direction, and tags
-    /// that name what is not there. Vertices where fans of faces touch in a point are accepted.
+    /// and edits that name what is not there. Vertices where fans of faces touch in a point are accepted.
     pub fn new(mut data: MeshData) -> Result<Self, MeshError> {
         let face_offsets = check(&data)?;
         let twins = adjacency::twins(data.positions.len(), &face_offsets, &data.face_vertices)?;
+        if !data.edits.is_empty() {
+            make_edits(&mut data, &face_offsets)?;
+        }
         check_tags(&data)?;
         let edge_sharpness = edge_sharpness(&data, &face_offsets, &twins)?;
         let vertex_sharpness = vertex_sharpness(&data);
@@ -183,7 +189,7 @@ impl ControlMesh {
         Ok(Self { checked: Arc::new(Checked { data, face_offsets, twins, edge_sharpness, vertex_sharpness }) })
     }
 
-    /// The parts, as given (holes sorted).
+    /// The parts, as given (holes sorted, edits at level 0 made).
     pub fn data(&self) -> &MeshData {
         &self.checked.data
     }
@@ -264,6 +270,11 @@ impl ControlMesh {
         let Checked { edge_sharpness, twins, .. } = &*self.checked;
         let lower = edge_sharpness.iter().zip(twins).zip(0..).filter(|&((&s, &twin), h)| s > 0.0 && h < twin);
         lower.count()
+    }
+
+    /// The finest level that an edit is at; 0 without edits.
+    pub fn edit_level(&self) -> usize {
+        self.checked.data.edits.iter().map(Edit::level).max().unwrap_or(0)
     }
 
     /// Smallest and largest coordinates of the control points.

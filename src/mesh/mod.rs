@@ -2,6 +2,7 @@
 
 mod adjacency;
 mod control_mesh;
+mod edits;
 mod error;
 #[cfg(feature = "gltf")]
 mod gltf;
@@ -15,6 +16,7 @@ pub use control_mesh::{
     BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,
     SHARPNESS_INFINITE, TriangleRule,
 };
+pub use edits::{Change, Edit, MAX_EDIT_LEVEL};
 pub use error::MeshError;
 #[cfg(feature = "gltf")]
 pub use gltf::GltfOptions;

@@ -74,6 +74,35 @@ fn cameras_and_height_maps_take_part() {
 }
 
 #[test]
+fn edits_of_a_file_are_made() {
+    let folder = folder("edits_of_a_file_are_made");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let cube = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+                f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    let edits = "t faceedit 4/0/1 3 1 2 0 hole\nt vertexedit 4/3/3 3 1 0 0 0 0 1 add P value\n";
+    fs::write(folder.join("edited.obj"), format!("{cube}{edits}")).unwrap();
+    for (name, options) in [("a.obj", "--quads"), ("a.ply", "--quads"), ("a.glb", "")] {
+        let out = json(&format!("tessellate {} --depth 3 {options} -o {}", path("edited.obj"), path(name)));
+        let faces = if options.is_empty() { 2 } else { 1 } * (6 * 64 - 4);
+        // Without the vertex in the middle of the hole.
+        assert_eq!((&out["faces"], &out["vertices"]), (&faces.into(), &(6 * 64 + 2 - 1).into()), "{name}");
+    }
+    let read = json(&format!("info {}", path("a.obj")));
+    assert_eq!((&read["boundary_edges"], &read["vertices"]), (&8.into(), &385.into()));
+    assert!(read["bounds"][1][2].as_f64().unwrap() > 0.9, "{read}");
+    // Commands that draw patches refine the mesh.
+    let read = json(&format!("info {}", path("edited.obj")));
+    assert_eq!((&read["edits"], &read["faces"]), (&2.into(), &6.into()));
+    let patches: u64 = read["patches"].as_object().unwrap().values().map(|count| count.as_u64().unwrap()).sum();
+    assert_eq!(patches, 6 * 16 - 1);
+    let notice =
+        "2 edits are at levels down to 2: the whole mesh is refined to this level, into 16 faces for each quad";
+    assert_eq!(read["notices"], serde_json::json!([notice]));
+    let read = json(&format!("info {} --refine 2", path("edited.obj")));
+    assert_eq!(read["notices"], serde_json::json!([]));
+}
+
+#[test]
 fn what_cannot_be_tessellated_is_told() {
     let folder = folder("what_cannot_be_tessellated_is_told");
     let path = |name: &str| folder.join(name).display().to_string();

@@ -13,9 +13,9 @@ use std::collections::HashMap;
 
 /// Greatest errors: of positions over the diagonal, of normals in radians.
 #[derive(Debug, Clone, Copy)]
-struct Errors {
-    position: f64,
-    normal: f64,
+pub struct Errors {
+    pub position: f64,
+    pub normal: f64,
 }
 
 fn wide<T: Real>(p: [T; 3]) -> DVec3 {
@@ -23,7 +23,7 @@ fn wide<T: Real>(p: [T; 3]) -> DVec3 {
 }
 
 /// A tessellation against the limit surface at its vertices, or at some thousands of them.
-fn errors<T: Real>(mesh: &ControlMesh, tessellation: &Tessellation<T>) -> Errors {
+pub fn errors<T: Real>(mesh: &ControlMesh, tessellation: &Tessellation<T>) -> Errors {
     let surface = LimitSurface::new(mesh).unwrap();
     let topology = Topology::new(mesh);
     let places = tessellation.places();

@@ -31,7 +31,7 @@ fn is_on_boundary(topology: &Topology, place: &Place) -> bool {
 }
 
 /// What is wrong with a tessellation.
-fn fault(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> Option<String> {
+pub fn fault(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> Option<String> {
     let topology = Topology::new(mesh);
     let positions = tessellation.positions();
     let mut numbers = HashMap::new();
@@ -91,7 +91,7 @@ fn flat_face(tessellation: &Tessellation<f64>, faces: &[Vec<u32>]) -> Option<Str
         .map(|vertex| format!("copy {vertex} is not where it should be"))
 }
 
-fn random_depth(random: &mut Random, mesh: &ControlMesh) -> Depth {
+pub fn random_depth(random: &mut Random, mesh: &ControlMesh) -> Depth {
     match random.below(4) {
         0 => {
             let [low, high] = mesh.bounds().map(|corner| corner.as_vec3());

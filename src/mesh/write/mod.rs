@@ -2,11 +2,13 @@
 
 #[cfg(feature = "gltf")]
 mod glb;
+mod kept;
 mod obj;
 mod ply;
 
 #[cfg(feature = "gltf")]
 pub use glb::write_glb;
+pub use kept::Kept;
 pub use obj::write_obj;
 pub use ply::write_ply;
 
