@@ -190,11 +190,12 @@ impl Hole {
 impl Level {
     /// Refines what edits of a mesh reach. Gives the number in what was refined of each such face.
     fn around_edits(topology: &Topology) -> Result<(Self, FxHashMap<u32, u32>), MeshError> {
-        // An edit reaches as far as a vertex of a refined mesh does, and sharpness as far as the rules look; around that are the
-        // faces that have a say, and around these those that are right but for their rims.
-        let [reach, rim] = match topology.mesh().data().crease_method {
-            CreaseMethod::Uniform => [1, 2],
-            CreaseMethod::Chaikin => [2, 3],
+        // An edit reaches as far as a vertex of the refined mesh does. Around that are the faces that have a say.
+        let reach = 1;
+        let rim = match topology.mesh().data().crease_method {
+            CreaseMethod::Uniform => 1,
+            // Whether an edge is sharp depends on the creases at its far end.
+            CreaseMethod::Chaikin => 2,
         };
         let mut edited: Vec<u32> = topology.mesh().data().edits.iter().map(|edit| edit.face).collect();
         edited.sort_unstable();

@@ -5,12 +5,13 @@ use crate::dice::errors;
 use crate::dice_closed::{fault, random_depth};
 use crate::dice_tolerance::measure;
 use crate::limit_surface::everything;
-use ash_subdiv::dice::{Depth, DiceOptions, Tessellation};
+use ash_subdiv::dice::{Depth, DiceOptions, Place, Tessellation};
 use ash_subdiv::limit::{LimitSurface, refine};
 use ash_subdiv::mesh::{Change, Crease, CreaseMethod, Edit, ReadOptions, SHARPNESS_INFINITE, read};
 use ash_subdiv::topology::Topology;
-use ash_subdiv::{ControlMesh, MeshData, shape};
+use ash_subdiv::{ControlMesh, MeshData, grid_torus, shape};
 use glam::{DQuat, DVec3};
+use rayon::prelude::*;
 use std::collections::HashSet;
 
 /// A face of a refined mesh, and where corner 0 of a path's face is among its corners.
@@ -222,6 +223,31 @@ fn tessellations_have_the_edits_of_the_limit_surface() {
             let found = errors(&mesh, &tessellation);
             assert!(found.position < 1e-12 && found.normal < 1e-6, "{name}: {seed}: moved: {found:?}");
         }
+    }
+}
+
+/// Chaikin's rule hands sharpness on along creases.
+#[test]
+fn sharpness_reaches_along_creases() {
+    let data = MeshData { crease_method: CreaseMethod::Chaikin, ..grid_torus(12, 8) };
+    let mut random = Random::new(2);
+    let edges = data.face_vertices.chunks_exact(4).flat_map(|face| [[face[0], face[1]], [face[1], face[2]]]);
+    let creases = edges.map(|vertices| Crease { vertices, sharpness: [0.0, 0.3, 1.2, 2.1, 4.5][random.below(5)] });
+    let creases: Vec<Crease> = creases.collect();
+    let mesh = ControlMesh::new(MeshData { creases, ..data }).unwrap();
+    for (face, children, edge) in [(30, &[1, 0][..], 0), (3, &[1, 1], 0), (55, &[0, 0], 3), (77, &[0, 1, 1], 0)] {
+        let edit = Edit { face, children: children.to_vec(), change: Change::EdgeSharpness { edge, sharpness: 8.0 } };
+        let edited = with(&mesh, vec![edit]);
+        let tessellation = Tessellation::<f64>::new(&Topology::new(&edited), &DiceOptions::fixed(3)).unwrap();
+        let surface = LimitSurface::new(&edited).unwrap();
+        let of_vertex = |(place, &position): (&Place, &[f64; 3])| {
+            let limit = surface.evaluate(place.face, place.sub, place.u.into(), place.v.into()).position;
+            limit.distance(position.into()) / mesh.diagonal()
+        };
+        let places = tessellation.places();
+        let error = places.par_iter().zip(tessellation.positions()).map(of_vertex).reduce(|| 0.0, f64::max);
+        // Sharpness is of single precision, and summed in another order in other parts of the mesh.
+        assert!(error < 1e-9, "{children:?} {edge}: {error}");
     }
 }
 
