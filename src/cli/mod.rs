@@ -10,6 +10,7 @@
 //! | `canvas` | pixels to draw and write on |
 //! | `leaves` | what `patches` needs |
 //! | `obj` | what `shapes` writes |
+//! | `rules` | rules of subdivision instead of the file's |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
 //! | `interrupt` | signals that end the program while it writes |
@@ -40,6 +41,7 @@ mod picture;
 mod plot;
 mod published;
 mod render;
+mod rules;
 mod sample;
 mod screen;
 mod shading;

@@ -3,6 +3,7 @@
 use super::error::CliError;
 use super::output::Progress;
 use super::parse;
+use super::rules::RulesArgs;
 use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, read, shape};
@@ -51,6 +52,9 @@ pub(super) struct SourceArgs {
     /// With --adaptive: another depth around darts, corners and creases whose sharpness varies
     #[arg(long, value_name = "DEPTH", requires = "adaptive")]
     sharp_depth: Option<u32>,
+
+    #[command(flatten)]
+    rules: RulesArgs,
 }
 
 impl MeshArgs {
@@ -136,20 +140,26 @@ impl SourceArgs {
 
     /// Reads the file, or makes the shape.
     pub(super) fn load(&self) -> Result<ControlMesh, CliError> {
-        match (&self.mesh, &self.shape) {
+        let mesh = match (&self.mesh, &self.shape) {
             (Some(path), None) => {
                 let options = ReadOptions { drop_isolated: self.drop_isolated, mesh: self.mesh_name.clone() };
-                Ok(read(path, &options)?)
+                read(path, &options)?
             }
-            (None, Some(name)) => Ok(shape(name)?),
+            (None, Some(name)) => shape(name)?,
             (Some(path), Some(name)) => {
                 let path = path.display();
-                Err(CliError::Usage(format!("both a mesh ({path}) and --shape {name} are given: leave one out")))
+                return Err(CliError::Usage(format!(
+                    "both a mesh ({path}) and --shape {name} are given: leave one out"
+                )));
             }
-            (None, None) => Err(CliError::Usage(
-                "no mesh is given: name a file, or a built-in shape with --shape (`subdiv shapes` lists them)".into(),
-            )),
-        }
+            (None, None) => {
+                return Err(CliError::Usage(
+                    "no mesh is given: name a file, or a built-in shape with --shape (`subdiv shapes` lists them)"
+                        .into(),
+                ));
+            }
+        };
+        self.rules.apply(mesh)
     }
 }
 

@@ -1,62 +1,11 @@
 use super::edits::{Edit, make_edits};
+use super::rules::{BoundaryRule, CreaseMethod, FaceVaryingRule, TriangleRule};
 use super::{MeshError, adjacency};
 use glam::DVec3;
 use std::sync::Arc;
 
 /// A sharpness from which on an edge or vertex is infinitely sharp, as in OpenSubdiv.
 pub const SHARPNESS_INFINITE: f32 = 10.0;
-
-/// What a boundary of the mesh does to the surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum BoundaryRule {
-    /// Faces that touch the boundary shape the surface but are not drawn.
-    None,
-    /// Boundary edges are infinitely sharp: the surface ends in a B-spline curve.
-    EdgeOnly,
-    /// As [`BoundaryRule::EdgeOnly`]; boundary vertices with one face are interpolated.
-    #[default]
-    EdgeAndCorner,
-}
-
-/// How semi-sharp creases lose sharpness when they are subdivided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum CreaseMethod {
-    /// One less on every level.
-    #[default]
-    Uniform,
-    /// Mixed with the neighbours along the crease (Chaikin's rule), then one less.
-    Chaikin,
-}
-
-/// The weights of triangles under subdivision.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum TriangleRule {
-    /// Catmull and Clark's rule for every face.
-    #[default]
-    CatmullClark,
-    /// OpenSubdiv's smoother edge points next to triangles.
-    Smooth,
-}
-
-/// Where face-varying data is interpolated linearly (OpenSubdiv's six rules): which values stay where they are, apart
-/// from those at vertices that stay themselves. Seams (edges where two faces disagree) and boundaries are otherwise
-/// smooth curves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FaceVaryingRule {
-    /// Smooth everywhere.
-    None,
-    /// Smooth inside and along seams; linear at the corners of regions.
-    CornersOnly,
-    /// As `CornersOnly`, and linear where three or more regions meet.
-    CornersPlus1,
-    /// As `CornersPlus1`, and linear at darts and concave corners.
-    CornersPlus2,
-    /// Linear along every seam and boundary.
-    Boundaries,
-    /// Linear everywhere.
-    #[default]
-    All,
-}
 
 /// A crease: the edge between two vertices and its sharpness.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,20 +8,19 @@ mod error;
 mod gltf;
 mod obj;
 mod read;
+mod rules;
 mod shapes;
 pub mod write;
 
 pub(crate) use control_mesh::MAX_CORNERS;
-pub use control_mesh::{
-    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,
-    SHARPNESS_INFINITE, TriangleRule,
-};
+pub use control_mesh::{ControlMesh, Corner, Crease, FaceVarying, MeshData, SHARPNESS_INFINITE};
 pub use edits::{Change, Edit, MAX_EDIT_LEVEL};
 pub use error::MeshError;
 #[cfg(feature = "gltf")]
 pub use gltf::GltfOptions;
 pub use obj::ObjOptions;
 pub use read::{ReadOptions, read};
+pub use rules::{BoundaryRule, CreaseMethod, FaceVaryingRule, Package, TriangleRule};
 pub use shapes::{ShapeInfo, grid_torus, replicate, shape, shapes};
 
 pub(crate) use adjacency::NO_TWIN;

@@ -3,6 +3,7 @@
 use super::super::cull::{CullArg, cull};
 use super::super::described::help;
 use super::super::parse;
+use super::super::rules::RulesArgs;
 use super::super::source::DeviceArgs;
 use super::presets::{self, Preset};
 use super::results::Results;
@@ -23,6 +24,8 @@ pub(in super::super) struct BenchArgs {
     /// Take out vertices that belong to no face, instead of refusing the file (OBJ).
     #[arg(long)]
     pub(super) drop_isolated: bool,
+    #[command(flatten)]
+    pub(super) rules: RulesArgs,
     /// Schemes, with commas; all if not given.
     #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     pub(super) schemes: Vec<Scheme>,

@@ -57,12 +57,12 @@ impl BenchArgs {
             let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
             let alone = self.mesh.iter().all(|other| other == path || name(other) != name(path));
             let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
-            meshes.push((name, read(path, &options)?));
+            meshes.push((name, self.rules.apply(read(path, &options)?)?));
         }
         let usual = [self.preset.map_or("creature", |preset| preset.shape).to_owned()];
         let shapes = if self.mesh.is_empty() && self.shape.is_empty() { &usual } else { &self.shape[..] };
         for name in unique(shapes, |name| name) {
-            meshes.push((name.clone(), shape(name)?));
+            meshes.push((name.clone(), self.rules.apply(shape(name)?)?));
         }
         let sweep = self.sharpness_sweep();
         let mut originals = Vec::new();
