@@ -13,6 +13,9 @@ use glam::DVec3;
 /// with its whole size, about a thousandth of the cell's.
 const LEVELS: u32 = 10;
 
+/// Facets whose bounds are made together, at most.
+pub(super) const PIECE: usize = 1 << 19;
+
 /// How often B-spline patches are split to know their normals better.
 const SPLITS: u32 = 3;
 
@@ -22,16 +25,16 @@ const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 /// Bounds of the facets of a mesh.
 pub(super) struct Bounds<'f> {
     facets: Vec<u32>,
-    faces: Faces,
+    faces: Faces<'f>,
     finer: &'f Finer,
     /// By level.
-    levels: Vec<Faces>,
+    levels: Vec<Faces<'f>>,
 }
 
 /// Faces of a mesh.
-struct Faces {
+struct Faces<'f> {
     patches: Patches<f64>,
-    vertices: Vec<Vector<f64>>,
+    vertices: &'f [Vector<f64>],
 }
 
 /// A cell of a facet, with its points.
@@ -124,9 +127,14 @@ impl Bilinear {
 
 impl<'f> Bounds<'f> {
     /// Of facets that are halved `deepest` times at most.
-    pub(super) fn new(topology: &Topology, finer: &'f Finer, facets: &[u32], deepest: u32) -> Result<Self, MeshError> {
+    pub(super) fn new(
+        topology: &'f Topology,
+        finer: &'f Finer,
+        facets: &[u32],
+        deepest: u32,
+    ) -> Result<Self, MeshError> {
         let turned: Vec<Turned> = facets.iter().map(|&face| Turned { face, first: 0 }).collect();
-        let of_level = |level: &Level| Faces::new(&level.topology, &level.faces, deepest);
+        let of_level = |level: &'f Level| Faces::new(&level.topology, &level.faces, deepest);
         let levels = finer.levels.iter().map(of_level).collect::<Result<_, _>>()?;
         Ok(Self { facets: facets.to_vec(), faces: Faces::new(topology, &turned, deepest)?, finer, levels })
     }
@@ -160,11 +168,11 @@ impl<'f> Bounds<'f> {
     }
 }
 
-impl Faces {
-    fn new(topology: &Topology, faces: &[Turned], deepest: u32) -> Result<Self, MeshError> {
+impl<'f> Faces<'f> {
+    fn new(topology: &'f Topology, faces: &[Turned], deepest: u32) -> Result<Self, MeshError> {
         let deepen = |builder: &mut super::kinds::Builder, _, kind| builder.deepen_all(kind, deepest + LEVELS);
         let patches = Patches::new(topology, faces, deepen)?;
-        Ok(Self { patches, vertices: topology.mesh().data().positions.clone() })
+        Ok(Self { patches, vertices: &topology.mesh().data().positions })
     }
 
     /// The points around a face.

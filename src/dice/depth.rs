@@ -1,6 +1,6 @@
 //! How deep each facet is.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, PIECE};
 use super::finer::{Cell, Finer};
 use super::options::{Camera, Depth, DiceOptions};
 use crate::mesh::MeshError;
@@ -45,11 +45,13 @@ pub(super) fn halvings(
         ),
         Depth::Tolerance(distance) => {
             let facets: Vec<u32> = (0..).zip(drawn).filter(|(_, drawn)| **drawn).map(|(facet, _)| facet).collect();
-            let bounds = Bounds::new(topology, finer, &facets, deepest)?;
-            let least = |index| (0..deepest).find(|&n| bounds.bound(index, n) <= *distance).unwrap_or(deepest);
-            let of_facets: Vec<u32> = (0..facets.len()).into_par_iter().map(least).collect();
             let mut depths = vec![0; mesh.face_count()];
-            facets.into_iter().zip(of_facets).for_each(|(facet, depth)| depths[facet as usize] = depth);
+            for piece in facets.chunks(PIECE) {
+                let bounds = Bounds::new(topology, finer, piece, deepest)?;
+                let least = |index| (0..deepest).find(|&n| bounds.bound(index, n) <= *distance).unwrap_or(deepest);
+                let of_facets: Vec<u32> = (0..piece.len()).into_par_iter().map(least).collect();
+                piece.iter().zip(of_facets).for_each(|(&facet, depth)| depths[facet as usize] = depth);
+            }
             depths
         }
         Depth::Pixels { pixels, camera } => {

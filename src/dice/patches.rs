@@ -15,6 +15,9 @@ use rayon::prelude::*;
 /// along v.
 pub(super) const PLAIN: u32 = u32::MAX;
 
+/// Facets that are looked at together.
+const PIECE: usize = 1 << 14;
+
 /// What makes the surface over each facet.
 pub(super) struct Patches<T> {
     pub kinds: Vec<Kind<T>>,
@@ -37,7 +40,6 @@ impl<T: Real> Patches<T> {
             let is_plain = (0..4).all(|k| is_plain(topology, facet.half_edge(k)));
             (!is_plain).then(|| Local::cut(topology, facet.face, facet.first as usize, DVec3::ZERO))
         };
-        let parts: Vec<Option<Local>> = facets.par_iter().with_min_len(256).map(part).collect();
         let mut builder = Builder::default();
         let mut patches = Self {
             kinds: Vec::new(),
@@ -45,7 +47,10 @@ impl<T: Real> Patches<T> {
             starts: vec![0],
             points: Vec::with_capacity(16 * facets.len()),
         };
-        for (index, part) in parts.into_iter().enumerate() {
+        // No more neighbourhoods are kept at a time than a piece has.
+        let parts =
+            facets.chunks(PIECE).flat_map(|piece| piece.par_iter().with_min_len(256).map(part).collect::<Vec<_>>());
+        for (index, part) in parts.enumerate() {
             patches.of_facets.push(match part {
                 Some(part) => {
                     patches.points.extend(part.vertices);

@@ -1,7 +1,7 @@
 //! All about a tessellation that does not depend on positions.
 
 use super::bicubic::Basis;
-use super::bounds::Bounds;
+use super::bounds::{self, Bounds};
 use super::depth::halvings;
 use super::error::DiceError;
 use super::faces::FaceWriter;
@@ -139,11 +139,14 @@ impl<T: Real> Plan<T> {
     /// # Errors
     /// [`DiceError::Mesh`] if the refined mesh is too large.
     pub fn error_bound(&self) -> Result<f64, DiceError> {
-        let facets: Vec<u32> = self.facets().iter().map(|facet| facet.facet).collect();
         let deepest = self.bases.len() as u32 - 1;
-        let bounds = Bounds::new(&self.refined, &self.finer, &facets, deepest)?;
-        let of_facet = |(index, facet): (usize, &Facet)| bounds.bound(index, facet.depth);
-        Ok(self.facets().par_iter().enumerate().map(of_facet).reduce(|| 0.0, f64::max))
+        let of_piece = |piece: &[Facet]| -> Result<f64, DiceError> {
+            let facets: Vec<u32> = piece.iter().map(|facet| facet.facet).collect();
+            let bounds = Bounds::new(&self.refined, &self.finer, &facets, deepest)?;
+            let of_facet = |(index, facet): (usize, &Facet)| bounds.bound(index, facet.depth);
+            Ok(piece.par_iter().enumerate().map(of_facet).reduce(|| 0.0, f64::max))
+        };
+        self.facets().chunks(bounds::PIECE).map(of_piece).try_fold(0.0, |most, bound| Ok(f64::max(most, bound?)))
     }
 
     /// The vertex whose position a vertex has: itself unless it is a copy along a crease or a seam.
