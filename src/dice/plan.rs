@@ -192,6 +192,16 @@ impl<T: Real> Plan<T> {
         (0..).zip(is_used).filter(|(_, is_used)| !is_used).map(|(vertex, _)| vertex).collect()
     }
 
+    /// Index of a facet of the plan.
+    pub(super) fn index_of(&self, facet: &Facet) -> usize {
+        self.facets().partition_point(|other| other.facet < facet.facet)
+    }
+
+    /// Index of the facet that owns a vertex, which is no copy.
+    pub(super) fn owner(&self, vertex: u32) -> usize {
+        self.facets().partition_point(|facet| facet.first <= vertex) - 1
+    }
+
     pub(super) fn facets(&self) -> &[Facet] {
         &self.layout.facets
     }
