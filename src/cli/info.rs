@@ -44,6 +44,7 @@ described! {
         /// Faces with five or more corners.
         ngons: usize,
         holes: usize,
+        edits: usize,
         boundary_edges: usize,
         creased_edges: usize,
         sharp_corners: usize,
@@ -245,6 +246,7 @@ impl Info {
             ngons: face_sizes.range(5..).map(|(_, count)| count).sum(),
             face_sizes,
             holes: data.holes.len(),
+            edits: data.edits.len(),
             boundary_edges: mesh.boundary_edge_count(),
             creased_edges: mesh.creased_edge_count(),
             sharp_corners: data.corners.iter().filter(|corner| corner.sharpness > 0.0).count(),
@@ -274,6 +276,9 @@ impl Info {
             table.row([&format!("  of {size} corners"), count]);
         }
         table.row([&"  holes", &self.holes]);
+        if self.edits > 0 {
+            table.row([&"hierarchical edits", &self.edits]);
+        }
         table.row([&"sharp corners", &self.sharp_corners]);
         for (valence, count) in &self.valence {
             table.row([&format!("vertices of valence {valence}"), count]);

@@ -1,6 +1,7 @@
 //! Space in which the device sees a mesh: the file's own, but for meshes that single precision cannot hold there.
 
 use super::error::CliError;
+use ash_subdiv::mesh::Change;
 use ash_subdiv::{ControlMesh, MeshData};
 use glam::DVec3;
 
@@ -29,6 +30,15 @@ impl Local {
         }
         let mut data: MeshData = mesh.into_data();
         data.positions.iter_mut().for_each(|position| *position = local.to_local((*position).into()).into());
+        for edit in &mut data.edits {
+            match &mut edit.change {
+                Change::Position { position, .. } => *position = local.to_local((*position).into()).into(),
+                Change::Offset { offset, .. } | Change::FrameOffset { offset, .. } => {
+                    *offset = offset.map(|x| x / local.size);
+                }
+                _ => {}
+            }
+        }
         Ok((ControlMesh::new(data)?, local))
     }
 

@@ -11,6 +11,7 @@
 //! | `leaves` | what `patches` needs |
 //! | `local` | the space in which the device sees a mesh |
 //! | `obj` | what `shapes` and `convert` write |
+//! | `rules` | rules of subdivision instead of the file's |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
 //! | `interrupt` | signals that end the program while it writes |
@@ -43,6 +44,7 @@ mod picture;
 mod plot;
 mod published;
 mod render;
+mod rules;
 mod sample;
 mod screen;
 mod shading;

@@ -3,6 +3,7 @@
 use super::error::CliError;
 use super::output::Progress;
 use super::parse;
+use super::rules::RulesArgs;
 use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, RepairOptions, Repairs, read, read_repaired, shape};
@@ -50,6 +51,9 @@ pub(super) struct SourceArgs {
     /// With --adaptive: another depth around darts, corners and creases whose sharpness varies
     #[arg(long, value_name = "DEPTH", requires = "adaptive")]
     sharp_depth: Option<u32>,
+
+    #[command(flatten)]
+    rules: RulesArgs,
 }
 
 impl MeshArgs {
@@ -142,17 +146,23 @@ impl SourceArgs {
 
     /// Reads the file, or makes the shape.
     pub(super) fn load_repaired(&self) -> Result<(ControlMesh, Repairs), CliError> {
-        match (&self.mesh, &self.shape) {
-            (Some(path), None) => self.reading.read(path, self.mesh_name.clone()),
-            (None, Some(name)) => Ok((shape(name)?, Repairs::default())),
+        let (mesh, repairs) = match (&self.mesh, &self.shape) {
+            (Some(path), None) => self.reading.read(path, self.mesh_name.clone())?,
+            (None, Some(name)) => (shape(name)?, Repairs::default()),
             (Some(path), Some(name)) => {
                 let path = path.display();
-                Err(CliError::Usage(format!("both a mesh ({path}) and --shape {name} are given: leave one out")))
+                return Err(CliError::Usage(format!(
+                    "both a mesh ({path}) and --shape {name} are given: leave one out"
+                )));
             }
-            (None, None) => Err(CliError::Usage(
-                "no mesh is given: name a file, or a built-in shape with --shape (`subdiv shapes` lists them)".into(),
-            )),
-        }
+            (None, None) => {
+                return Err(CliError::Usage(
+                    "no mesh is given: name a file, or a built-in shape with --shape (`subdiv shapes` lists them)"
+                        .into(),
+                ));
+            }
+        };
+        Ok((self.rules.apply(mesh)?, repairs))
     }
 }
 

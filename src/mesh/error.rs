@@ -44,6 +44,8 @@ pub enum MeshError {
     NoSuchVertex { corner: usize, vertex: u32, count: usize },
     #[error("hole tag names face {face}, but the mesh has {count} faces")]
     NoSuchFace { face: u32, count: usize },
+    #[error("edit {edit}: {message}")]
+    BadEdit { edit: usize, message: String },
     #[error("{what} are given for {given} face corners, but the mesh has {corners}")]
     CornerCount { what: &'static str, given: usize, corners: usize },
     #[error("corner {corner} names {what} {index}, but there are {count}")]

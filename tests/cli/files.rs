@@ -379,7 +379,7 @@ fn meshes_are_converted() {
     assert_eq!(
         String::from_utf8_lossy(&output.stderr),
         "note: 1 vertex belongs to no face and is left out (vertex 8, line 15)\n\
-         note: creases are left out: only OBJ has a place for them\n"
+         note: creases are left out: they have no place in the file\n"
     );
     assert!(String::from_utf8_lossy(&output.stdout).ends_with("a.glb: 8 vertices, 6 faces\n"));
     json(&format!("convert {} {}", at("a.glb"), at("b.ply")));

@@ -10,6 +10,7 @@ mod dice;
 mod dice_closed;
 mod dice_tolerance;
 mod edge_normals;
+mod edits;
 mod error;
 mod exactness;
 mod face_varying;

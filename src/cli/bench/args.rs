@@ -3,6 +3,7 @@
 use super::super::cull::{CullArg, cull};
 use super::super::described::help;
 use super::super::parse;
+use super::super::rules::RulesArgs;
 use super::super::source::{DeviceArgs, ReadingArgs};
 use super::presets::{self, Preset};
 use super::results::Results;
@@ -22,6 +23,8 @@ pub(in super::super) struct BenchArgs {
     pub(super) shape: Vec<String>,
     #[command(flatten)]
     pub(super) reading: ReadingArgs,
+    #[command(flatten)]
+    pub(super) rules: RulesArgs,
     /// Schemes, with commas; all if not given.
     #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     pub(super) schemes: Vec<Scheme>,

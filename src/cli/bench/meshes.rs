@@ -60,12 +60,12 @@ impl BenchArgs {
             let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
             let (mesh, repairs) = self.reading.read(path, None)?;
             notes(&repairs).iter().for_each(|note| output::note(format_args!("{name}: {note}")));
-            meshes.push((name, mesh));
+            meshes.push((name, self.rules.apply(mesh)?));
         }
         let usual = [self.preset.map_or("creature", |preset| preset.shape).to_owned()];
         let shapes = if self.mesh.is_empty() && self.shape.is_empty() { &usual } else { &self.shape[..] };
         for name in unique(shapes, |name| name) {
-            meshes.push((name.clone(), shape(name)?));
+            meshes.push((name.clone(), self.rules.apply(shape(name)?)?));
         }
         let sweep = self.sharpness_sweep();
         let mut originals = Vec::new();

@@ -73,9 +73,9 @@ pub(super) fn run(args: &ConvertArgs, json: bool) -> Result<(), CliError> {
         out.flush()
     };
     write_file(&args.output, |part| write(part).map_err(|error| error.to_string()))?;
-    let lost = if format == Format::Obj { Vec::new() } else { tags(mesh.data()) };
+    let lost = lost(mesh.data(), format);
     if !lost.is_empty() {
-        progress.note(format_args!("{} are left out: only OBJ has a place for them", lost.join(", ")));
+        progress.note(format_args!("{} are left out: they have no place in the file", lost.join(", ")));
     }
     drop(progress);
     let out = ConvertOut {
@@ -108,17 +108,19 @@ impl ConvertArgs {
     }
 }
 
-/// Kinds of tags that a mesh has.
-fn tags(data: &MeshData) -> Vec<&'static str> {
-    let MeshData { creases, corners, holes, .. } = data;
+/// Kinds of tags that a mesh has and the file has not.
+fn lost(data: &MeshData, format: Format) -> Vec<&'static str> {
+    let MeshData { creases, corners, holes, edits, .. } = data;
+    let has_no_tags = format != Format::Obj;
     let rules = MeshData::default();
     let has_rules = (data.boundary, data.crease_method, data.triangle_rule, data.face_varying_rule)
         != (rules.boundary, rules.crease_method, rules.triangle_rule, rules.face_varying_rule);
     let kinds = [
-        (!creases.is_empty(), "creases"),
-        (!corners.is_empty(), "corners"),
-        (!holes.is_empty(), "holes"),
-        (has_rules, "rules of subdivision"),
+        (has_no_tags && !creases.is_empty(), "creases"),
+        (has_no_tags && !corners.is_empty(), "corners"),
+        (has_no_tags && !holes.is_empty(), "holes"),
+        (has_no_tags && has_rules, "rules of subdivision"),
+        (!edits.is_empty(), "edits"),
     ];
     kinds.into_iter().filter_map(|(has, kind)| has.then_some(kind)).collect()
 }

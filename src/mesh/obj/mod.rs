@@ -1,5 +1,6 @@
 //! Wavefront OBJ, with the tags OpenSubdiv's regression shapes have.
 
+mod edits;
 mod statements;
 mod tags;
 #[cfg(test)]
@@ -24,6 +25,7 @@ struct Lines {
     faces: Vec<usize>,
     creases: Vec<usize>,
     corners: Vec<usize>,
+    edits: Vec<usize>,
     /// With the face, since [`ControlMesh::new`] tells which face is wrong, not which hole.
     holes: Vec<(u32, usize)>,
 }
@@ -47,8 +49,13 @@ impl ControlMesh {
     /// turned round, for in OBJ it runs up from the bottom of the image), `vn`,
     /// `f` with indices that count from one or back, and the tags `t crease`, `corner`, `hole`,
     /// `interpolateboundary`, `creasemethod`, `smoothtriangles` and `facevaryinginterpolateboundary`, whose vertices
-    /// and faces count from zero. A crease may be a chain of more than two vertices. Where only some faces have
-    /// texture coordinates the others get (0, 0), and likewise the normal (0, 0, 0).
+    /// and faces count from zero, and `vertexedit`, `edgeedit` and `faceedit`, which become [`Edit`](super::Edit)s. A crease
+    /// may be a chain of more than two vertices. Where only some faces have texture coordinates the others get (0, 0), and
+    /// likewise the normal (0, 0, 0).
+    ///
+    /// The integers of an edit are paths: the number of those that follow, a face, a child a level, and the corner or edge of the last
+    /// face (of a `faceedit` none). Its strings are `add P value`, `subtract P value` or `set P value`, with three numbers a path, in
+    /// object space; `set P sharpness`, with one number a path; of a `faceedit` just `hole`. Numbers beyond those are passed over.
     ///
     /// Without a tag the rules are those of [`MeshData::default`]; OpenSubdiv's own test programs take
     /// [`EdgeOnly`](super::BoundaryRule::EdgeOnly) for a file without `interpolateboundary`.
@@ -330,6 +337,7 @@ impl Lines {
             MeshError::NoSuchEdge { crease, .. } => Some(self.creases[*crease]),
             MeshError::NoSuchVertex { corner, .. } => Some(self.corners[*corner]),
             MeshError::NoSuchFace { face, .. } => self.holes.iter().find(|hole| hole.0 == *face).map(|hole| hole.1),
+            MeshError::BadEdit { edit, .. } => Some(self.edits[*edit]),
             MeshError::BadSharpness { what: "crease", index, .. } => Some(self.creases[*index]),
             MeshError::BadSharpness { index, .. } => Some(self.corners[*index]),
             error => error.face().map(|face| self.faces[face as usize]),

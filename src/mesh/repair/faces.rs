@@ -102,7 +102,7 @@ pub(super) fn crossed(data: &MeshData) -> Vec<u32> {
 }
 
 /// Makes the faces anew out of corners of the old ones: `corners_of` adds those that a face keeps, none if it goes. Holes keep
-/// their faces. Gives the number that each face had before.
+/// their faces; edits of other faces than before go. Gives the number that each face had before.
 pub(super) fn rebuild(
     work: &mut Work,
     vertices: &[u32],
@@ -111,12 +111,14 @@ pub(super) fn rebuild(
     let data = &mut work.data;
     let (mut before, mut corners, mut kept) = (Vec::new(), Vec::with_capacity(vertices.len()), Vec::new());
     let mut numbers = vec![u32::MAX; data.face_sizes.len()];
+    let mut changed = vec![false; numbers.len()];
     let mut end = 0;
     for (face, &size) in (0..).zip(&std::mem::take(&mut data.face_sizes)) {
         let range = end..end + size as usize;
         end = range.end;
         kept.clear();
         corners_of(face, range, &mut kept);
+        changed[face as usize] = kept.len() != size as usize;
         if !kept.is_empty() {
             numbers[face as usize] = before.len() as u32;
             before.push(face);
@@ -132,6 +134,8 @@ pub(super) fn rebuild(
     for indices in attributes.into_iter().flatten() {
         *indices = corners.iter().map(|&corner| indices[corner]).collect();
     }
+    work.repairs.lose_edits(&mut data.edits, &changed);
+    data.edits.iter_mut().for_each(|edit| edit.face = numbers.get(edit.face as usize).copied().unwrap_or(edit.face));
     data.holes.retain_mut(|hole| {
         *hole = numbers[*hole as usize];
         *hole != u32::MAX

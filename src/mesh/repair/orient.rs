@@ -9,6 +9,7 @@ pub(super) fn mend(work: &mut Work, joints: &Joints) {
     let first = turned.iter().position(|turned| *turned);
     work.repairs.add(RepairKind::TurnedFaces, count, first.map(|face| Place::Face(face as u32)));
     let data = &mut work.data;
+    work.repairs.lose_edits(&mut data.edits, &turned);
     let attributes = [
         data.texcoords.as_mut().map(|texcoords| &mut texcoords.indices),
         data.normals.as_mut().map(|normals| &mut normals.indices),

@@ -1,5 +1,6 @@
 //! What was mended, in words.
 
+use crate::mesh::Edit;
 use crate::named::named;
 use std::fmt::{self, Display};
 
@@ -32,6 +33,8 @@ named! {
         TagsOnNothing = "tags_on_nothing",
         /// Tags whose sharpness is no number from 0 up: left out.
         TagsWithoutSharpness = "tags_without_sharpness",
+        /// Edits of faces whose corners are not those that the edits were made for: left out.
+        LostEdits = "lost_edits",
         /// Vertices without faces: left out.
         IsolatedVertices = "isolated_vertices",
     }
@@ -108,6 +111,15 @@ impl Repairs {
         }
     }
 
+    /// Takes out the edits of these faces.
+    pub(super) fn lose_edits(&mut self, edits: &mut Vec<Edit>, of: &[bool]) {
+        let is_lost = |edit: &Edit| of.get(edit.face as usize).is_some_and(|lost| *lost);
+        let first = edits.iter().find(|edit| is_lost(edit)).map(|edit| Place::Face(edit.face));
+        let count = edits.len();
+        edits.retain(|edit| !is_lost(edit));
+        self.add(RepairKind::LostEdits, count - edits.len(), first);
+    }
+
     /// Vertices were numbered anew: the number that each had before.
     pub(super) fn renumber_vertices(&mut self, before: Vec<u32>) {
         self.vertices = before.into_iter().map(|vertex| self.given_vertex(vertex)).collect();
@@ -168,6 +180,9 @@ impl Display for Repair {
                 "tag whose sharpness is no number from 0 up is left out",
                 "tags whose sharpness is no number from 0 up are left out",
             ],
+            Kind::LostEdits => {
+                ["edit of a face that was mended is left out", "edits of faces that were mended are left out"]
+            }
             Kind::IsolatedVertices => {
                 ["vertex belongs to no face and is left out", "vertices belong to no face and are left out"]
             }

@@ -1,7 +1,7 @@
 //! Each kind of fault, alone: what becomes of it, and what is said.
 
 use super::*;
-use crate::mesh::{BoundaryRule, Corner, Crease, FaceVarying, SHARPNESS_INFINITE, shape, shapes};
+use crate::mesh::{BoundaryRule, Change, Corner, Crease, Edit, FaceVarying, SHARPNESS_INFINITE, shape, shapes};
 
 fn mesh(positions: &[[f64; 3]], faces: &[&[u32]]) -> MeshData {
     MeshData {
@@ -259,6 +259,21 @@ fn tags_on_nothing_go() {
     let (mesh, _) = repaired(data, &notes);
     assert_eq!(mesh.data().creases, [crease([0, 1], 2.0)]);
     assert_eq!((mesh.data().corners.len(), &mesh.data().holes[..]), (0, &[0][..]));
+}
+
+#[test]
+fn edits_stay_with_their_faces_and_go_where_those_are_mended() {
+    let edit = |face| Edit { face, children: vec![1], change: Change::Hole };
+    let faces: [&[u32]; 4] = [&[0, 1, 1, 2, 3], &[1, 0], &[3, 2, 4, 5], &[4, 5, 6, 7]];
+    let mut data = mesh(&somewhere(8), &faces);
+    data.edits = (0..4).map(edit).collect();
+    let (data, repairs) = repair(data, &RepairOptions::default());
+    // The first two are other faces now, or none; of the last two, one is turned over.
+    let lost = repairs.list.iter().find(|repair| repair.kind == RepairKind::LostEdits).unwrap();
+    assert_eq!(lost.to_string(), "3 edits of faces that were mended are left out (the first: face 0)");
+    let kept: Vec<u32> = data.edits.iter().map(|edit| repairs.given_face(edit.face)).collect();
+    let turned = repairs.list.iter().find(|repair| repair.kind == RepairKind::TurnedFaces).unwrap();
+    assert_eq!((kept, turned.first), (vec![2], Place::Face(3)));
 }
 
 #[test]
