@@ -1,13 +1,14 @@
 //! Where the picture is seen from.
 
 use super::error::CliError;
+use super::local::Local;
 use super::parse;
 use ash_subdiv::View;
 use clap::Args;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// The camera: either set up so that everything is in the picture, or placed by hand.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Camera")]
 pub(super) struct CameraArgs {
     /// Turn the eye around the mesh: degrees from the front (+z), counter-clockwise seen from above.
@@ -37,6 +38,12 @@ pub(super) struct CameraArgs {
 }
 
 impl CameraArgs {
+    /// The same camera in local space.
+    pub(super) fn in_space(&self, local: Local) -> Self {
+        let place = |point: Option<DVec3>| point.map(|point| local.to_local(point));
+        Self { eye: place(self.eye), target: place(self.target), ..self.clone() }
+    }
+
     /// The view of these points in a picture `aspect` times as wide as high.
     pub(super) fn view(&self, points: &[DVec3], aspect: f64) -> Result<View, CliError> {
         if self.up.length_squared() < 1e-12 {

@@ -161,7 +161,7 @@ impl From<FaceErrors> for ErrorsOut {
 pub(super) fn run(args: &ErrorArgs, json: bool) -> Result<(), CliError> {
     let published = if args.published { Some(published::rows(&args.mesh.name())?) } else { None };
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let mesh = args.mesh.load(&progress)?;
     let schemes = args.schemes();
     progress.now("measuring");
     let options = ErrorOptions {

@@ -4,8 +4,9 @@ use super::described::{described, help};
 use super::error::CliError;
 use super::output::{self, Progress, Table};
 use super::parse;
-use super::source::MeshArgs;
+use super::source::{MeshArgs, notes};
 use ash_subdiv::adaptive::{AdaptiveOptions, LevelCounts, Reason};
+use ash_subdiv::mesh::{Repair, Repairs};
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions};
@@ -43,6 +44,7 @@ described! {
         /// Faces with five or more corners.
         ngons: usize,
         holes: usize,
+        edits: usize,
         boundary_edges: usize,
         creased_edges: usize,
         sharp_corners: usize,
@@ -60,6 +62,24 @@ described! {
         /// By table, and `total`.
         bytes: BTreeMap<&'static str, u64> = "by table, and total",
         notices: Vec<String>,
+        repairs: Vec<Repaired> = "of the file",
+        /// Edges on boundaries that lie on others.
+        loose_edges: usize = "on boundaries, on others",
+        /// Put together out of triangles.
+        rebuilt_quads: usize = "out of triangles",
+    }
+}
+
+described! {
+    /// What was mended in the file.
+    #[derive(Serialize)]
+    struct Repaired {
+        kind: &'static str,
+        count: usize,
+        first: String,
+        /// Of the file, if its reader knows.
+        line: Option<usize> = "of the first, from 1",
+        note: String,
     }
 }
 
@@ -190,17 +210,30 @@ impl Display for Patches {
 
 pub(super) fn run(args: &InfoArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let (mesh, repairs) = args.mesh.source.load_repaired()?;
     progress.now("building tables");
     let options = args.mesh.model_options(args.construction);
     let tables = ModelTables::new(&mesh, &options)?;
-    let info = Info::new(&mesh, &tables, &options);
+    let info = Info::new(&mesh, &tables, &options, &repairs);
     drop(progress);
-    if json { output::json_pretty(&info) } else { info.print() }
+    if json {
+        return output::json_pretty(&info);
+    }
+    info.print()?;
+    notes(&repairs).iter().for_each(output::note);
+    info.notices.iter().for_each(output::note);
+    Ok(())
+}
+
+impl Repaired {
+    fn new(repair: &Repair) -> Self {
+        let &Repair { kind, count, first, line, .. } = repair;
+        Self { kind: kind.name(), count, first: first.to_string(), line, note: repair.to_string() }
+    }
 }
 
 impl Info {
-    fn new(mesh: &ControlMesh, tables: &ModelTables, options: &ModelOptions) -> Self {
+    fn new(mesh: &ControlMesh, tables: &ModelTables, options: &ModelOptions, repairs: &Repairs) -> Self {
         let data = mesh.data();
         let mut face_sizes = BTreeMap::new();
         data.face_sizes.iter().for_each(|&size| *face_sizes.entry(size).or_insert(0) += 1);
@@ -213,6 +246,7 @@ impl Info {
             ngons: face_sizes.range(5..).map(|(_, count)| count).sum(),
             face_sizes,
             holes: data.holes.len(),
+            edits: data.edits.len(),
             boundary_edges: mesh.boundary_edge_count(),
             creased_edges: mesh.creased_edge_count(),
             sharp_corners: data.corners.iter().filter(|corner| corner.sharpness > 0.0).count(),
@@ -225,6 +259,9 @@ impl Info {
             connectivity_types: tables.type_count(),
             bytes,
             notices: tables.notices().iter().map(ToString::to_string).collect(),
+            repairs: repairs.list.iter().map(Repaired::new).collect(),
+            loose_edges: repairs.loose_edges,
+            rebuilt_quads: repairs.rebuilt_quads,
         }
     }
 
@@ -239,6 +276,9 @@ impl Info {
             table.row([&format!("  of {size} corners"), count]);
         }
         table.row([&"  holes", &self.holes]);
+        if self.edits > 0 {
+            table.row([&"hierarchical edits", &self.edits]);
+        }
         table.row([&"sharp corners", &self.sharp_corners]);
         for (valence, count) in &self.valence {
             table.row([&format!("vertices of valence {valence}"), count]);
@@ -257,7 +297,7 @@ impl Info {
         if let Some(leaves) = &self.adaptive {
             leaves.print()?;
         }
-        self.notices.iter().for_each(output::note);
+
         Ok(())
     }
 }

@@ -9,7 +9,9 @@
 //! | `error_rows`, `plot`, `published` | what `error` needs |
 //! | `canvas` | pixels to draw and write on |
 //! | `leaves` | what `patches` needs |
-//! | `obj` | what `shapes` writes |
+//! | `local` | the space in which the device sees a mesh |
+//! | `obj` | what `shapes` and `convert` write |
+//! | `rules` | rules of subdivision instead of the file's |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
 //! | `output` | standard output, notes, tables of text, progress, files |
 //! | `interrupt` | signals that end the program while it writes |
@@ -19,6 +21,7 @@
 mod bench;
 mod camera;
 mod canvas;
+mod convert;
 mod cull;
 mod described;
 mod devices;
@@ -30,6 +33,7 @@ mod evaluation;
 mod info;
 mod interrupt;
 mod leaves;
+mod local;
 mod memory;
 mod obj;
 mod output;
@@ -40,6 +44,7 @@ mod picture;
 mod plot;
 mod published;
 mod render;
+mod rules;
 mod sample;
 mod screen;
 mod shading;
@@ -99,6 +104,8 @@ enum Command {
     Screen(screen::ScreenArgs),
     /// Write the limit surface as a mesh: as fine as asked, closed, with normals and texture coordinates. Needs no device.
     Tessellate(Box<tessellate::TessellateArgs>),
+    /// Write a control mesh to another file: OBJ with tags, GLB with polygons, PLY. Needs no device.
+    Convert(convert::ConvertArgs),
     /// List the built-in shapes, or write one as OBJ.
     Shapes(shapes::ShapesArgs),
     /// List the Vulkan devices, what they can do and what they lack.
@@ -119,6 +126,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Watertight(args) => watertight::run(&args, cli.json),
         Command::Screen(args) => screen::run(&args, cli.json),
         Command::Tessellate(args) => tessellate::run(&args, cli.json),
+        Command::Convert(args) => convert::run(&args, cli.json),
         Command::Shapes(args) => shapes::run(&args, cli.json),
         Command::Devices => devices::run(cli.json),
     });

@@ -11,7 +11,8 @@ pub(super) fn write(out: &mut impl Write, mesh: &ControlMesh) -> io::Result<()> 
         writeln!(out, "v {x} {y} {z}")?;
     }
     for [u, v] in data.texcoords.iter().flat_map(|t| &t.values) {
-        writeln!(out, "vt {u} {v}")?;
+        // In OBJ v runs up from the bottom of the image.
+        writeln!(out, "vt {u} {}", 1.0 - f64::from(*v))?;
     }
     for [x, y, z] in data.normals.iter().flat_map(|n| &n.values) {
         writeln!(out, "vn {x} {y} {z}")?;

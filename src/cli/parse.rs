@@ -85,6 +85,12 @@ pub(super) fn positive(text: &str) -> Result<f32, String> {
     number(text).filter(|&f| f > 0.0).ok_or_else(|| "it must be a number above 0".into())
 }
 
+/// A part of a size within which vertices are joined.
+pub(super) fn weld(text: &str) -> Result<f64, String> {
+    let part = text.parse().ok().filter(|part| (0.0..=0.1).contains(part));
+    part.ok_or_else(|| "it must be a part of the diagonal, from 0 to 0.1, such as 1e-6".into())
+}
+
 fn number(text: &str) -> Option<f32> {
     text.parse().ok().filter(|f: &f32| f.is_finite())
 }

@@ -2,6 +2,7 @@
 
 use super::error::CliError;
 use super::leaves;
+use super::local::Local;
 use super::output::{self, Progress};
 use super::source::{DeviceArgs, MeshArgs, report_notices};
 use ash_subdiv::capture::Captured;
@@ -9,6 +10,7 @@ use ash_subdiv::table::{CpuSurface, FaceOrigin, Notice, Patch, TableOptions};
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme};
 use clap::{Args, ValueEnum};
+use glam::Vec3;
 use serde::{Serialize, Serializer};
 use std::fmt::Display;
 
@@ -111,7 +113,7 @@ pub(super) fn run(args: &PatchesArgs, json: bool) -> Result<(), CliError> {
         ));
     }
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let mesh = args.mesh.load(&progress)?;
     let refine = steps(&args.mesh, &mesh, &progress);
     match args.construction {
         Maker::Cpu => {
@@ -154,17 +156,24 @@ fn on_device(
     construction: Construction,
     progress: Progress,
 ) -> Result<(), CliError> {
+    let (mesh, local) = Local::of(mesh.clone())?;
     let (tables, points) = args.device.run(|headless| {
         progress.now("building tables");
         let options = ModelOptions { refine, ..args.mesh.model_options(construction) };
-        let captured = Captured::new(headless, mesh, &options)?;
+        let captured = Captured::new(headless, &mesh, &options)?;
         report_notices(captured.tables().notices(), &progress);
         progress.now("making control points");
         let points = captured.control_points()?;
         Ok((captured.tables().clone(), points))
     })?;
     drop(progress);
-    write(args, json, Made { patches: tables.plan().patches(), origins: &tables.origins(), points: &points })
+    let (patches, origins) = (tables.plan().patches(), &tables.origins());
+    if local.is_file() {
+        return write(args, json, Made { patches, origins, points: &points });
+    }
+    let point = |point: &[f32; 3]| local.in_file(Vec3::from(*point).as_dvec3()).to_array();
+    let points: Vec<Vec<[f64; 3]>> = points.iter().map(|patch| patch.iter().map(point).collect()).collect();
+    write(args, json, Made { patches, origins, points: &points })
 }
 
 fn write<T: Serialize + Display>(args: &PatchesArgs, json: bool, made: Made<T>) -> Result<(), CliError> {

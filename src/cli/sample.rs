@@ -1,6 +1,7 @@
 //! `subdiv sample`: positions and normals on a uniform grid of every patch.
 
 use super::error::CliError;
+use super::local::Local;
 use super::output::{self, Progress};
 use super::parse::{self, Surface};
 use super::patches::{by_origin, heading, sub};
@@ -12,7 +13,7 @@ use ash_subdiv::table::{FaceOrigin, Patch, PatchId, grid_parameters};
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, Fallback, Scheme};
 use clap::Args;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use std::fmt::Display;
@@ -175,7 +176,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
         return Err(CliError::Usage(format!("--scheme limit: {message}")));
     }
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let mesh = args.mesh.load(&progress)?;
     let scheme = match args.scheme {
         Surface::Patches(scheme) => scheme,
         Surface::Limit => {
@@ -193,6 +194,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
         drop(progress);
         return write(args, json, (&surface.origins(), &parts(surface.plan().patches()), &samples));
     }
+    let (mesh, local) = Local::of(mesh)?;
     let (tables, samples) = args.device.run(|headless| {
         let max = headless.properties().max_tessellation_level + 1;
         if args.grid > max {
@@ -208,7 +210,16 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
         Ok((captured.tables().clone(), samples))
     })?;
     drop(progress);
-    write(args, json, (&tables.origins(), &parts(tables.plan().patches()), &samples))
+    let (origins, parts) = (tables.origins(), parts(tables.plan().patches()));
+    if local.is_file() {
+        return write(args, json, (&origins, &parts, &samples));
+    }
+    let sample = |vertex: &CapturedVertex| Sample {
+        position: local.in_file(Vec3::from(vertex.position).as_dvec3()),
+        normal: Vec3::from(vertex.normal).as_dvec3(),
+    };
+    let samples: Vec<Vec<_>> = samples.iter().map(|part| part.iter().map(sample).collect()).collect();
+    write(args, json, (&origins, &parts, &samples))
 }
 
 /// Parts of a surface, and the samples of each.

@@ -4,6 +4,7 @@ use super::camera::CameraArgs;
 use super::cull::CullArgs;
 use super::described::{described, help};
 use super::error::CliError;
+use super::local::Local;
 use super::output::{self, Progress, Table};
 use super::parse;
 use super::source::{DeviceArgs, MeshArgs, report_notices};
@@ -167,11 +168,12 @@ impl ScreenArgs {
 
 pub(super) fn run(args: &ScreenArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let (mesh, local) = Local::of(args.mesh.load(&progress)?)?;
     progress.now("building tables");
     let options = ModelOptions { spacing: args.spacing, ..args.mesh.model_options(args.construction) };
     let [width, height] = args.size;
-    let view = args.camera.view(&args.mesh.hull(&mesh)?, f64::from(width) / f64::from(height))?.sized(width, height);
+    let aspect = f64::from(width) / f64::from(height);
+    let view = args.camera.in_space(local).view(&args.mesh.hull(&mesh)?, aspect)?.sized(width, height);
     let (device, mut adaptive, uniform) = args.device.run(|headless| {
         let captured = Captured::new(headless, &mesh, &options)?;
         report_notices(captured.tables().notices(), &progress);

@@ -3,14 +3,15 @@
 use super::error::CliError;
 use super::output::Progress;
 use super::parse;
+use super::rules::RulesArgs;
 use ash_subdiv::adaptive::{AdaptiveOptions, Sums};
 use ash_subdiv::headless::{Headless, HeadlessOptions};
-use ash_subdiv::mesh::{ReadOptions, read, shape};
+use ash_subdiv::mesh::{ReadOptions, RepairOptions, Repairs, read, read_repaired, shape};
 use ash_subdiv::table::{CpuSurface, Notice, TableOptions};
 use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme};
 use clap::Args;
 use glam::DVec3;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The mesh, and the surface it is the control mesh of.
 #[derive(Debug, Args)]
@@ -25,14 +26,13 @@ pub(super) struct MeshArgs {
 /// The mesh, whatever becomes of it.
 #[derive(Debug, Args)]
 pub(super) struct SourceArgs {
-    /// The control mesh: a file ending in .obj, .gltf or .glb.
+    /// The control mesh: a file ending in .obj, .ply, .gltf or .glb.
     mesh: Option<PathBuf>,
     /// A built-in shape instead of a file: see `subdiv shapes`.
     #[arg(long, value_name = "NAME")]
     shape: Option<String>,
-    /// Take out vertices that belong to no face, instead of refusing the file (OBJ).
-    #[arg(long)]
-    drop_isolated: bool,
+    #[command(flatten)]
+    reading: ReadingArgs,
     /// Mesh of a glTF scene, by its name or its node's; all of them if not given.
     #[arg(long, value_name = "NAME", conflicts_with = "shape")]
     mesh_name: Option<String>,
@@ -55,6 +55,9 @@ pub(super) struct SourceArgs {
     /// With --adaptive: what refined vertices are sums of, those one level above or control vertices
     #[arg(long, value_name = "OF", requires = "adaptive", default_value = "levels", value_parser = parse::one_of(Sums::ALL, Sums::name))]
     sums: Sums,
+
+    #[command(flatten)]
+    rules: RulesArgs,
 }
 
 impl MeshArgs {
@@ -80,9 +83,9 @@ impl MeshArgs {
         self.source.cpu_surface(mesh, self.scheme, progress)
     }
 
-    /// Reads the file, or makes the shape.
-    pub(super) fn load(&self) -> Result<ControlMesh, CliError> {
-        self.source.load()
+    /// Reads the file, or makes the shape; reports repairs.
+    pub(super) fn load(&self, progress: &Progress) -> Result<ControlMesh, CliError> {
+        self.source.load(progress)
     }
 }
 
@@ -139,23 +142,98 @@ impl SourceArgs {
         self.fallback.unwrap_or_default()
     }
 
+    /// Reads the file, or makes the shape; reports repairs.
+    pub(super) fn load(&self, progress: &Progress) -> Result<ControlMesh, CliError> {
+        let (mesh, repairs) = self.load_repaired()?;
+        report_repairs(&repairs, progress);
+        Ok(mesh)
+    }
+
     /// Reads the file, or makes the shape.
-    pub(super) fn load(&self) -> Result<ControlMesh, CliError> {
-        match (&self.mesh, &self.shape) {
-            (Some(path), None) => {
-                let options = ReadOptions { drop_isolated: self.drop_isolated, mesh: self.mesh_name.clone() };
-                Ok(read(path, &options)?)
-            }
-            (None, Some(name)) => Ok(shape(name)?),
+    pub(super) fn load_repaired(&self) -> Result<(ControlMesh, Repairs), CliError> {
+        let (mesh, repairs) = match (&self.mesh, &self.shape) {
+            (Some(path), None) => self.reading.read(path, self.mesh_name.clone())?,
+            (None, Some(name)) => (shape(name)?, Repairs::default()),
             (Some(path), Some(name)) => {
                 let path = path.display();
-                Err(CliError::Usage(format!("both a mesh ({path}) and --shape {name} are given: leave one out")))
+                return Err(CliError::Usage(format!(
+                    "both a mesh ({path}) and --shape {name} are given: leave one out"
+                )));
             }
-            (None, None) => Err(CliError::Usage(
-                "no mesh is given: name a file, or a built-in shape with --shape (`subdiv shapes` lists them)".into(),
-            )),
+            (None, None) => {
+                return Err(CliError::Usage(
+                    "no mesh is given: name a file, or a built-in shape with --shape (`subdiv shapes` lists them)"
+                        .into(),
+                ));
+            }
+        };
+        Ok((self.rules.apply(mesh)?, repairs))
+    }
+}
+
+/// How files are read.
+#[derive(Debug, Args)]
+pub(super) struct ReadingArgs {
+    /// Refuse files that have to be mended: repeated corners, vertices without faces, edges of three faces, faces turned over …
+    #[arg(long)]
+    strict: bool,
+    /// Join loose faces: edges on boundaries whose ends are this near, as a part of the bounding box's diagonal.
+    #[arg(long, value_name = "TOLERANCE", conflicts_with = "strict", value_parser = parse::weld)]
+    weld: Option<f64>,
+    /// Put quads of glTF together that an exporter split into triangles: auto where most triangles are parts of quads, off never.
+    #[arg(long, value_name = "WHEN", default_value = RebuildQuads::Auto.name(), value_parser = parse::one_of(RebuildQuads::ALL, RebuildQuads::name))]
+    rebuild_quads: RebuildQuads,
+    /// With --strict: take out vertices that belong to no face, instead of refusing the file (OBJ).
+    #[arg(long)]
+    drop_isolated: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum RebuildQuads {
+    Auto,
+    Off,
+}
+
+impl RebuildQuads {
+    const ALL: [Self; 2] = [Self::Auto, Self::Off];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Off => "off",
         }
     }
+}
+
+impl ReadingArgs {
+    /// Reads a file, or one mesh of it.
+    pub(super) fn read(&self, path: &Path, mesh: Option<String>) -> Result<(ControlMesh, Repairs), CliError> {
+        let quads = self.rebuild_quads == RebuildQuads::Auto;
+        let options = ReadOptions { drop_isolated: self.drop_isolated, mesh, quads };
+        match self.strict {
+            true => Ok((read(path, &options)?, Repairs::default())),
+            false => Ok(read_repaired(path, &options, &RepairOptions { weld: self.weld })?),
+        }
+    }
+}
+
+/// What to say about how a file was mended, one note a line.
+pub(super) fn notes(repairs: &Repairs) -> Vec<String> {
+    let mut notes: Vec<String> = repairs.list.iter().map(ToString::to_string).collect();
+    if repairs.rebuilt_quads > 0 {
+        let count = repairs.rebuilt_quads;
+        notes.push(format!("{count} quads are put together out of triangles: --rebuild-quads off keeps the triangles"));
+    }
+    if repairs.loose_edges > 0 {
+        let count = repairs.loose_edges;
+        notes.push(format!("{count} edges on boundaries lie on others without being joined: --weld 1e-6 joins them"));
+    }
+    notes
+}
+
+/// Reports how a file was mended.
+pub(super) fn report_repairs(repairs: &Repairs, progress: &Progress) {
+    notes(repairs).iter().for_each(|note| progress.note(note));
 }
 
 /// Reports the notices on how a mesh is drawn.

@@ -9,8 +9,8 @@ use super::output::{self, Progress, short, write_file};
 use super::parse;
 use super::source::SourceArgs;
 use ash_subdiv::ControlMesh;
-use ash_subdiv::dice::{Camera, Depth, DiceOptions, MAX_DEPTH, Plan, Sizes, Tessellation};
-use ash_subdiv::mesh::write::{Polygons, write_glb, write_obj, write_ply};
+use ash_subdiv::dice::{Camera, Depth, DiceOptions, MAX_DEPTH, Piece, Plan, Sizes, Stream, Tessellation};
+use ash_subdiv::mesh::write::{Kept, Pieces, Polygons, Vertices, write_glb, write_obj, write_ply};
 use ash_subdiv::topology::Topology;
 use clap::Args;
 use serde::Serialize;
@@ -173,7 +173,7 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
     args.check()?;
     let start = Instant::now();
     let progress = Progress::new("reading the mesh");
-    let mesh = args.source.load()?;
+    let mesh = args.source.load(&progress)?;
     let texels = args.displacement.texels()?;
     progress.now("choosing depths");
     let topology = Topology::new(&mesh);
@@ -187,14 +187,23 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
         let depth = args.depth.max_depth;
         progress.note(format!("--tolerance {distance}: at --max-depth {depth} the error may be {}", short(error)));
     }
-    progress.now("evaluating");
-    let mut tessellation = Tessellation::of(plan, &mesh.data().positions)?;
-    if let Some(texels) = &texels {
-        let [scale, bias] = args.displacement.amount(&mesh);
-        tessellation.displace(|texcoord| scale * texels.sample(texcoord) + bias)?;
-    }
-    progress.now("writing");
-    let [quads, triangles] = write(args, kind, &tessellation)?;
+    let depth_histogram = plan.depth_histogram();
+    let unused = plan.unused();
+    let [vertices, quads, triangles] = if texels.is_none() && unused.is_empty() {
+        progress.now("writing, piece by piece");
+        let stream = plan.stream(&mesh.data().positions)?;
+        let turned = args.turns_texcoords(kind);
+        args.write(kind, &Streamed { stream: &stream, sizes, quads: args.quads, turned })?
+    } else {
+        progress.now("evaluating");
+        let mut tessellation = Tessellation::of(plan, &mesh.data().positions)?;
+        if let Some(texels) = &texels {
+            let [scale, bias] = args.displacement.amount(&mesh);
+            tessellation.displace(|texcoord| scale * texels.sample(texcoord) + bias)?;
+        }
+        progress.now("writing");
+        args.write_arrays(kind, &tessellation, &unused)?
+    };
     drop(progress);
     let out = TessellateOut {
         mesh: args.source.name(),
@@ -202,8 +211,8 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
         faces: quads + triangles,
         quads,
         triangles,
-        vertices: sizes.vertices,
-        depth_histogram: tessellation.plan().depth_histogram(),
+        vertices,
+        depth_histogram,
         largest_error,
         seconds: start.elapsed().as_secs_f64(),
         bytes: std::fs::metadata(&args.output)?.len(),
@@ -219,38 +228,105 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
     })
 }
 
-/// Writes the file. Gives the numbers of its quads and triangles.
-fn write(args: &TessellateArgs, kind: Kind, tessellation: &Tessellation<f32>) -> Result<[usize; 2], CliError> {
-    let cut = if args.quads { None } else { Some(tessellation.all_triangles()) };
-    let (quads, triangles) = match &cut {
-        Some(triangles) => (&[][..], triangles.as_slice()),
-        None => (tessellation.quads(), tessellation.triangles()),
-    };
-    let turned = (args.source.is_gltf() != (kind == Kind::Glb))
-        .then(|| tessellation.texcoords().map(|all| all.iter().map(|&[u, v]| [u, 1.0 - v]).collect::<Vec<_>>()))
-        .flatten();
-    let plan = tessellation.plan();
-    let sizes = plan.sizes();
-    let owned = sizes.positions as u32;
-    let copies: Vec<u32> = (owned..sizes.vertices as u32).map(|copy| plan.position_of(copy)).collect();
-    let polygons = Polygons {
-        positions: tessellation.positions(),
-        normals: tessellation.normals(),
-        texcoords: turned.as_deref().or(tessellation.texcoords()),
-        copies: (owned, &copies),
-        quads,
-        triangles,
-    };
-    let write = |part: &Path| -> io::Result<()> {
-        let _watch = Watch::start();
-        let mut out = BufWriter::with_capacity(1 << 20, Interruptible(File::create(part)?));
-        match kind {
-            Kind::Obj => write_obj(&polygons, &mut out)?,
-            Kind::Ply => write_ply(&polygons, &mut out)?,
-            Kind::Glb => write_glb(&polygons, triangles, &mut out)?,
-        }
-        out.flush()
-    };
-    write_file(&args.output, |part| write(part).map_err(|error| error.to_string()))?;
-    Ok([quads.len(), triangles.len()])
+impl TessellateArgs {
+    /// Whether v runs the other way in the file that is written.
+    fn turns_texcoords(&self, kind: Kind) -> bool {
+        self.source.is_gltf() != (kind == Kind::Glb)
+    }
+
+    /// Writes a mesh that is there as a whole, without vertices that belong to no face.
+    fn write_arrays(
+        &self,
+        kind: Kind,
+        tessellation: &Tessellation<f32>,
+        unused: &[u32],
+    ) -> Result<[usize; 3], CliError> {
+        let cut = if self.quads { None } else { Some(tessellation.all_triangles()) };
+        let (quads, triangles) = match &cut {
+            Some(triangles) => (&[][..], triangles.as_slice()),
+            None => (tessellation.quads(), tessellation.triangles()),
+        };
+        let turn = |all: &[[f32; 2]]| all.iter().copied().map(turned).collect::<Vec<_>>();
+        let texcoords = tessellation.texcoords().filter(|_| self.turns_texcoords(kind)).map(turn);
+        let plan = tessellation.plan();
+        let sizes = plan.sizes();
+        let owned = sizes.positions as u32;
+        let copies: Vec<u32> = (owned..sizes.vertices as u32).map(|copy| plan.position_of(copy)).collect();
+        let all = Polygons {
+            positions: tessellation.positions(),
+            normals: tessellation.normals(),
+            texcoords: texcoords.as_deref().or(tessellation.texcoords()),
+            copies: (owned, &copies),
+            quads,
+            triangles,
+        };
+        let kept = Kept::of(&all, unused);
+        self.write(kind, &kept.as_ref().map_or(all, Kept::polygons))
+    }
+
+    /// Writes the file. Gives the numbers of its vertices, quads and triangles.
+    fn write(&self, kind: Kind, mesh: &dyn Pieces) -> Result<[usize; 3], CliError> {
+        let write = |part: &Path| -> io::Result<()> {
+            let _watch = Watch::start();
+            let mut out = BufWriter::with_capacity(1 << 20, Interruptible(File::create(part)?));
+            match kind {
+                Kind::Obj => write_obj(mesh, &mut out)?,
+                Kind::Ply => write_ply(mesh, &mut out)?,
+                Kind::Glb => write_glb(mesh, &mut out)?,
+            }
+            out.flush()
+        };
+        write_file(&self.output, |part| write(part).map_err(|error| error.to_string()))?;
+        let ([vertices, _], [quads, triangles]) = (mesh.vertex_counts(), mesh.face_counts());
+        Ok([vertices, quads, triangles])
+    }
+}
+
+/// A tessellation that is made while it is written.
+struct Streamed<'s> {
+    stream: &'s Stream<'s, f32>,
+    sizes: Sizes,
+    /// Whether quads stay quads.
+    quads: bool,
+    /// Whether v runs the other way.
+    turned: bool,
+}
+
+impl Pieces for Streamed<'_> {
+    fn vertex_counts(&self) -> [usize; 2] {
+        [self.sizes.vertices, self.sizes.positions]
+    }
+
+    fn face_counts(&self) -> [usize; 2] {
+        let Sizes { quads, triangles, .. } = self.sizes;
+        if self.quads { [quads, triangles] } else { [0, 2 * quads + triangles] }
+    }
+
+    fn has_texcoords(&self) -> bool {
+        self.stream.plan().has_texcoords()
+    }
+
+    fn position_of(&self, vertex: u32) -> u32 {
+        self.stream.plan().position_of(vertex)
+    }
+
+    fn vertices(&self, visit: &mut dyn FnMut(Vertices) -> io::Result<()>) -> io::Result<()> {
+        self.stream.for_each_piece(|Piece { positions, normals, texcoords }| {
+            let other = texcoords.filter(|_| self.turned);
+            let other = other.map(|all| all.iter().copied().map(turned).collect::<Vec<_>>());
+            visit(Vertices { positions, normals, texcoords: other.as_deref().or(texcoords) })
+        })
+    }
+
+    fn quads(&self, visit: &mut dyn FnMut(&[[u32; 4]]) -> io::Result<()>) -> io::Result<()> {
+        if self.quads { self.stream.for_each_quads(visit) } else { Ok(()) }
+    }
+
+    fn triangles(&self, visit: &mut dyn FnMut(&[[u32; 3]]) -> io::Result<()>) -> io::Result<()> {
+        if self.quads { self.stream.for_each_triangles(visit) } else { self.stream.for_each_cut(visit) }
+    }
+}
+
+fn turned([u, v]: [f32; 2]) -> [f32; 2] {
+    [u, 1.0 - v]
 }

@@ -3,6 +3,7 @@
 use super::described::{described, help};
 use super::displacement::{diagonal, scales, texture};
 use super::error::CliError;
+use super::local::Local;
 use super::output::{self, Progress, Table};
 use super::parse;
 use super::source::{DeviceArgs, SourceArgs, report_notices};
@@ -154,7 +155,7 @@ impl WatertightArgs {
 
 pub(super) fn run(args: &WatertightArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
-    let given = args.source.load()?;
+    let (given, _) = Local::of(args.source.load(&progress)?)?;
     let mesh = if given.data().texcoords.is_some() { given } else { with_seams_everywhere(&given)? };
     let closed = mesh.boundary_edge_count() == 0 && mesh.data().holes.is_empty();
     progress.now("building tables");

@@ -1,5 +1,6 @@
 //! How far faces are from the limit surface at most.
 
+use super::finer::{Cell as Part, Finer, Level, Turned};
 use super::kinds::Shape;
 use super::patches::{PLAIN, Patches};
 use super::real::Vector;
@@ -12,6 +13,9 @@ use glam::DVec3;
 /// with its whole size, about a thousandth of the cell's.
 const LEVELS: u32 = 10;
 
+/// Facets whose bounds are made together, at most.
+pub(super) const PIECE: usize = 1 << 19;
+
 /// How often B-spline patches are split to know their normals better.
 const SPLITS: u32 = 3;
 
@@ -19,9 +23,18 @@ const SPLITS: u32 = 3;
 const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
 /// Bounds of the facets of a mesh.
-pub(super) struct Bounds {
+pub(super) struct Bounds<'f> {
+    facets: Vec<u32>,
+    faces: Faces<'f>,
+    finer: &'f Finer,
+    /// By level.
+    levels: Vec<Faces<'f>>,
+}
+
+/// Faces of a mesh.
+struct Faces<'f> {
     patches: Patches<f64>,
-    vertices: Vec<Vector<f64>>,
+    vertices: &'f [Vector<f64>],
 }
 
 /// A cell of a facet, with its points.
@@ -112,18 +125,65 @@ impl Bilinear {
     }
 }
 
-impl Bounds {
+impl<'f> Bounds<'f> {
     /// Of facets that are halved `deepest` times at most.
-    pub(super) fn new(topology: &Topology, facets: &[u32], deepest: u32) -> Result<Self, MeshError> {
-        let deepen = |builder: &mut super::kinds::Builder, _, kind| builder.deepen_all(kind, deepest + LEVELS);
-        let patches = Patches::new(topology, facets, deepen)?;
-        Ok(Self { patches, vertices: topology.mesh().data().positions.clone() })
+    pub(super) fn new(
+        topology: &'f Topology,
+        finer: &'f Finer,
+        facets: &[u32],
+        deepest: u32,
+    ) -> Result<Self, MeshError> {
+        let turned: Vec<Turned> = facets.iter().map(|&face| Turned { face, first: 0 }).collect();
+        let of_level = |level: &'f Level| Faces::new(&level.topology, &level.faces, deepest);
+        let levels = finer.levels.iter().map(of_level).collect::<Result<_, _>>()?;
+        Ok(Self { facets: facets.to_vec(), faces: Faces::new(topology, &turned, deepest)?, finer, levels })
     }
 
     /// The bound of a facet, by its index, that is halved so often.
     pub(super) fn bound(&self, index: usize, depth: u32) -> f64 {
-        let (kind, points) = self.patches.facet(index);
-        let points: Vec<Vector<f64>> = points.iter().map(|&vertex| self.vertices[vertex as usize]).collect();
+        match self.finer.node(self.facets[index]) {
+            Some(node) => self.of_part(Part::Node(node), depth),
+            None => self.faces.bound(index, depth),
+        }
+    }
+
+    fn of_part(&self, part: Part, depth: u32) -> f64 {
+        match part {
+            Part::Face { level, index } => self.levels[level as usize].bound(index as usize, depth),
+            Part::Node(node) if depth > 0 => {
+                let of_quarter = |quarter| self.of_part(quarter, depth - 1);
+                self.finer.quarters(node).map(of_quarter).into_iter().fold(0.0, f64::max)
+            }
+            // One face for several of a finer level: both are among the control points of these.
+            Part::Node(_) => {
+                let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+                self.finer.for_each_face(part, 0, &mut |level, index, _| {
+                    for point in self.levels[level as usize].points(index as usize) {
+                        bounds = [bounds[0].min(point.into()), bounds[1].max(point.into())];
+                    }
+                });
+                bounds[0].distance(bounds[1])
+            }
+        }
+    }
+}
+
+impl<'f> Faces<'f> {
+    fn new(topology: &'f Topology, faces: &[Turned], deepest: u32) -> Result<Self, MeshError> {
+        let deepen = |builder: &mut super::kinds::Builder, _, kind| builder.deepen_all(kind, deepest + LEVELS);
+        let patches = Patches::new(topology, faces, deepen)?;
+        Ok(Self { patches, vertices: &topology.mesh().data().positions })
+    }
+
+    /// The points around a face.
+    fn points(&self, index: usize) -> impl Iterator<Item = Vector<f64>> {
+        self.patches.facet(index).1.iter().map(|&vertex| self.vertices[vertex as usize])
+    }
+
+    /// The bound of a face that is halved so often.
+    fn bound(&self, index: usize, depth: u32) -> f64 {
+        let kind = self.patches.facet(index).0;
+        let points: Vec<Vector<f64>> = self.points(index).collect();
         if kind == PLAIN {
             return bend(&std::array::from_fn(|i| points[i].into()), depth, SPLITS);
         }

@@ -1,6 +1,7 @@
 //! How deep each facet is.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, PIECE};
+use super::finer::{Cell, Finer};
 use super::options::{Camera, Depth, DiceOptions};
 use crate::mesh::MeshError;
 use crate::topology::Topology;
@@ -13,46 +14,75 @@ const NEAR: f64 = 1e-4;
 /// How often each facet, a face of `topology`, is halved: `None` of those that are not drawn.
 pub(super) fn halvings(
     topology: &Topology,
+    finer: &Finer,
     drawn: &[bool],
     options: &DiceOptions,
 ) -> Result<Vec<Option<u32>>, MeshError> {
     let mesh = topology.mesh();
-    let by_length = |length: &(dyn Fn(u32) -> f64 + Sync), most: f64| -> Vec<u32> {
-        let of_facet = |facet: u32| {
-            let longest = (4 * facet..4 * facet + 4).map(length).fold(0.0, f64::max);
-            let halvings = (0..options.max_depth - 1).find(|&n| longest <= most * f64::from(1 << n));
-            halvings.unwrap_or(options.max_depth - 1)
+    let deepest = options.max_depth - 1;
+    let by_length = |length: &(dyn Fn(&Topology, u32) -> f64 + Sync), most: f64| -> Vec<u32> {
+        let of_face = |topology: &Topology, face: u32| {
+            let longest = (4 * face..4 * face + 4).map(|h| length(topology, h)).fold(0.0, f64::max);
+            (0..deepest).find(|&n| longest <= most * f64::from(1 << n)).unwrap_or(deepest)
+        };
+        let of_facet = |facet: u32| match finer.node(facet) {
+            Some(node) => of_cell(finer, Cell::Node(node), &of_face).min(deepest),
+            None => of_face(topology, facet),
         };
         (0..mesh.face_count() as u32).into_par_iter().map(of_facet).collect()
     };
-    let ends = |h: u32| [h, topology.next(h)].map(|h| mesh.position(topology.mesh_vertex(h)));
+    let ends =
+        |topology: &Topology, h: u32| [h, topology.next(h)].map(|h| topology.mesh().position(topology.mesh_vertex(h)));
     let mut depths = match &options.depth {
         Depth::Fixed(depth) => vec![depth - 1; mesh.face_count()],
         Depth::Each(depths) => depths.iter().map(|depth| depth - 1).collect(),
         Depth::EdgeLength(length) => by_length(
-            &|h| {
-                let [a, b] = ends(h);
+            &|topology, h| {
+                let [a, b] = ends(topology, h);
                 a.distance(b)
             },
             *length,
         ),
         Depth::Tolerance(distance) => {
             let facets: Vec<u32> = (0..).zip(drawn).filter(|(_, drawn)| **drawn).map(|(facet, _)| facet).collect();
-            let deepest = options.max_depth - 1;
-            let bounds = Bounds::new(topology, &facets, deepest)?;
-            let least = |index| (0..deepest).find(|&n| bounds.bound(index, n) <= *distance).unwrap_or(deepest);
-            let of_facets: Vec<u32> = (0..facets.len()).into_par_iter().map(least).collect();
             let mut depths = vec![0; mesh.face_count()];
-            facets.into_iter().zip(of_facets).for_each(|(facet, depth)| depths[facet as usize] = depth);
+            for piece in facets.chunks(PIECE) {
+                let bounds = Bounds::new(topology, finer, piece, deepest)?;
+                let least = |index| (0..deepest).find(|&n| bounds.bound(index, n) <= *distance).unwrap_or(deepest);
+                let of_facets: Vec<u32> = (0..piece.len()).into_par_iter().map(least).collect();
+                piece.iter().zip(of_facets).for_each(|(&facet, depth)| depths[facet as usize] = depth);
+            }
             depths
         }
         Depth::Pixels { pixels, camera } => {
             let seen = Seen::new(camera, mesh.data().positions.iter().map(|&p| p.into()));
-            by_length(&|h| if seen.is_outside(topology, h / 4) { 0.0 } else { seen.length(ends(h)) }, *pixels)
+            let length = |topology: &Topology, h: u32| match seen.is_outside(topology, h / 4) {
+                true => 0.0,
+                false => seen.length(ends(topology, h)),
+            };
+            by_length(&length, *pixels)
         }
     };
+    for (facet, depth) in (0..).zip(&mut depths) {
+        // Holes are made of whole cells.
+        *depth = finer.holes(facet).iter().map(|hole| hole.halvings).fold(*depth, u32::max);
+    }
     limit_steps(topology, drawn, &mut depths, options.max_step);
     Ok(depths.into_iter().zip(drawn).map(|(depth, drawn)| drawn.then_some(depth)).collect())
+}
+
+/// How often a part of a facet is halved whose faces are halved as `of_face` says.
+fn of_cell(finer: &Finer, cell: Cell, of_face: &impl Fn(&Topology, u32) -> u32) -> u32 {
+    match cell {
+        Cell::Node(node) => {
+            let of_quarters = finer.quarters(node).map(|quarter| of_cell(finer, quarter, of_face));
+            1 + of_quarters.into_iter().fold(0, u32::max)
+        }
+        Cell::Face { level, index } => {
+            let level = &finer.levels[level as usize];
+            of_face(&level.topology, level.faces[index as usize].face)
+        }
+    }
 }
 
 /// Makes facets deeper that differ from a deeper neighbour by more than a step.

@@ -1,6 +1,7 @@
 //! Facets at the points of their grids.
 
 use super::bicubic::{self, Basis, Net, Window};
+use super::finer::{Cell, Finer, PLACES};
 use super::kinds::{Refined, Shape};
 use super::patches::{PLAIN, Patches};
 use super::real::{Real, Vector, cross, subtract, unit};
@@ -20,17 +21,36 @@ pub(super) struct Arena<T> {
     stack: Vec<Vector<T>>,
 }
 
-/// The surface over the facets of a mesh, whose vertices are `vertices`.
+impl<T: Real> Arena<T> {
+    /// Makes room for a facet that is halved so often. What is there from before is overwritten.
+    fn resize(&mut self, depth: u32, with_normals: bool) {
+        let side = (1usize << depth) + 1;
+        let zero = [T::zero(); 3];
+        self.side = side;
+        self.with_normals = with_normals;
+        self.positions.resize(side * side, zero);
+        self.normals.resize(if with_normals { side * side } else { 0 }, zero);
+    }
+}
+
+/// The surface over the facets of a mesh.
 pub(super) struct Surface<'s, T> {
-    pub patches: &'s Patches<T>,
     /// By depth.
     pub bases: &'s [Basis<T>],
+    pub facets: Faces<'s, T>,
+    /// The parts of facets in finer levels, by level.
+    pub finer: Option<(&'s Finer, Vec<Faces<'s, T>>)>,
+}
+
+/// Faces of a mesh whose vertices are `vertices`.
+pub(super) struct Faces<'s, T> {
+    pub patches: &'s Patches<T>,
     pub vertices: &'s [Vector<f64>],
 }
 
 /// A part of a facet.
-#[derive(Clone, Copy)]
-struct Part {
+struct Part<'s, T> {
+    patches: &'s Patches<T>,
     kind: u32,
     /// Where its points start in the stack.
     points: usize,
@@ -43,29 +63,60 @@ struct Part {
 }
 
 impl<T: Real> Surface<'_, T> {
-    /// Evaluates a facet, given by its index, at `2^depth + 1` points along each side.
-    pub(super) fn evaluate(&self, facet: usize, depth: u32, with_normals: bool, arena: &mut Arena<T>) {
-        let side = (1usize << depth) + 1;
-        let zero = [T::zero(); 3];
-        arena.side = side;
-        arena.with_normals = with_normals;
-        // What is there from before is overwritten.
-        arena.positions.resize(side * side, zero);
-        arena.normals.resize(if with_normals { side * side } else { 0 }, zero);
-        let (kind, points) = self.patches.facet(facet);
-        let [x, y, z] = self.vertices[points[0] as usize];
+    /// Evaluates a facet, given by its index and its number, at `2^depth + 1` points along each side.
+    pub(super) fn evaluate(&self, index: usize, facet: u32, depth: u32, with_normals: bool, arena: &mut Arena<T>) {
+        arena.resize(depth, with_normals);
+        match self.finer.as_ref().and_then(|(finer, _)| finer.node(facet)) {
+            Some(node) => self.cell(Cell::Node(node), depth, [0, 0], arena),
+            None => self.face(&self.facets, index, depth, [0, 0], arena),
+        }
+    }
+
+    /// Evaluates a part of a facet.
+    fn cell(&self, cell: Cell, depth: u32, at: [usize; 2], arena: &mut Arena<T>) {
+        let Some((finer, levels)) = &self.finer else { return };
+        let node = match cell {
+            Cell::Face { level, index } => return self.face(&levels[level as usize], index as usize, depth, at, arena),
+            Cell::Node(node) => node,
+        };
+        if depth > 0 {
+            let half = 1 << (depth - 1);
+            for (quarter, place) in finer.quarters(node).into_iter().zip(PLACES) {
+                let [i, j] = [0, 1].map(|axis| at[axis] + place[axis] as usize * half);
+                self.cell(quarter, depth - 1, [i, j], arena);
+            }
+            return;
+        }
+        // The corners are those of the quarters there.
+        let mut corner = Arena::default();
+        corner.resize(0, arena.with_normals);
+        for (quarter, place) in finer.quarters(node).into_iter().zip(PLACES) {
+            self.cell(quarter, 0, [0, 0], &mut corner);
+            let [i, j] = place.map(|i| i as usize);
+            let to = (at[1] + j) * arena.side + at[0] + i;
+            arena.positions[to] = corner.positions[2 * j + i];
+            if arena.with_normals {
+                arena.normals[to] = corner.normals[2 * j + i];
+            }
+        }
+    }
+
+    /// Evaluates a face.
+    fn face(&self, faces: &Faces<'_, T>, index: usize, depth: u32, at: [usize; 2], arena: &mut Arena<T>) {
+        let (kind, points) = faces.patches.facet(index);
+        let [x, y, z] = faces.vertices[points[0] as usize];
         let [x, y, z] = [T::of(x).wide(), T::of(y).wide(), T::of(z).wide()];
         let origin = [x, y, z];
         let relative = |point: u32| {
-            let point = &self.vertices[point as usize];
+            let point = &faces.vertices[point as usize];
             [T::of(point[0] - x), T::of(point[1] - y), T::of(point[2] - z)]
         };
         if kind == PLAIN {
-            return self.regular(&Net::new(|i| relative(points[i]), origin), depth, [0, 0], arena);
+            return self.regular(&Net::new(|i| relative(points[i]), origin), depth, at, arena);
         }
         arena.stack.clear();
         arena.stack.extend(points.iter().map(|&point| relative(point)));
-        self.part(Part { kind, points: 0, origin, depth, at: [0, 0] }, arena);
+        self.part(Part { patches: faces.patches, kind, points: 0, origin, depth, at }, arena);
     }
 
     fn regular(&self, net: &Net<T>, depth: u32, at: [usize; 2], arena: &mut Arena<T>) {
@@ -75,8 +126,8 @@ impl<T: Real> Surface<'_, T> {
         bicubic::evaluate(net, &self.bases[depth as usize], window);
     }
 
-    fn part(&self, part: Part, arena: &mut Arena<T>) {
-        match &self.patches.kinds[part.kind as usize].shape {
+    fn part(&self, part: Part<'_, T>, arena: &mut Arena<T>) {
+        match &part.patches.kinds[part.kind as usize].shape {
             Shape::Regular(rows) => {
                 let points = &arena.stack[part.points..];
                 let net = Net::new(|i| rows.get(i, points), part.origin);
@@ -88,7 +139,7 @@ impl<T: Real> Surface<'_, T> {
         }
     }
 
-    fn corners(&self, rows: &Sums<T>, part: Part, arena: &mut Arena<T>) {
+    fn corners(&self, rows: &Sums<T>, part: Part<'_, T>, arena: &mut Arena<T>) {
         for (k, [i, j]) in [[0, 0], [1, 0], [1, 1], [0, 1]].into_iter().enumerate() {
             let points = &arena.stack[part.points..];
             let position = rows.get(3 * k, points);
@@ -101,7 +152,7 @@ impl<T: Real> Surface<'_, T> {
         }
     }
 
-    fn quarters(&self, refined: &Refined<T>, part: Part, arena: &mut Arena<T>) {
+    fn quarters(&self, refined: &Refined<T>, part: Part<'_, T>, arena: &mut Arena<T>) {
         let start = arena.stack.len();
         for i in 0..refined.points.len() {
             let point = refined.points.get(i, &arena.stack[part.points..start]);
@@ -118,7 +169,8 @@ impl<T: Real> Surface<'_, T> {
             }
             let origin = std::array::from_fn(|axis| part.origin[axis] + corner[axis].wide());
             let at = [part.at[0] + i * half, part.at[1] + j * half];
-            self.part(Part { kind: quarter.kind, points, origin, depth: part.depth - 1, at }, arena);
+            let (patches, kind, depth) = (part.patches, quarter.kind, part.depth - 1);
+            self.part(Part { patches, kind, points, origin, depth, at }, arena);
             arena.stack.truncate(points);
         }
         arena.stack.truncate(start);

@@ -24,9 +24,7 @@ impl FaceWriter {
             for i in 0..segments {
                 let corner = j * self.side + i;
                 let vertices = [corner, corner + 1, corner + self.side + 1, corner + self.side].map(|at| self.grid[at]);
-                let on_edge = [j == 0, i + 1 == segments, j + 1 == segments, i == 0];
-                let halvings: [u32; 4] =
-                    std::array::from_fn(|k| if on_edge[k] { facet.edges[k] - facet.depth } else { 0 });
+                let Some(halvings) = facet.cell(i, j) else { continue };
                 if halvings == [0; 4] {
                     *quads.next().expect("as many as were counted") = vertices;
                     continue;

@@ -1,7 +1,7 @@
 //! Positions, normals and texture coordinates of a plan.
 
 use super::error::DiceError;
-use super::evaluate::{Arena, Surface};
+use super::evaluate::{Arena, Faces, Surface};
 use super::layout::Facet;
 use super::plan::Plan;
 use super::real::{Real, Vector, cross, subtract, unit};
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 const MIN_LEN: usize = 16;
 
 /// Where what a facet writes goes: what it owns, and its copies.
-struct Slots<'o, V> {
+pub(super) struct Slots<'o, V> {
     owned: &'o mut [V],
     copies: &'o mut [V],
     /// The vertices of the first of each.
@@ -31,15 +31,19 @@ impl<V> Slots<'_, V> {
     }
 }
 
-/// Cuts an array into the parts that facets write.
-fn slots<'o, V>(facets: &[Facet], owned: u32, array: &'o mut [V]) -> Vec<Slots<'o, V>> {
-    let (mut first, mut copies) = array.split_at_mut(owned as usize);
+/// Cuts what some facets next to each other own, and their copies, into the parts that each writes. `ends` is where both end.
+pub(super) fn slots<'o, V>(
+    facets: &[Facet],
+    [end_of_owned, end_of_copies]: [u32; 2],
+    owned: &'o mut [V],
+    copies: &'o mut [V],
+) -> Vec<Slots<'o, V>> {
+    let (mut first, mut copies) = (owned, copies);
     let end = |of: fn(&Facet) -> u32, i: usize, last: u32| facets.get(i + 1).map_or(last, of);
-    let last_copy = owned + copies.len() as u32;
     let mut slots = Vec::with_capacity(facets.len());
     for (i, facet) in facets.iter().enumerate() {
-        let (own, rest) = first.split_at_mut((end(|f| f.first, i, owned) - facet.first) as usize);
-        let (copy, rest_of_copies) = copies.split_at_mut((end(|f| f.copies, i, last_copy) - facet.copies) as usize);
+        let (own, rest) = first.split_at_mut((end(|f| f.first, i, end_of_owned) - facet.first) as usize);
+        let (copy, rest_of_copies) = copies.split_at_mut((end(|f| f.copies, i, end_of_copies) - facet.copies) as usize);
         (first, copies) = (rest, rest_of_copies);
         slots.push(Slots { owned: own, copies: copy, first: facet.first, first_copy: facet.copies });
     }
@@ -119,6 +123,16 @@ fn check(what: &'static str, given: usize, count: usize) -> Result<(), DiceError
     if given == count { Ok(()) } else { Err(DiceError::Count { what, given, count }) }
 }
 
+/// The vertices of facets, and of finer levels.
+pub(super) struct Evaluated {
+    vertices: Vec<Vector<f64>>,
+    levels: Vec<Vec<Vector<f64>>>,
+}
+
+fn arrays(vectors: Vec<DVec3>) -> Vec<Vector<f64>> {
+    vectors.into_iter().map(Into::into).collect()
+}
+
 impl<T: Real> Plan<T> {
     /// Fills the caller's arrays for these control vertices.
     ///
@@ -134,30 +148,88 @@ impl<T: Real> Plan<T> {
         let count = self.layout.vertices();
         check("positions", out.positions.len(), count)?;
         check("normals", out.normals.len(), count)?;
-        let vertices: Vec<Vector<f64>> = self.stencils.apply(control).into_iter().map(Into::into).collect();
-        let surface = Surface { patches: &self.patches, bases: &self.bases, vertices: &vertices };
-        let facets = self.facets();
-        let owned = self.layout.owned;
-        let positions = slots(facets, owned, out.positions);
-        let normals = slots(facets, owned, out.normals);
-        let work = facets.par_iter().enumerate().zip(positions).zip(normals).with_min_len(MIN_LEN);
-        work.for_each_init(Arena::default, |arena, (((index, facet), mut positions), mut normals)| {
-            surface.evaluate(index, facet.depth, true, arena);
-            facet.write(&mut positions, &arena.positions);
-            facet.write(&mut normals, &arena.normals);
-            for k in facet.finer_copies() {
-                surface.evaluate(index, facet.edges[k], true, arena);
-                facet.write_edge(&mut normals, k, &arena.normals);
-            }
-        });
-        for (vertex, fan) in &self.layout.blunt {
-            out.normals[*vertex as usize] = self.mean_normal(fan, &vertices);
+        let evaluated = self.evaluated(control);
+        let (facets, owned) = (self.facets(), self.layout.owned as usize);
+        let ends = self.ends_of(facets);
+        let slots = |array| {
+            let (owned, copies) = <[_]>::split_at_mut(array, owned);
+            slots(facets, ends, owned, copies)
+        };
+        let (positions, normals) = (slots(&mut *out.positions), slots(&mut *out.normals));
+        self.evaluate_facets(&self.surface(&evaluated), facets, positions, normals);
+        for (vertex, normal) in self.blunt_normals(&evaluated) {
+            out.normals[vertex as usize] = normal;
         }
-        for (copy, source) in (owned as usize..).zip(&self.layout.sources) {
+        for (copy, source) in (owned..).zip(&self.layout.sources) {
             out.positions[copy] = out.positions[source.position as usize];
             out.normals[copy] = out.normals[source.normal as usize];
         }
         Ok(())
+    }
+
+    /// All vertices for these control vertices.
+    pub(super) fn evaluated(&self, control: &[DVec3]) -> Evaluated {
+        let mut vertices = self.stencils.apply(control);
+        self.edits.apply(&mut vertices);
+        let levels = self.finer.vertices(&vertices).into_iter().map(arrays).collect();
+        Evaluated { vertices: arrays(vertices), levels }
+    }
+
+    pub(super) fn surface<'s>(&'s self, evaluated: &'s Evaluated) -> Surface<'s, T> {
+        let levels = self.finer_patches.iter().zip(&evaluated.levels);
+        let levels: Vec<Faces<T>> = levels.map(|(patches, vertices)| Faces { patches, vertices }).collect();
+        Surface {
+            bases: &self.bases,
+            facets: Faces { patches: &self.patches, vertices: &evaluated.vertices },
+            finer: (!levels.is_empty()).then_some((&self.finer, levels)),
+        }
+    }
+
+    /// Where what some facets own, and their copies, end.
+    pub(super) fn ends_of(&self, facets: &[Facet]) -> [u32; 2] {
+        let next = facets.last().and_then(|last| self.facets().get(self.index_of(last) + 1));
+        next.map_or([self.layout.owned, self.layout.vertices() as u32], |next| [next.first, next.copies])
+    }
+
+    /// Writes positions and normals of some facets next to each other.
+    pub(super) fn evaluate_facets(
+        &self,
+        surface: &Surface<'_, T>,
+        facets: &[Facet],
+        positions: Vec<Slots<'_, Vector<T>>>,
+        normals: Vec<Slots<'_, Vector<T>>>,
+    ) {
+        let first = facets.first().map_or(0, |facet| self.index_of(facet));
+        let work = facets.par_iter().enumerate().zip(positions).zip(normals).with_min_len(MIN_LEN);
+        work.for_each_init(Arena::default, |arena, (((index, facet), mut positions), mut normals)| {
+            surface.evaluate(first + index, facet.facet, facet.depth, true, arena);
+            facet.write(&mut positions, &arena.positions);
+            facet.write(&mut normals, &arena.normals);
+            for k in facet.finer_copies() {
+                surface.evaluate(first + index, facet.facet, facet.edges[k], true, arena);
+                facet.write_edge(&mut normals, k, &arena.normals);
+            }
+        });
+    }
+
+    /// As [`Plan::evaluate_facets`], but for normals.
+    pub(super) fn evaluate_positions(
+        &self,
+        surface: &Surface<'_, T>,
+        facets: &[Facet],
+        positions: Vec<Slots<'_, Vector<T>>>,
+    ) {
+        let first = facets.first().map_or(0, |facet| self.index_of(facet));
+        let work = facets.par_iter().enumerate().zip(positions).with_min_len(MIN_LEN);
+        work.for_each_init(Arena::default, |arena, ((index, facet), mut positions)| {
+            surface.evaluate(first + index, facet.facet, facet.depth, false, arena);
+            facet.write(&mut positions, &arena.positions);
+        });
+    }
+
+    /// Vertices whose normals are means, with these.
+    pub(super) fn blunt_normals(&self, evaluated: &Evaluated) -> impl Iterator<Item = (u32, Vector<T>)> {
+        self.layout.blunt.iter().map(|(vertex, fan)| (*vertex, self.mean_normal(fan, &evaluated.vertices)))
     }
 
     /// The mean normal of the facets around a vertex that start with these half-edges.
@@ -178,29 +250,39 @@ impl<T: Real> Plan<T> {
     /// # Errors
     /// As [`Plan::fill`].
     pub fn fill_texcoords(&self, out: &mut [[f32; 2]]) -> Result<(), DiceError> {
-        let Some(texcoords) = &self.texcoords else { return Ok(()) };
+        if self.texcoords.is_none() {
+            return Ok(());
+        }
         check("texture coordinates", out.len(), self.layout.vertices())?;
         let facets = self.facets();
-        let work = facets.par_iter().enumerate().zip(slots(facets, self.layout.owned, out)).with_min_len(MIN_LEN);
+        let (owned, copies) = out.split_at_mut(self.layout.owned as usize);
+        self.evaluate_texcoords(facets, slots(facets, self.ends_of(facets), owned, copies));
+        Ok(())
+    }
+
+    /// Writes the texture coordinates of some facets next to each other.
+    pub(super) fn evaluate_texcoords(&self, facets: &[Facet], slots: Vec<Slots<'_, [f32; 2]>>) {
+        let Some(texcoords) = &self.texcoords else { return };
+        let first = facets.first().map_or(0, |facet| self.index_of(facet));
+        let work = facets.par_iter().enumerate().zip(slots).with_min_len(MIN_LEN);
         match texcoords {
             Texcoords::Linear(corners) => work.for_each(|((_, facet), mut slots)| {
                 let corners = &corners[facet.facet as usize];
                 facet.for_each_written(|vertex, uv| *slots.at(vertex) = bilinear(corners, uv));
             }),
             Texcoords::Smooth { patches, values } => {
-                let surface = Surface { patches, bases: &self.bases, vertices: values };
+                let surface = Surface { bases: &self.bases, facets: Faces { patches, vertices: values }, finer: None };
                 let flat = |p: &[T; 3]| [p[0], p[1]].map(|x| x.wide() as f32);
                 work.for_each_init(Arena::default, |arena, ((index, facet), mut slots)| {
-                    surface.evaluate(index, facet.depth, false, arena);
+                    surface.evaluate(first + index, facet.facet, facet.depth, false, arena);
                     facet.write(&mut slots, &arena.positions.iter().map(flat).collect::<Vec<_>>());
                     for k in facet.finer_copies() {
-                        surface.evaluate(index, facet.edges[k], false, arena);
+                        surface.evaluate(first + index, facet.facet, facet.edges[k], false, arena);
                         facet.write_edge(&mut slots, k, &arena.positions.iter().map(flat).collect::<Vec<_>>());
                     }
                 });
             }
         }
-        Ok(())
     }
 
     /// Fills the caller's arrays of faces, counter-clockwise seen from outside.

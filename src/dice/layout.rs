@@ -9,6 +9,7 @@
 //! crease, or a seam.
 
 use super::error::DiceError;
+use super::finer::Hole;
 use super::sectors::{Corners, Role};
 use crate::topology::Topology;
 
@@ -34,6 +35,7 @@ pub(super) struct Facet {
     pub quads: u32,
     /// Its first triangle.
     pub triangles: u32,
+    pub holes: Box<[Hole]>,
 }
 
 /// Where a copy takes from what it has in common with others.
@@ -84,10 +86,12 @@ fn rank(roles: [(Role, u32); 4], k: usize) -> u32 {
 }
 
 impl Layout {
-    /// `depths` tells how often each facet is halved, `None` of those that are left out; `splits` what lies along each half-edge.
-    pub(super) fn new(
+    /// `depths` tells how often each facet is halved, `None` of those that are left out; `holes` their holes; `splits` what lies along
+    /// each half-edge.
+    pub(super) fn new<'h>(
         topology: &Topology,
         depths: &[Option<u32>],
+        holes: impl Fn(u32) -> &'h [Hole],
         splits: impl Fn(u32) -> Split,
     ) -> Result<Self, DiceError> {
         let corners = Corners::new(topology, depths, &splits);
@@ -98,6 +102,7 @@ impl Layout {
             let Some(depth) = *depth else { continue };
             places[number as usize] = facets.len() as u32;
             let mut facet = Facet::new(topology, &corners, depths, &splits, number, depth);
+            facet.holes = holes(number).into();
             [facet.first, facet.copies] = [owned, copies].map(|count| count as u32);
             [facet.quads, facet.triangles] = [quads, triangles].map(|count| count as u32);
             let [of_owned, of_copies] = facet.place();
@@ -202,7 +207,19 @@ impl Facet {
             };
         }
         let corners = std::array::from_fn(|k| (corners.roles[4 * facet as usize + k], 0));
-        Self { facet, depth, edges, corners, sides, inside: 0, first: 0, copies: 0, quads: 0, triangles: 0 }
+        Self {
+            facet,
+            depth,
+            edges,
+            corners,
+            sides,
+            inside: 0,
+            first: 0,
+            copies: 0,
+            quads: 0,
+            triangles: 0,
+            holes: [].into(),
+        }
     }
 
     /// Places what the facet writes. Gives the numbers of vertices that it owns, and of copies.
@@ -241,9 +258,26 @@ impl Facet {
         (0..4).filter(|&k| self.sides[k].0 == Role::Copy && self.is_finer(k))
     }
 
+    /// How often the sides of a cell of the grid are halved, from the one at its corner; `None` if it is a hole.
+    pub(super) fn cell(&self, i: usize, j: usize) -> Option<[u32; 4]> {
+        if self.holes.iter().any(|hole| hole.has([i as u32, j as u32], self.depth)) {
+            return None;
+        }
+        let last = (1usize << self.depth) - 1;
+        let on_edge = [j == 0, i == last, j == last, i == 0];
+        Some(std::array::from_fn(|k| if on_edge[k] { self.edges[k] - self.depth } else { 0 }))
+    }
+
     /// Numbers of quads and of triangles.
-    fn face_counts(&self) -> [u64; 2] {
+    pub(super) fn face_counts(&self) -> [u64; 2] {
         let segments = 1u64 << self.depth;
+        if !self.holes.is_empty() {
+            let cells = (0..segments * segments).map(|cell| [cell % segments, cell / segments].map(|i| i as usize));
+            return cells.filter_map(|[i, j]| self.cell(i, j)).fold([0, 0], |[quads, triangles], halvings| {
+                let points: u64 = halvings.iter().map(|&halvings| 1u64 << halvings).sum();
+                if points == 4 { [quads + 1, triangles] } else { [quads, triangles + points - 2] }
+            });
+        }
         let finer: Vec<usize> = (0..4).filter(|&k| self.is_finer(k)).collect();
         let added: u64 = finer.iter().map(|&k| (1 << self.edges[k]) - segments).sum();
         let cells = match segments {

@@ -1,5 +1,6 @@
 //! The facets of a mesh of quads, each with its kind and the points around it.
 
+use super::finer::{Cell, Finer, Turned};
 use super::kinds::{Builder, Kind};
 use super::layout::Facet;
 use super::real::Real;
@@ -13,6 +14,9 @@ use rayon::prelude::*;
 /// In the place of a kind: a B-spline patch of 16 vertices with nothing beside it, number `4 i + j` with index i along u and j
 /// along v.
 pub(super) const PLAIN: u32 = u32::MAX;
+
+/// Facets that are looked at together.
+const PIECE: usize = 1 << 14;
 
 /// What makes the surface over each facet.
 pub(super) struct Patches<T> {
@@ -29,14 +33,13 @@ impl<T: Real> Patches<T> {
     /// Of facets that are faces of the mesh. `deepen` makes what the facet with an index, of a kind, is evaluated with.
     pub(super) fn new(
         topology: &Topology,
-        facets: &[u32],
+        facets: &[Turned],
         deepen: impl Fn(&mut Builder, usize, u32) -> Result<(), MeshError>,
     ) -> Result<Self, MeshError> {
-        let part = |&facet: &u32| {
-            let is_plain = (4 * facet..4 * facet + 4).all(|h| is_plain(topology, h));
-            (!is_plain).then(|| Local::cut(topology, facet, 0, DVec3::ZERO))
+        let part = |facet: &Turned| {
+            let is_plain = (0..4).all(|k| is_plain(topology, facet.half_edge(k)));
+            (!is_plain).then(|| Local::cut(topology, facet.face, facet.first as usize, DVec3::ZERO))
         };
-        let parts: Vec<Option<Local>> = facets.par_iter().with_min_len(256).map(part).collect();
         let mut builder = Builder::default();
         let mut patches = Self {
             kinds: Vec::new(),
@@ -44,7 +47,10 @@ impl<T: Real> Patches<T> {
             starts: vec![0],
             points: Vec::with_capacity(16 * facets.len()),
         };
-        for (index, part) in parts.into_iter().enumerate() {
+        // No more neighbourhoods are kept at a time than a piece has.
+        let parts =
+            facets.chunks(PIECE).flat_map(|piece| piece.par_iter().with_min_len(256).map(part).collect::<Vec<_>>());
+        for (index, part) in parts.enumerate() {
             patches.of_facets.push(match part {
                 Some(part) => {
                     patches.points.extend(part.vertices);
@@ -53,7 +59,7 @@ impl<T: Real> Patches<T> {
                     kind
                 }
                 None => {
-                    patches.points.extend(grid(topology, [0, 1, 2, 3].map(|k| 4 * facets[index] + k)));
+                    patches.points.extend(grid(topology, [0, 1, 2, 3].map(|k| facets[index].half_edge(k))));
                     PLAIN
                 }
             });
@@ -65,12 +71,32 @@ impl<T: Real> Patches<T> {
 
     /// Of facets with all that they write.
     pub(super) fn of_layout(topology: &Topology, facets: &[Facet]) -> Result<Self, MeshError> {
-        let numbers: Vec<u32> = facets.iter().map(|facet| facet.facet).collect();
+        let numbers: Vec<Turned> = facets.iter().map(|facet| Turned { face: facet.facet, first: 0 }).collect();
         Self::new(topology, &numbers, |builder, index, kind| {
             let facet = &facets[index];
             builder.deepen(kind, facet.depth)?;
             facet.finer_copies().try_for_each(|k| builder.deepen(kind, facet.edges[k]))
         })
+    }
+
+    /// Of the finer parts of facets, by level.
+    pub(super) fn of_finer(finer: &Finer, facets: &[Facet]) -> Result<Vec<Self>, MeshError> {
+        let mut depths: Vec<Vec<Vec<u32>>> =
+            finer.levels.iter().map(|level| vec![Vec::new(); level.faces.len()]).collect();
+        for facet in facets {
+            let Some(node) = finer.node(facet.facet) else { continue };
+            for depth in std::iter::once(facet.depth).chain(facet.finer_copies().map(|k| facet.edges[k])) {
+                finer.for_each_face(Cell::Node(node), depth, &mut |level, index, depth| {
+                    depths[level as usize][index as usize].push(depth);
+                });
+            }
+        }
+        let of_level = |(level, depths): (&super::finer::Level, &Vec<Vec<u32>>)| {
+            Self::new(&level.topology, &level.faces, |builder, index, kind| {
+                depths[index].iter().try_for_each(|&depth| builder.deepen(kind, depth))
+            })
+        };
+        finer.levels.iter().zip(&depths).map(of_level).collect()
     }
 
     /// The kind of a facet by its index, and the vertices that are its points.

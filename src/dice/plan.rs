@@ -1,16 +1,18 @@
 //! All about a tessellation that does not depend on positions.
 
 use super::bicubic::Basis;
-use super::bounds::Bounds;
+use super::bounds::{self, Bounds};
 use super::depth::halvings;
 use super::error::DiceError;
+use super::faces::FaceWriter;
+use super::finer::Finer;
 use super::layout::{Facet, Layout, Split};
 use super::options::DiceOptions;
 use super::patches::Patches;
 use super::place::{Place, place};
 use super::real::Real;
 use super::texcoords::Texcoords;
-use crate::limit::{Stencils, refine};
+use crate::limit::{Stencils, VertexEdits, refine};
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::Topology;
 use rayon::prelude::*;
@@ -19,7 +21,7 @@ use rayon::prelude::*;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Sizes {
-    /// Vertices, those that share their position with another included.
+    /// Vertices, those that share their position with another included, and those inside holes of edits ([`Plan::unused`]).
     pub vertices: usize,
     /// Vertices with a position of their own; they come first.
     pub positions: usize,
@@ -38,9 +40,13 @@ pub struct Plan<T> {
     /// The corner of a coarse face in which each facet lies, by face: sizes of the coarse faces.
     pub(super) face_offsets: Vec<u32>,
     pub(super) stencils: Stencils,
+    pub(super) edits: VertexEdits,
     pub(super) control_vertices: usize,
     pub(super) layout: Layout,
     pub(super) patches: Patches<T>,
+    pub(super) finer: Finer,
+    /// By level.
+    pub(super) finer_patches: Vec<Patches<T>>,
     pub(super) bases: Vec<Basis<T>>,
     pub(super) texcoords: Option<Texcoords<T>>,
 }
@@ -60,7 +66,8 @@ impl<T: Real> Plan<T> {
         if !drawn.contains(&true) {
             return Err(DiceError::NothingDrawn);
         }
-        let depths = halvings(&refined, &drawn, options)?;
+        let finer = Finer::new(&refined, &drawn)?;
+        let depths = halvings(&refined, &finer, &drawn, options)?;
         let seams = seams(topology);
         let split = |h: u32| {
             let is_inside = refined.twin(h).is_some_and(|twin| drawn[twin as usize / 4]);
@@ -73,18 +80,22 @@ impl<T: Real> Plan<T> {
             };
             Split { crease, seam: is_inside && edge.is_some_and(|edge| seams.get(edge as usize) == Some(&true)) }
         };
-        let layout = Layout::new(&refined, &depths, split)?;
+        let layout = Layout::new(&refined, &depths, |facet| finer.holes(facet), split)?;
         let patches = Patches::of_layout(&refined, &layout.facets)?;
+        let finer_patches = Patches::of_finer(&finer, &layout.facets)?;
         let deepest = depths.iter().flatten().copied().max().unwrap_or(0);
         let bases = (0..=deepest).map(Basis::new).collect();
         let texcoords = Texcoords::new(&refined, &layout.facets)?;
         Ok(Self {
             face_offsets: mesh.face_offsets().to_vec(),
             stencils: coarse.stencils,
+            edits: coarse.edits,
             control_vertices: mesh.vertex_count(),
             refined,
             layout,
             patches,
+            finer,
+            finer_patches,
             bases,
             texcoords,
         })
@@ -128,11 +139,14 @@ impl<T: Real> Plan<T> {
     /// # Errors
     /// [`DiceError::Mesh`] if the refined mesh is too large.
     pub fn error_bound(&self) -> Result<f64, DiceError> {
-        let facets: Vec<u32> = self.facets().iter().map(|facet| facet.facet).collect();
         let deepest = self.bases.len() as u32 - 1;
-        let bounds = Bounds::new(&self.refined, &facets, deepest)?;
-        let of_facet = |(index, facet): (usize, &Facet)| bounds.bound(index, facet.depth);
-        Ok(self.facets().par_iter().enumerate().map(of_facet).reduce(|| 0.0, f64::max))
+        let of_piece = |piece: &[Facet]| -> Result<f64, DiceError> {
+            let facets: Vec<u32> = piece.iter().map(|facet| facet.facet).collect();
+            let bounds = Bounds::new(&self.refined, &self.finer, &facets, deepest)?;
+            let of_facet = |(index, facet): (usize, &Facet)| bounds.bound(index, facet.depth);
+            Ok(piece.par_iter().enumerate().map(of_facet).reduce(|| 0.0, f64::max))
+        };
+        self.facets().chunks(bounds::PIECE).map(of_piece).try_fold(0.0, |most, bound| Ok(f64::max(most, bound?)))
     }
 
     /// The vertex whose position a vertex has: itself unless it is a copy along a crease or a seam.
@@ -155,6 +169,37 @@ impl<T: Real> Plan<T> {
             });
         }
         places
+    }
+
+    /// Vertices that belong to no face, in order: those inside holes of edits. Positions of copies that belong to one are not
+    /// among them.
+    pub fn unused(&self) -> Vec<u32> {
+        let facets = self.facets();
+        if facets.iter().all(|facet| facet.holes.is_empty()) {
+            return Vec::new();
+        }
+        let mut is_used = vec![false; self.layout.vertices()];
+        let mut writer = FaceWriter::default();
+        for facet in facets {
+            let [quads, triangles] = facet.face_counts().map(|count| count as usize);
+            let (mut quads, mut triangles) = (vec![[0; 4]; quads], vec![[0; 3]; triangles]);
+            writer.write(facet, &mut quads, &mut triangles);
+            for &vertex in quads.as_flattened().iter().chain(triangles.as_flattened()) {
+                is_used[vertex as usize] = true;
+                is_used[self.position_of(vertex) as usize] = true;
+            }
+        }
+        (0..).zip(is_used).filter(|(_, is_used)| !is_used).map(|(vertex, _)| vertex).collect()
+    }
+
+    /// Index of a facet of the plan.
+    pub(super) fn index_of(&self, facet: &Facet) -> usize {
+        self.facets().partition_point(|other| other.facet < facet.facet)
+    }
+
+    /// Index of the facet that owns a vertex, which is no copy.
+    pub(super) fn owner(&self, vertex: u32) -> usize {
+        self.facets().partition_point(|facet| facet.first <= vertex) - 1
     }
 
     pub(super) fn facets(&self) -> &[Facet] {

@@ -5,7 +5,7 @@ use super::fill::VerticesMut;
 use super::options::DiceOptions;
 use super::place::Place;
 use super::plan::{Plan, Sizes};
-use super::real::Real;
+use super::real::{Real, Vector};
 use crate::topology::Topology;
 use glam::DVec3;
 
@@ -17,6 +17,18 @@ pub struct Tessellation<T = f32> {
     pub(super) texcoords: Option<Vec<[f32; 2]>>,
     pub(super) quads: Vec<[u32; 4]>,
     pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// A quad with corners at these positions, cut along the shorter diagonal.
+pub(super) fn halves<T: Real>([a, b, c, d]: [u32; 4], corners: [Vector<T>; 4]) -> [[u32; 3]; 2] {
+    let distance = |i: usize, j: usize| {
+        let [a, b] = [corners[i], corners[j]];
+        (0..3).fold(T::zero(), |sum, axis| sum + (a[axis] - b[axis]) * (a[axis] - b[axis]))
+    };
+    match distance(0, 2) <= distance(1, 3) {
+        true => [[a, b, c], [a, c, d]],
+        false => [[a, b, d], [b, c, d]],
+    }
 }
 
 impl<T: Real> Tessellation<T> {
@@ -108,15 +120,8 @@ impl<T: Real> Tessellation<T> {
 
     /// All faces as triangles, quads cut along their shorter diagonals.
     pub fn all_triangles(&self) -> Vec<[u32; 3]> {
-        let distance = |a: u32, b: u32| {
-            let [a, b] = [a, b].map(|vertex| self.positions[vertex as usize]);
-            (0..3).fold(T::zero(), |sum, axis| sum + (a[axis] - b[axis]) * (a[axis] - b[axis]))
-        };
-        let halves = |&[a, b, c, d]: &[u32; 4]| match distance(a, c) <= distance(b, d) {
-            true => [[a, b, c], [a, c, d]],
-            false => [[a, b, d], [b, c, d]],
-        };
-        self.quads.iter().flat_map(halves).chain(self.triangles.iter().copied()).collect()
+        let cut = |&quad: &[u32; 4]| halves(quad, quad.map(|vertex| self.positions[vertex as usize]));
+        self.quads.iter().flat_map(cut).chain(self.triangles.iter().copied()).collect()
     }
 
     /// Where on the control mesh each vertex is.

@@ -14,6 +14,8 @@ use crate::gpu::{ContextOptions, DeviceContext, DeviceProperties, Features, GpuE
 
 mod devices;
 mod error;
+#[cfg(feature = "exr")]
+mod exr;
 mod instance;
 mod offscreen;
 mod query;

@@ -34,18 +34,17 @@ impl Texels {
         (1.0 - t) * row(y0) + t * row(y1)
     }
 
-    /// Reads a picture: heights (its red channel) or vectors. Integers become numbers from 0 to 1; EXR files (feature `exr`)
-    /// are read as they are.
+    /// Reads a picture: heights (its red channel; of an EXR file without colours Y, Z, or whichever is the only one) or vectors.
+    /// Integers become numbers from 0 to 1; EXR files (feature `exr`) are read as they are.
     ///
     /// # Errors
     /// [`HeadlessError::Picture`].
     #[cfg(feature = "png")]
     pub fn open(path: impl AsRef<std::path::Path>, vectors: bool) -> Result<Self, HeadlessError> {
         let path = path.as_ref();
-        let error = |message: String| HeadlessError::Picture { path: path.to_owned(), message };
-        let reader = image::ImageReader::open(path).and_then(image::ImageReader::with_guessed_format);
-        let picture = reader.map_err(|e| error(e.to_string()))?.decode().map_err(|e| error(e.to_string()))?;
-        Self::of_picture(picture, vectors).ok_or_else(|| error("it has values that are no finite numbers".into()))
+        let read = std::fs::read(path).map_err(|error| error.to_string());
+        let texels = read.and_then(|bytes| Self::decode(&bytes, vectors));
+        texels.map_err(|message| HeadlessError::Picture { path: path.to_owned(), message })
     }
 
     /// The same from the contents of a file.
@@ -54,17 +53,26 @@ impl Texels {
     /// Reason, in words.
     #[cfg(feature = "png")]
     pub fn decode(bytes: &[u8], vectors: bool) -> Result<Self, String> {
-        let picture = image::load_from_memory(bytes).map_err(|e| e.to_string())?;
-        Self::of_picture(picture, vectors).ok_or_else(|| "it has values that are no finite numbers".into())
+        #[cfg(feature = "exr")]
+        if !vectors && let Some(texels) = super::exr::heights(bytes)? {
+            return texels.checked();
+        }
+        Self::of_picture(image::load_from_memory(bytes).map_err(|e| e.to_string())?, vectors).checked()
     }
 
     #[cfg(feature = "png")]
-    fn of_picture(picture: image::DynamicImage, vectors: bool) -> Option<Self> {
+    fn checked(self) -> Result<Self, String> {
+        let is_finite = self.values.iter().all(|x| x.is_finite());
+        if is_finite { Ok(self) } else { Err("it has values that are no finite numbers".into()) }
+    }
+
+    #[cfg(feature = "png")]
+    fn of_picture(picture: image::DynamicImage, vectors: bool) -> Self {
         let (width, height) = (picture.width(), picture.height());
         let texels = picture.into_rgba32f().into_raw();
         let (channels, values) =
             if vectors { (4, texels) } else { (1, texels.chunks_exact(4).map(|texel| texel[0]).collect()) };
-        values.iter().all(|x: &f32| x.is_finite()).then_some(Self { width, height, channels, values })
+        Self { width, height, channels, values }
     }
 
     /// The least and the largest value of what is looked at.

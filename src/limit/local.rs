@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 /// The part of a mesh on which the surface over one face depends, as a mesh of its own.
 ///
 /// The face is face 0. What the rules make of the rim of the part is not the surface's; none of it reaches face 0.
+#[derive(Debug, Clone)]
 pub(crate) struct Local {
     /// To be added to the positions. They are relative to a vertex of the face, so that they keep their precision
     /// however small the face has become.
@@ -21,8 +22,17 @@ impl Local {
     /// Cuts out `face` with its neighbourhood. Its corner `first` becomes corner 0.
     pub(crate) fn cut(topology: &Topology, face: u32, first: usize, origin: DVec3) -> Self {
         let mesh = topology.mesh();
-        let faces = neighbourhood(topology, face);
         let centre = mesh.position(mesh.face(face)[0]);
+        let mut local = Self::of_faces(topology, &neighbourhood(topology, face), centre);
+        let size = local.data.face_sizes[0] as usize;
+        local.data.face_vertices[..size].rotate_left(first);
+        local.origin += origin;
+        local
+    }
+
+    /// Cuts out some faces, which are numbered in this order. Positions are relative to `origin`.
+    pub(crate) fn of_faces(topology: &Topology, faces: &[u32], origin: DVec3) -> Self {
+        let mesh = topology.mesh();
         let mut numbers = HashMap::new();
         let mut vertices = Vec::new();
         let mut data = MeshData {
@@ -31,12 +41,12 @@ impl Local {
             triangle_rule: mesh.data().triangle_rule,
             ..MeshData::default()
         };
-        for &face in &faces {
+        for &face in faces {
             for &vertex in mesh.face(face) {
                 let number = numbers.len() as u32;
                 if *numbers.entry(vertex).or_insert(number) == number {
                     vertices.push(vertex);
-                    data.positions.push((mesh.position(vertex) - centre).into());
+                    data.positions.push((mesh.position(vertex) - origin).into());
                     let sharpness = topology.vertex_sharpness(vertex);
                     data.corners.extend((sharpness > 0.0).then_some(Corner { vertex: number, sharpness }));
                 }
@@ -52,9 +62,7 @@ impl Local {
                 data.creases.push(Crease { vertices, sharpness });
             }
         }
-        let size = data.face_sizes[0] as usize;
-        data.face_vertices[..size].rotate_left(first);
-        Self { origin: origin + centre, data, vertices }
+        Self { origin, data, vertices }
     }
 }
 
@@ -63,14 +71,17 @@ impl Local {
 /// One ring of faces is enough to refine the face and one ring of faces around each of its children. Chaikin's
 /// method looks further: whether an edge is sharp depends on the creases at its far end.
 fn neighbourhood(topology: &Topology, face: u32) -> Vec<u32> {
-    let mesh = topology.mesh();
-    let rings = if mesh.data().crease_method == CreaseMethod::Chaikin { 2 } else { 1 };
-    let mut faces = vec![face];
-    let mut found: HashSet<u32> = [face].into();
+    let rings = if topology.mesh().data().crease_method == CreaseMethod::Chaikin { 2 } else { 1 };
+    with_rings(topology, vec![face], rings)
+}
+
+/// Some faces, each once, with so many rings of faces around them.
+pub(crate) fn with_rings(topology: &Topology, mut faces: Vec<u32>, rings: usize) -> Vec<u32> {
+    let mut found: HashSet<u32> = faces.iter().copied().collect();
     let mut done = 0;
     for _ in 0..rings {
         for inner in std::mem::replace(&mut done, faces.len())..faces.len() {
-            for h in mesh.face_corners(faces[inner]) {
+            for h in topology.mesh().face_corners(faces[inner]) {
                 for_each_face_of_fan(topology, h as u32, |face| {
                     if found.insert(face) {
                         faces.push(face);

@@ -1,6 +1,7 @@
 //! Catmull-Clark subdivision itself, which the patch schemes approximate: refinement by its rules, and the exact limit
 //! surface.
 
+mod edits;
 mod face_varying;
 mod fan;
 mod local;
@@ -14,9 +15,10 @@ mod stencils;
 mod step;
 mod surface;
 
+pub(crate) use edits::VertexEdits;
 pub(crate) use face_varying::value_mesh;
 pub(crate) use fan::{Fan, FanRows, Fans};
-pub(crate) use local::Local;
+pub(crate) use local::{Local, with_rings};
 pub(crate) use masked::{MaskedRows, Masks};
 pub(crate) use masks::{corner_masks, dart_edge, dart_frame};
 pub(crate) use part::{Part, refine_part};

@@ -45,6 +45,8 @@ const MAX_COORDINATE: f64 = 1e38;
 /// - Faces that are not drawn ([`LimitSurface::has_face`]) are evaluated all the same: holes as if they were none,
 ///   faces on a boundary without a rule ([`crate::mesh::BoundaryRule::None`]) with smooth boundary curves.
 ///
+/// **Edits.** A mesh with [`Edit`](crate::mesh::Edit)s is refined as a whole down to the finest of them.
+///
 /// **Cost.** Refined neighbourhoods are kept, in a tree for each face that grows where points are asked for. Evaluate
 /// from as many threads as you like. A step of refinement takes as long as there are faces around the face; a vertex
 /// of valence n in all costs n * n.
@@ -58,6 +60,8 @@ const MAX_COORDINATE: f64 = 1e38;
 /// # Ok::<(), ash_subdiv::MeshError>(())
 /// ```
 pub struct LimitSurface {
+    /// Of the mesh refined once, if there are edits.
+    finer: Option<Box<LimitSurface>>,
     topology: Arc<Topology>,
     drawn: Vec<bool>,
     /// A face corner at each vertex.
@@ -77,7 +81,7 @@ impl LimitSurface {
     /// As [`LimitSurface::new`], of the mesh of a topology that there is.
     ///
     /// # Errors
-    /// As [`LimitSurface::new`].
+    /// As [`LimitSurface::new`], and [`MeshError::TooLarge`] if a mesh has edits at levels to which it cannot be refined as a whole.
     pub fn over(topology: &Arc<Topology>) -> Result<Self, MeshError> {
         let mesh = topology.mesh();
         let positions = &mesh.data().positions;
@@ -85,6 +89,10 @@ impl LimitSurface {
             let (position, max) = (positions[vertex], MAX_COORDINATE);
             return Err(MeshError::TooFar { vertex: vertex as u32, position, max });
         }
+        let finer = match mesh.edit_level() {
+            0 => None,
+            _ => Some(Box::new(Self::over(&Arc::new(Topology::new(&refine(topology)?.mesh)))?)),
+        };
         let mut corners = vec![(0, 0); mesh.vertex_count()];
         // The first corner stays.
         for face in (0..mesh.face_count() as u32).rev() {
@@ -93,10 +101,10 @@ impl LimitSurface {
             }
         }
         let faces = (0..mesh.face_count()).map(|_| OnceLock::new()).collect();
-        Ok(Self { topology: topology.clone(), drawn: draws_face(topology), corners, faces })
+        Ok(Self { finer, topology: topology.clone(), drawn: draws_face(topology), corners, faces })
     }
 
-    /// Whether the face is part of the surface: no hole and, under [`crate::mesh::BoundaryRule::None`], on no boundary.
+    /// Whether the face is part of the surface, but for holes that edits make in it: no hole and, under [`crate::mesh::BoundaryRule::None`], on no boundary.
     pub fn has_face(&self, face: u32) -> bool {
         self.drawn[face as usize]
     }
@@ -116,10 +124,29 @@ impl LimitSurface {
     pub fn evaluate(&self, face: u32, sub: i32, u: f64, v: f64) -> LimitSample {
         let subs = self.subs(face);
         assert!(subs.contains(&sub), "face {face} has parts {subs:?}, not {sub}");
+        let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
+        if let Some(finer) = &self.finer {
+            let first = self.topology.mesh().face_corners(face).start as u32;
+            return match sub {
+                -1 => finer.evaluate_quarter(first, u, v),
+                _ => finer.evaluate(first + sub as u32, -1, u, v),
+            };
+        }
         let root =
             get_or_set(&self.faces[face as usize], || Node::new(Local::cut(&self.topology, face, 0, DVec3::ZERO)));
         let start = if sub < 0 { root } else { root.child(sub as usize) };
-        start.evaluate(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0))
+        start.evaluate(u, v)
+    }
+
+    /// The surface over a quad of the mesh of which this one was refined, whose first child is `first`.
+    fn evaluate_quarter(&self, first: u32, u: f64, v: f64) -> LimitSample {
+        let k = quadrant(u, v);
+        let (a, b) = (2.0 * u, 2.0 * v);
+        // Child k begins at corner k.
+        let [a, b] = [[a, b], [b, 2.0 - a], [2.0 - a, 2.0 - b], [2.0 - b, a]][k];
+        let mut sample = self.evaluate(first + k as u32, -1, a, b);
+        (sample.du, sample.dv) = turned_back(k, 2.0 * sample.du, 2.0 * sample.dv);
+        sample
     }
 
     /// Limit point and normal of a control vertex.
@@ -255,9 +282,14 @@ impl Irregular {
         let mut limit = corner_limit(topology, k as u32);
         // Tangents along the plus and the minus edge of corner k.
         let (plus, minus) = (limit.du, limit.dv);
-        (limit.du, limit.dv) = [(plus, minus), (-minus, plus), (-plus, -minus), (minus, -plus)][k];
+        (limit.du, limit.dv) = turned_back(k, plus, minus);
         Some(limit)
     }
+}
+
+/// Along u and v of a quad, of vectors along the edges from corner k: to the next corner and to the one before.
+fn turned_back(k: usize, plus: DVec3, minus: DVec3) -> (DVec3, DVec3) {
+    [(plus, minus), (-minus, plus), (-plus, -minus), (minus, -plus)][k]
 }
 
 /// Whether the vertex that a half-edge starts from, or an edge there, has a sharpness that refinement will use up.

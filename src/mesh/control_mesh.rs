@@ -1,61 +1,11 @@
+use super::edits::{Edit, make_edits};
+use super::rules::{BoundaryRule, CreaseMethod, FaceVaryingRule, TriangleRule};
 use super::{MeshError, adjacency};
 use glam::DVec3;
 use std::sync::Arc;
 
 /// A sharpness from which on an edge or vertex is infinitely sharp, as in OpenSubdiv.
 pub const SHARPNESS_INFINITE: f32 = 10.0;
-
-/// What a boundary of the mesh does to the surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum BoundaryRule {
-    /// Faces that touch the boundary shape the surface but are not drawn.
-    None,
-    /// Boundary edges are infinitely sharp: the surface ends in a B-spline curve.
-    EdgeOnly,
-    /// As [`BoundaryRule::EdgeOnly`]; boundary vertices with one face are interpolated.
-    #[default]
-    EdgeAndCorner,
-}
-
-/// How semi-sharp creases lose sharpness when they are subdivided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum CreaseMethod {
-    /// One less on every level.
-    #[default]
-    Uniform,
-    /// Mixed with the neighbours along the crease (Chaikin's rule), then one less.
-    Chaikin,
-}
-
-/// The weights of triangles under subdivision.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum TriangleRule {
-    /// Catmull and Clark's rule for every face.
-    #[default]
-    CatmullClark,
-    /// OpenSubdiv's smoother edge points next to triangles.
-    Smooth,
-}
-
-/// Where face-varying data is interpolated linearly (OpenSubdiv's six rules): which values stay where they are, apart
-/// from those at vertices that stay themselves. Seams (edges where two faces disagree) and boundaries are otherwise
-/// smooth curves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FaceVaryingRule {
-    /// Smooth everywhere.
-    None,
-    /// Smooth inside and along seams; linear at the corners of regions.
-    CornersOnly,
-    /// As `CornersOnly`, and linear where three or more regions meet.
-    CornersPlus1,
-    /// As `CornersPlus1`, and linear at darts and concave corners.
-    CornersPlus2,
-    /// Linear along every seam and boundary.
-    Boundaries,
-    /// Linear everywhere.
-    #[default]
-    All,
-}
 
 /// A crease: the edge between two vertices and its sharpness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,7 +55,7 @@ pub struct MeshData {
     pub face_sizes: Vec<u32>,
     /// The vertices of every face, counter-clockwise seen from outside, one face after the other.
     pub face_vertices: Vec<u32>,
-    /// Texture coordinates, origin wherever the image says.
+    /// Texture coordinates: (0, 0) is the upper left of the image, as in glTF and Vulkan.
     pub texcoords: Option<FaceVarying<[f32; 2]>>,
     /// Authored normals. The smooth surface has normals of its own; these are kept for callers.
     pub normals: Option<FaceVarying<[f32; 3]>>,
@@ -123,6 +73,8 @@ pub struct MeshData {
     pub triangle_rule: TriangleRule,
     /// How texture coordinates are refined ([`crate::limit::refine`]). Within a patch they are interpolated linearly.
     pub face_varying_rule: FaceVaryingRule,
+    /// Changes at finer levels, in the order in which they are made.
+    pub edits: Vec<Edit>,
 }
 
 /// A checked, oriented control mesh whose edges have one or two faces.
@@ -157,10 +109,13 @@ impl ControlMesh {
     /// # Errors
     /// Empty meshes, faces with fewer than three vertices, repeated vertices or indices out of range, positions that
     /// are not finite, isolated vertices, edges with three faces or with two faces in the same direction, and tags
-    /// that name what is not there. Vertices where fans of faces touch in a point are accepted.
+    /// and edits that name what is not there. Vertices where fans of faces touch in a point are accepted.
     pub fn new(mut data: MeshData) -> Result<Self, MeshError> {
         let face_offsets = check(&data)?;
         let twins = adjacency::twins(data.positions.len(), &face_offsets, &data.face_vertices)?;
+        if !data.edits.is_empty() {
+            make_edits(&mut data, &face_offsets)?;
+        }
         check_tags(&data)?;
         let edge_sharpness = edge_sharpness(&data, &face_offsets, &twins)?;
         let vertex_sharpness = vertex_sharpness(&data);
@@ -205,7 +160,7 @@ impl ControlMesh {
         Ok(Self { checked: Arc::new(Checked { data, face_offsets, twins, edge_sharpness, vertex_sharpness }) })
     }
 
-    /// The parts, as given (holes sorted).
+    /// The parts, as given (holes sorted, edits at level 0 made).
     pub fn data(&self) -> &MeshData {
         &self.checked.data
     }
@@ -273,6 +228,11 @@ impl ControlMesh {
         if self.checked.twins[half_edge as usize] == adjacency::NO_TWIN {
             return SHARPNESS_INFINITE;
         }
+        self.crease_sharpness(half_edge)
+    }
+
+    /// The sharpness of the crease on a half-edge's edge, a boundary too; else 0.
+    pub(crate) fn crease_sharpness(&self, half_edge: u32) -> f32 {
         self.checked.edge_sharpness.get(half_edge as usize).copied().unwrap_or(0.0)
     }
 
@@ -286,6 +246,11 @@ impl ControlMesh {
         let Checked { edge_sharpness, twins, .. } = &*self.checked;
         let lower = edge_sharpness.iter().zip(twins).zip(0..).filter(|&((&s, &twin), h)| s > 0.0 && h < twin);
         lower.count()
+    }
+
+    /// The finest level that an edit is at; 0 without edits.
+    pub fn edit_level(&self) -> usize {
+        self.checked.data.edits.iter().map(Edit::level).max().unwrap_or(0)
     }
 
     /// Smallest and largest coordinates of the control points.

@@ -46,6 +46,8 @@ pub enum MeshError {
     NoSuchVertex { corner: usize, vertex: u32, count: usize },
     #[error("hole tag names face {face}, but the mesh has {count} faces")]
     NoSuchFace { face: u32, count: usize },
+    #[error("edit {edit}: {message}")]
+    BadEdit { edit: usize, message: String },
     #[error("{what} are given for {given} face corners, but the mesh has {corners}")]
     CornerCount { what: &'static str, given: usize, corners: usize },
     #[error("corner {corner} names {what} {index}, but there are {count}")]
@@ -82,6 +84,30 @@ impl MeshError {
             | Self::InconsistentOrientation { face, .. } => Some(*face),
             Self::AtLine { error, .. } | Self::InFile { error, .. } => error.face(),
             _ => None,
+        }
+    }
+
+    /// Puts other numbers of vertices and faces into the error.
+    pub(super) fn renumber(&mut self, vertex: impl Fn(u32) -> u32, face: impl Fn(u32) -> u32) {
+        let put = |number: &mut u32, of: &dyn Fn(u32) -> u32| *number = of(*number);
+        match self {
+            Self::NotFinite { vertex: v, .. } | Self::IsolatedVertex { vertex: v } => put(v, &vertex),
+            Self::FaceTooSmall { face: f, .. } => put(f, &face),
+            Self::RepeatedVertex { face: f, vertex: v } => {
+                put(f, &face);
+                put(v, &vertex);
+            }
+            Self::NonManifoldEdge { face: f, edge } => {
+                put(f, &face);
+                edge.iter_mut().for_each(|v| put(v, &vertex));
+            }
+            Self::InconsistentOrientation { face: f, other, edge } => {
+                put(f, &face);
+                put(other, &face);
+                edge.iter_mut().for_each(|v| put(v, &vertex));
+            }
+            Self::NoSuchEdge { edge, .. } => edge.iter_mut().for_each(|v| put(v, &vertex)),
+            _ => {}
         }
     }
 }

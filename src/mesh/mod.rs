@@ -1,25 +1,29 @@
-//! Control meshes: what they are, how they are checked, and how files and built-in shapes become one.
+//! Control meshes: what they are, how they are checked, and how files and built-in shapes become one; repair of what is not.
 
 mod adjacency;
 mod control_mesh;
+mod edits;
 mod error;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod obj;
+mod ply;
 mod read;
+mod repair;
+mod rules;
 mod shapes;
 pub mod write;
 
 pub(crate) use control_mesh::MAX_CORNERS;
-pub use control_mesh::{
-    BoundaryRule, ControlMesh, Corner, Crease, CreaseMethod, FaceVarying, FaceVaryingRule, MeshData,
-    SHARPNESS_INFINITE, TriangleRule,
-};
+pub use control_mesh::{ControlMesh, Corner, Crease, FaceVarying, MeshData, SHARPNESS_INFINITE};
+pub use edits::{Change, Edit, MAX_EDIT_LEVEL};
 pub use error::MeshError;
 #[cfg(feature = "gltf")]
 pub use gltf::GltfOptions;
 pub use obj::ObjOptions;
-pub use read::{ReadOptions, read};
+pub use read::{ReadOptions, read, read_repaired};
+pub use repair::{Place, Repair, RepairKind, RepairOptions, Repairs, repair};
+pub use rules::{BoundaryRule, CreaseMethod, FaceVaryingRule, Package, TriangleRule};
 pub use shapes::{ShapeInfo, grid_torus, replicate, shape, shapes};
 
 pub(crate) use adjacency::NO_TWIN;

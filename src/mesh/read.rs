@@ -1,4 +1,4 @@
-use super::{ControlMesh, MeshError, ObjOptions};
+use super::{ControlMesh, MeshError, ObjOptions, RepairOptions, Repairs};
 use std::path::Path;
 
 /// How [`read`] reads a file.
@@ -8,24 +8,45 @@ pub struct ReadOptions {
     pub drop_isolated: bool,
     /// Which mesh of a glTF scene, by the name of the mesh or of its node; all as one mesh if `None`.
     pub mesh: Option<String>,
+    /// Put quads of glTF together that were split into triangles: `GltfOptions::quads`.
+    pub quads: bool,
 }
 
-/// Reads a control mesh from a file whose name ends in `.obj`, `.gltf` or `.glb` (in any case).
+/// Reads a control mesh from a file whose name ends in `.obj`, `.ply`, `.gltf` or `.glb` (in any case).
 ///
 /// # Errors
 /// [`MeshError::Unreadable`] where there is no such file or its ending is unknown; otherwise what the reader says,
 /// with the path ([`MeshError::InFile`]).
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<ControlMesh, MeshError> {
-    let path = path.as_ref();
+    read_with(path.as_ref(), options, None).map(|(mesh, _)| mesh)
+}
+
+/// As [`read`], with what is odd about the file mended: see [`repair`](super::repair()).
+///
+/// # Errors
+/// As [`read`], for what can't be mended.
+pub fn read_repaired(
+    path: impl AsRef<Path>,
+    options: &ReadOptions,
+    repair: &RepairOptions,
+) -> Result<(ControlMesh, Repairs), MeshError> {
+    read_with(path.as_ref(), options, Some(repair))
+}
+
+type Read = Result<(ControlMesh, Repairs), MeshError>;
+
+/// Reads a file; with `None` nothing is mended, but quads may be put together.
+fn read_with(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
     let unreadable = |message: String| MeshError::Unreadable { path: path.to_owned(), message };
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     let reader = match ending.as_deref() {
         Some("obj") => read_obj,
+        Some("ply") => read_ply,
         Some("gltf" | "glb") => read_gltf,
         Some(other) => {
-            return Err(unreadable(format!("files ending in .{other} can't be read: use .obj, .gltf or .glb")));
+            return Err(unreadable(format!("files ending in .{other} can't be read: use .obj, .ply, .gltf or .glb")));
         }
-        None => return Err(unreadable("the name has no ending: it must be .obj, .gltf or .glb".into())),
+        None => return Err(unreadable("the name has no ending: it must be .obj, .ply, .gltf or .glb".into())),
     };
     if path.is_dir() {
         return Err(unreadable("this is a directory: name a file in it".into()));
@@ -34,24 +55,51 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<ControlMesh
         std::io::ErrorKind::NotFound => unreadable("there is no such file".into()),
         _ => unreadable(error.to_string()),
     })?;
-    reader(path, &bytes, options).map_err(|error| MeshError::InFile { path: path.to_owned(), error: Box::new(error) })
+    reader(path, &bytes, options, repair)
+        .map_err(|error| MeshError::InFile { path: path.to_owned(), error: Box::new(error) })
 }
 
-fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions) -> Result<ControlMesh, MeshError> {
-    if let Some(mesh) = &options.mesh {
-        let message = format!("\"{mesh}\" can't be chosen: an OBJ file is read as one mesh; leave the name out");
-        return Err(MeshError::Format { message });
+fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
+    whole(options, "an OBJ file")?;
+    match repair {
+        Some(repair) => ControlMesh::from_obj_bytes_repaired(bytes, repair),
+        None => {
+            let options = ObjOptions { drop_isolated: options.drop_isolated };
+            Ok((ControlMesh::from_obj_bytes(bytes, &options)?, Repairs::default()))
+        }
     }
-    ControlMesh::from_obj_bytes(bytes, &ObjOptions { drop_isolated: options.drop_isolated })
+}
+
+fn read_ply(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
+    whole(options, "a PLY file")?;
+    match repair {
+        Some(repair) => ControlMesh::from_ply_bytes_repaired(bytes, repair),
+        None => Ok((ControlMesh::from_ply_bytes(bytes)?, Repairs::default())),
+    }
+}
+
+/// No mesh of several is asked for.
+fn whole(options: &ReadOptions, file: &str) -> Result<(), MeshError> {
+    let Some(mesh) = &options.mesh else { return Ok(()) };
+    Err(MeshError::Format {
+        message: format!("\"{mesh}\" can't be chosen: {file} is read as one mesh; leave the name out"),
+    })
 }
 
 #[cfg(feature = "gltf")]
-fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<ControlMesh, MeshError> {
+fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
     let folder = path.parent().map(Path::to_owned);
-    ControlMesh::from_gltf_bytes(bytes, &super::GltfOptions { mesh: options.mesh.clone(), folder })
+    let options = super::GltfOptions { mesh: options.mesh.clone(), folder, quads: options.quads };
+    match repair {
+        Some(repair) => ControlMesh::from_gltf_bytes_repaired(bytes, &options, repair),
+        None => {
+            let (data, rebuilt_quads) = super::gltf::read(bytes, &options)?;
+            Ok((ControlMesh::new(data)?, Repairs { rebuilt_quads, ..Repairs::default() }))
+        }
+    }
 }
 
 #[cfg(not(feature = "gltf"))]
-fn read_gltf(_: &Path, _: &[u8], _: &ReadOptions) -> Result<ControlMesh, MeshError> {
+fn read_gltf(_: &Path, _: &[u8], _: &ReadOptions, _: Option<&RepairOptions>) -> Read {
     Err(MeshError::Format { message: "this build can't read glTF: turn on the cargo feature \"gltf\"".into() })
 }

@@ -40,7 +40,7 @@ pub use options::{Construction, Evaluation, TableOptions};
 pub use patch_id::{FaceOrigin, PatchId};
 pub use plan::{Patch, PatchGroup, PatchPlan};
 pub(crate) use prepare::prepare_for;
-pub use prepare::{Notice, Prepared, prepare, prepare_patches, prepare_quads};
+pub use prepare::{Notice, Prepared, Step, prepare, prepare_patches, prepare_quads};
 pub use rings::RingTable;
 pub(crate) use shared::SHARED_WORDS;
 pub use shared::{SharedTable, SharedTexcoord};

@@ -1,11 +1,11 @@
 //! The arrays of a model, before they are on the GPU.
 
+use super::prepare::Step;
 use super::shared::SHARED_WORDS;
 use super::{
     Construction, EdgeTable, Evaluation, FaceOrigin, LeafTable, Notice, PatchPlan, Refinement, RingTable, SharedTable,
     Sharing, StencilTable, SubdivisionTable, TableError, TableOptions, bytes, prepare_for,
 };
-use crate::limit::Stencils;
 use crate::mesh::ControlMesh;
 use crate::topology::PatchKind;
 use glam::{DVec3, Vec3};
@@ -34,7 +34,7 @@ pub struct ModelTables {
     /// Vertices of the caller's mesh, and of the refined one if it had to be refined.
     pub(crate) control_vertices: usize,
     patch_vertices: usize,
-    steps: Vec<Stencils>,
+    steps: Vec<Step>,
     notices: Vec<Notice>,
 }
 

@@ -10,10 +10,11 @@ use super::patch_id::MAX_LEVEL;
 use super::plan::{Patch, PatchPlan};
 use super::wedges::{CutFace, Wedges};
 use crate::adaptive;
-use crate::limit::{Stencils, refine};
+use crate::limit::{Stencils, VertexEdits, refine};
 use crate::mesh::{ControlMesh, MAX_CORNERS, MeshError, SHARPNESS_INFINITE};
 use crate::patch::{Fallback, Scheme, Undefined};
 use crate::topology::{Ring, RingKind, SHARP_FROM, Topology};
+use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 
@@ -27,6 +28,13 @@ pub enum Notice {
         polygons: usize,
         /// The first of them.
         first: u32,
+    },
+    /// [`Edit`](crate::mesh::Edit)s at finer levels: the whole mesh was refined down to the finest of them.
+    RefinedEdits {
+        /// How many there are.
+        count: usize,
+        /// The finest level.
+        level: usize,
     },
     /// Faces other than quads, where they are subdivided one by one: the whole mesh was refined once so that all are quads.
     RefinedToQuads {
@@ -82,6 +90,11 @@ impl fmt::Display for Notice {
                 f,
                 "{polygons} faces have five or more corners (the first is face {first}): the whole mesh is refined once"
             ),
+            Self::RefinedEdits { count, level } => write!(
+                f,
+                "{count} edits are at levels down to {level}: the whole mesh is refined to this level, into {} faces for each quad",
+                4u32.saturating_pow(*level as u32)
+            ),
             Self::RefinedToQuads { faces, first } => {
                 write!(f, "{faces} faces are no quads (the first is face {first}): the whole mesh is refined once")
             }
@@ -121,9 +134,10 @@ pub struct Prepared {
     topology: Arc<Topology>,
     cut: Option<Cut>,
     /// The refinement steps, in order. Each step's inputs are the outputs of the one before.
-    pub steps: Vec<Stencils>,
+    pub steps: Vec<Step>,
     cells: Cells,
     refined_faces: Option<Notice>,
+    refined_edits: Option<Notice>,
     /// Whether sharpness counts as infinite or none: it is not where faces are subdivided.
     rounds_sharpness: bool,
     /// Vertices split off by refinement.
@@ -141,6 +155,22 @@ struct Cut {
     faces: Vec<CutFace>,
 }
 
+/// A step of refinement.
+#[derive(Debug, Clone)]
+pub struct Step {
+    stencils: Stencils,
+    edits: VertexEdits,
+}
+
+impl Step {
+    /// The refined vertices, where those before are these.
+    pub fn apply(&self, vertices: &[DVec3]) -> Vec<DVec3> {
+        let mut refined = self.stencils.apply(vertices);
+        self.edits.apply(&mut refined);
+        refined
+    }
+}
+
 impl Prepared {
     /// The mesh as it is.
     fn of(mesh: &ControlMesh) -> Result<Self, MeshError> {
@@ -150,14 +180,18 @@ impl Prepared {
             steps: Vec::new(),
             cells: Cells::whole(mesh)?,
             refined_faces: None,
+            refined_edits: None,
             rounds_sharpness: true,
             split_vertices: 0,
             rounded_caps: 0,
         })
     }
 
-    /// The mesh refined `levels` times.
+    /// The mesh refined `levels` times, and down to its finest edits.
     fn refined(mesh: &ControlMesh, levels: u32) -> Result<Self, MeshError> {
+        let (level, count) = (mesh.edit_level(), mesh.data().edits.len());
+        let refined_edits = (levels < level as u32).then_some(Notice::RefinedEdits { count, level });
+        let levels = levels.max(level as u32);
         // Before anything is allocated. Each step makes a quad of every corner.
         let corners = 4usize.saturating_pow(levels).saturating_mul(mesh.corner_count());
         if corners > MAX_CORNERS {
@@ -167,12 +201,12 @@ impl Prepared {
             let (count, max) = (levels as usize, MAX_LEVEL as usize);
             return Err(MeshError::TooLarge { what: "levels of refinement", count, max });
         }
-        let mut prepared = Self::of(mesh)?;
+        let mut prepared = Self { refined_edits, ..Self::of(mesh)? };
         for _ in 0..levels {
             prepared.split_vertices += prepared.topology.split_count();
             let refined = refine(&prepared.topology)?;
             prepared.cells = prepared.cells.refined(&prepared.topology);
-            prepared.steps.push(refined.stencils);
+            prepared.steps.push(Step { stencils: refined.stencils, edits: refined.edits });
             prepared.topology = Arc::new(Topology::new(&refined.mesh));
         }
         Ok(prepared)
@@ -251,7 +285,7 @@ impl Prepared {
             scheme: plan.scheme(),
             fallback: patch.scheme,
         });
-        let refined = self.refined_faces.clone();
+        let refined = self.refined_edits.clone().or_else(|| self.refined_faces.clone());
         let rounded = semi_sharp(self.mesh()).filter(|_| self.rounds_sharpness);
         let darts = darts(&self.topology).filter(|_| self.rounds_sharpness);
         let nothing = plan.patches().is_empty().then_some(Notice::NothingDrawn);
@@ -282,7 +316,7 @@ pub fn prepare_patches(
     fallback: Fallback,
     levels: u32,
 ) -> Result<(Prepared, PatchPlan), TableError> {
-    if levels == 0 && scheme.has_pentagons() {
+    if levels == 0 && mesh.edit_level() == 0 && scheme.has_pentagons() {
         let prepared = Prepared::of(mesh)?;
         match prepared.plan(scheme, Fallback::Refuse) {
             Ok(plan) => return Ok((prepared, plan)),
@@ -304,6 +338,7 @@ type Planned = (Prepared, PatchPlan, Option<adaptive::Plan>);
 /// Those of [`prepare_patches`], [`prepare_quads`] and [`adaptive::Plan::new`].
 pub(crate) fn prepare_for(mesh: &ControlMesh, options: &TableOptions) -> Result<Planned, TableError> {
     let &TableOptions { scheme, fallback, evaluation, refine, .. } = options;
+    let is_whole = refine == 0 && mesh.edit_level() == 0;
     match (options.adaptive, evaluation) {
         (Some(_), Evaluation::Subdivision) => Err(TableError::NotAdaptive { evaluation }),
         (Some(adaptive), _) => {
@@ -312,7 +347,7 @@ pub(crate) fn prepare_for(mesh: &ControlMesh, options: &TableOptions) -> Result<
             prepared.with_leaves(scheme, plan)
         }
         (None, Evaluation::Subdivision) => prepare_quads(mesh, refine).map(|(prepared, plan)| (prepared, plan, None)),
-        (None, _) if refine == 0 && scheme.has_caps() && mesh.data().face_sizes.iter().any(|&size| size > 4) => {
+        (None, _) if is_whole && scheme.has_caps() && mesh.data().face_sizes.iter().any(|&size| size > 4) => {
             let prepared = Prepared::of(mesh)?;
             let plan = adaptive::Plan::around_polygons(&prepared.topology, scheme)?;
             prepared.with_leaves(scheme, plan)

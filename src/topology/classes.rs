@@ -1,7 +1,7 @@
 //! Which patch a face becomes.
 
 use super::half_edges::Topology;
-use crate::mesh::BoundaryRule;
+use crate::mesh::{BoundaryRule, SHARPNESS_INFINITE};
 use crate::named::named;
 
 named! {
@@ -55,7 +55,8 @@ impl Topology {
     }
 }
 
-/// Tells for every face whether it is drawn: it is no hole and, under [`BoundaryRule::None`], touches no boundary.
+/// Tells for every face whether it is drawn: it is no hole and, under [`BoundaryRule::None`], touches no boundary but edges that
+/// are tagged infinitely sharp.
 pub fn draws_face(topology: &Topology) -> Vec<bool> {
     let mesh = topology.mesh();
     let mut draws = vec![true; mesh.face_count()];
@@ -65,7 +66,8 @@ pub fn draws_face(topology: &Topology) -> Vec<bool> {
     if mesh.data().boundary == BoundaryRule::None {
         let mut on_boundary = vec![false; topology.vertex_count()];
         let half_edges = 0..mesh.corner_count() as u32;
-        for half_edge in half_edges.clone().filter(|&h| topology.twin(h).is_none()) {
+        let is_open = |h: u32| topology.twin(h).is_none() && mesh.crease_sharpness(h) < SHARPNESS_INFINITE;
+        for half_edge in half_edges.clone().filter(|&h| is_open(h)) {
             on_boundary[topology.vertex(half_edge) as usize] = true;
             on_boundary[topology.vertex(topology.next(half_edge)) as usize] = true;
         }

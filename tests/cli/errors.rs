@@ -88,7 +88,7 @@ fn wrong_usage_is_said_in_one_line() {
 #[test]
 fn work_that_fails_is_said_in_one_line() {
     fails("info no-such.obj", 1, "no-such.obj: there is no such file");
-    fails("info model.stl", 1, "model.stl: files ending in .stl can't be read: use .obj, .gltf or .glb");
+    fails("info model.stl", 1, "model.stl: files ending in .stl can't be read: use .obj, .ply, .gltf or .glb");
     let known: Vec<String> =
         json("shapes").as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap().to_owned()).collect();
     let message = format!("there is no shape named \"dragon\": choose one of {}", known.join(", "));
@@ -122,16 +122,16 @@ fn bad_files_are_told_with_their_line() {
     ] {
         fs::write(&path, text).unwrap();
         for command in ["info", "patches", "sample --cpu", "render -o x.png"] {
-            let output = run(&format!("{command} {}", path.display()));
+            let output = run(&format!("{command} --strict {}", path.display()));
             let stderr = String::from_utf8_lossy(&output.stderr);
             assert!(stderr.starts_with(&format!("error: {}: {message}", path.display())), "{command}: {stderr}");
             assert_eq!((stderr.lines().count(), output.status.code()), (1, Some(1)));
         }
     }
     fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\n").unwrap();
-    let stderr = String::from_utf8(run(&format!("info {}", path.display())).stderr).unwrap();
+    let stderr = String::from_utf8(run(&format!("info --strict {}", path.display())).stderr).unwrap();
     assert!(stderr.contains("vertex 3 belongs to no face"), "{stderr}");
-    assert_eq!(json(&format!("info {} --drop-isolated", path.display()))["vertices"], 3);
+    assert_eq!(json(&format!("info --strict {} --drop-isolated", path.display()))["vertices"], 3);
 }
 
 #[test]

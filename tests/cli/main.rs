@@ -7,6 +7,7 @@ mod bench;
 mod common;
 mod error_maps;
 mod errors;
+mod files;
 mod measures;
 mod pictures;
 mod seams;

@@ -74,6 +74,83 @@ fn cameras_and_height_maps_take_part() {
 }
 
 #[test]
+fn edits_of_a_file_are_made() {
+    let folder = folder("edits_of_a_file_are_made");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let cube = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+                f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    let edits = "t faceedit 4/0/1 3 1 2 0 hole\nt vertexedit 4/3/3 3 1 0 0 0 0 1 add P value\n";
+    fs::write(folder.join("edited.obj"), format!("{cube}{edits}")).unwrap();
+    for (name, options) in [("a.obj", "--quads"), ("a.ply", "--quads"), ("a.glb", "")] {
+        let out = json(&format!("tessellate {} --depth 3 {options} -o {}", path("edited.obj"), path(name)));
+        let faces = if options.is_empty() { 2 } else { 1 } * (6 * 64 - 4);
+        // Without the vertex in the middle of the hole.
+        assert_eq!((&out["faces"], &out["vertices"]), (&faces.into(), &(6 * 64 + 2 - 1).into()), "{name}");
+    }
+    let read = json(&format!("info {}", path("a.obj")));
+    assert_eq!((&read["boundary_edges"], &read["vertices"]), (&8.into(), &385.into()));
+    assert!(read["bounds"][1][2].as_f64().unwrap() > 0.9, "{read}");
+    // Commands that draw patches refine the mesh.
+    let read = json(&format!("info {}", path("edited.obj")));
+    assert_eq!((&read["edits"], &read["faces"]), (&2.into(), &6.into()));
+    let patches: u64 = read["patches"].as_object().unwrap().values().map(|count| count.as_u64().unwrap()).sum();
+    assert_eq!(patches, 6 * 16 - 1);
+    let notice =
+        "2 edits are at levels down to 2: the whole mesh is refined to this level, into 16 faces for each quad";
+    assert_eq!(read["notices"], serde_json::json!([notice]));
+    let read = json(&format!("info {} --refine 2", path("edited.obj")));
+    assert_eq!(read["notices"], serde_json::json!([]));
+}
+
+#[test]
+fn rules_are_those_of_the_package_that_is_named() {
+    let folder = folder("rules_are_those_of_the_package_that_is_named");
+    let path = |name: &str| folder.join(name).display().to_string();
+    // A sheet of 3 x 3 quads, with texture coordinates.
+    let at = |i: usize| (i % 4, i / 4);
+    let vertices: String = (0..16).map(at).map(|(i, j)| format!("v {i} {j} 0\nvt {i} {}\n", j * j)).collect();
+    let corner = |i: usize, j: usize| format!("{0}/{0}", 4 * j + i + 1);
+    let face = |(i, j)| [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)].join(" ");
+    let faces: String = (0..9).map(|k| format!("f {}\n", face((k % 3, k / 3)))).collect();
+    fs::write(folder.join("plain.obj"), format!("{vertices}{faces}")).unwrap();
+    let tags = "t interpolateboundary 1/0/0 2\nt facevaryinginterpolateboundary 1/0/0 4\n";
+    fs::write(folder.join("tagged.obj"), format!("{vertices}{faces}{tags}")).unwrap();
+    // Whether the corner is kept, the texture coordinates of the first edge and of the inside, and notes.
+    let made = |mesh: &str, options: &str| {
+        let output = run(&format!("tessellate {} {options} --depth 1 --quads -o {}", path(mesh), path("out.obj")));
+        let text = fs::read_to_string(folder.join("out.obj")).unwrap();
+        let has = |line: &str| text.lines().any(|other| other == line);
+        let count = text.lines().filter(|line| line.starts_with("f ")).count();
+        assert!(output.status.success());
+        // The middle of an edge of the boundary, where a curve is not straight; the first inner vertex.
+        let linear = [has("vt 0 2.5"), has("vt 1 1")];
+        (count, has("v 0 0 0"), linear, String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let none = String::new;
+    for (options, count, keeps_corner, linear) in [
+        ("", 36, true, [true, true]),
+        ("--rules blender", 36, false, [true, false]),
+        ("--rules maya", 36, true, [true, false]),
+        ("--rules houdini", 36, true, [true, false]),
+        ("--rules renderman", 36, true, [false, false]),
+        ("--rules arnold", 36, true, [false, false]),
+        ("--rules opensubdiv", 4, false, [false, true]),
+        ("--rules opensubdiv --boundary edge-only", 36, false, [true, true]),
+        ("--rules blender --uv all", 36, false, [true, true]),
+        ("--uv none", 36, true, [false, false]),
+    ] {
+        assert_eq!(made("plain.obj", options), (count, keeps_corner, linear, none()), "{options}");
+    }
+    // What a file has chosen is left alone unless it is asked for; then the option counts, and a note says so.
+    assert_eq!(made("tagged.obj", ""), (36, false, [true, false], none()));
+    assert_eq!(made("tagged.obj", "--rules blender"), (36, false, [true, false], none()));
+    let note = "note: boundary rule edge-and-corner takes the place of the file's edge-only\n";
+    assert_eq!(made("tagged.obj", "--rules maya"), (36, true, [true, false], note.into()));
+    let note = "note: texture coordinate rule all takes the place of the file's boundaries\n";
+    assert_eq!(made("tagged.obj", "--uv all"), (36, false, [true, true], note.into()));
+}
+
+#[test]
 fn what_cannot_be_tessellated_is_told() {
     let folder = folder("what_cannot_be_tessellated_is_told");
     let path = |name: &str| folder.join(name).display().to_string();

@@ -5,6 +5,7 @@ use ash_subdiv::mesh::{BoundaryRule, ReadOptions, read};
 use ash_subdiv::table::FaceOrigin;
 use ash_subdiv::{ControlMesh, MeshData};
 use glam::DVec3;
+use std::path::Path;
 
 /// The limit surface of a mesh.
 pub struct Limit {
@@ -96,11 +97,20 @@ pub fn mesh_and_limit(name: &str) -> (ControlMesh, Limit) {
             shared().join("meshes").join(name).with_extension("obj"),
         ),
     };
-    let limit = parse(&std::fs::read(limit).expect("a .bin file"));
+    let limit = parsed(&limit);
     let options = ReadOptions { drop_isolated: true, ..ReadOptions::default() };
     let mesh = read(&path, &options).expect("a mesh");
     let mesh = ControlMesh::new(MeshData { boundary: limit.boundary, ..mesh.into_data() }).expect("the same mesh");
     (mesh, limit)
+}
+
+/// A limit surface of `../shared`.
+pub fn limit(name: &str) -> Limit {
+    parsed(&shared().join("limit").join(name).with_extension("bin"))
+}
+
+fn parsed(path: &Path) -> Limit {
+    parse(&std::fs::read(path).expect("a .bin file"))
 }
 
 struct Bytes<'b>(&'b [u8]);

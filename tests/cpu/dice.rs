@@ -2,7 +2,7 @@
 
 use crate::common::limit::{mesh_and_limit, names};
 use crate::limit_surface::everything;
-use ash_subdiv::dice::{Depth, DiceOptions, Place, Real, Tessellation};
+use ash_subdiv::dice::{Depth, DiceOptions, Place, Plan, Real, Tessellation};
 use ash_subdiv::limit::{LimitSurface, refine};
 use ash_subdiv::mesh::{Corner, CreaseMethod, FaceVaryingRule, SHARPNESS_INFINITE};
 use ash_subdiv::topology::{RingKind, Topology};
@@ -10,12 +10,13 @@ use ash_subdiv::{ControlMesh, MeshData, shape, shapes};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::convert::Infallible;
 
 /// Greatest errors: of positions over the diagonal, of normals in radians.
 #[derive(Debug, Clone, Copy)]
-struct Errors {
-    position: f64,
-    normal: f64,
+pub struct Errors {
+    pub position: f64,
+    pub normal: f64,
 }
 
 fn wide<T: Real>(p: [T; 3]) -> DVec3 {
@@ -23,7 +24,7 @@ fn wide<T: Real>(p: [T; 3]) -> DVec3 {
 }
 
 /// A tessellation against the limit surface at its vertices, or at some thousands of them.
-fn errors<T: Real>(mesh: &ControlMesh, tessellation: &Tessellation<T>) -> Errors {
+pub fn errors<T: Real>(mesh: &ControlMesh, tessellation: &Tessellation<T>) -> Errors {
     let surface = LimitSurface::new(mesh).unwrap();
     let topology = Topology::new(mesh);
     let places = tessellation.places();
@@ -146,6 +147,52 @@ fn texture_coordinates_follow_the_rule() {
             checked += 1;
         }
         assert_eq!(checked, places.len());
+    }
+}
+
+/// Pieces, put together, are the arrays to the last bit.
+#[test]
+fn streams_are_the_arrays_in_pieces() {
+    for (name, depth) in [("creature-mixed", 2), ("machine-part", 5), ("valences", 6), ("cloth", 3)] {
+        let mesh = shape(name).unwrap();
+        let topology = Topology::new(&mesh);
+        let depths =
+            (0..mesh.corner_count()).map(|facet| depth - (facet * 7 % 11 % 3 % depth as usize) as u32).collect();
+        let options = DiceOptions { depth: Depth::Each(depths), max_step: 3, ..DiceOptions::default() };
+        let whole = Tessellation::<f32>::new(&topology, &options).unwrap();
+        let plan = Plan::<f32>::new(&topology, &options).unwrap();
+        let stream = plan.stream(&mesh.data().positions).unwrap();
+        let [mut positions, mut normals] = [Vec::new(), Vec::new()];
+        let (mut texcoords, mut pieces) = (Vec::new(), 0);
+        let visited: Result<(), Infallible> = stream.for_each_piece(|piece| {
+            positions.extend_from_slice(piece.positions);
+            normals.extend_from_slice(piece.normals);
+            texcoords.extend_from_slice(piece.texcoords.unwrap_or_default());
+            pieces += 1;
+            Ok(())
+        });
+        visited.unwrap();
+        assert_eq!((positions.as_slice(), normals.as_slice()), (whole.positions(), whole.normals()), "{name}");
+        assert_eq!(texcoords, whole.texcoords().unwrap_or_default(), "{name}");
+        assert_eq!(pieces > 2, name == "valences", "{name}: {pieces} of {}", positions.len());
+        let (mut quads, mut triangles, mut cut) = (Vec::new(), Vec::new(), Vec::new());
+        let visited: Result<(), Infallible> = stream.for_each_quads(|piece| {
+            quads.extend_from_slice(piece);
+            Ok(())
+        });
+        visited.unwrap();
+        let visited: Result<(), Infallible> = stream.for_each_triangles(|piece| {
+            triangles.extend_from_slice(piece);
+            Ok(())
+        });
+        visited.unwrap();
+        let visited: Result<(), Infallible> = stream.for_each_cut(|piece| {
+            cut.extend_from_slice(piece);
+            Ok(())
+        });
+        visited.unwrap();
+        assert_eq!((quads.as_slice(), triangles.as_slice()), (whole.quads(), whole.triangles()), "{name}");
+        assert_eq!(cut, whole.all_triangles(), "{name}");
     }
 }
 

@@ -31,7 +31,7 @@ fn is_on_boundary(topology: &Topology, place: &Place) -> bool {
 }
 
 /// What is wrong with a tessellation.
-fn fault(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> Option<String> {
+pub fn fault(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> Option<String> {
     let topology = Topology::new(mesh);
     let positions = tessellation.positions();
     let mut numbers = HashMap::new();
@@ -91,7 +91,7 @@ fn flat_face(tessellation: &Tessellation<f64>, faces: &[Vec<u32>]) -> Option<Str
         .map(|vertex| format!("copy {vertex} is not where it should be"))
 }
 
-fn random_depth(random: &mut Random, mesh: &ControlMesh) -> Depth {
+pub fn random_depth(random: &mut Random, mesh: &ControlMesh) -> Depth {
     match random.below(4) {
         0 => {
             let [low, high] = mesh.bounds().map(|corner| corner.as_vec3());
@@ -189,6 +189,42 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(error.to_string(), "control positions are given for 7 vertices, but there are 8");
     let sizes = tessellation.plan().sizes();
     assert_eq!([sizes.vertices, sizes.positions, sizes.quads, sizes.triangles], [26, 26, 24, 0]);
+}
+
+/// In a plane, where a vertex on an edge of others would be seen.
+#[test]
+fn no_vertex_is_on_an_edge_of_others() {
+    let at = |i: u32, j: u32| 4 * j + i;
+    let faces =
+        (0..9).map(|k| (k % 3, k / 3)).flat_map(|(i, j)| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+    let mesh = ControlMesh::new(MeshData {
+        positions: (0..16).map(|i| [f64::from(i % 4), f64::from(i / 4), 0.0]).collect(),
+        face_sizes: vec![4; 9],
+        face_vertices: faces.collect(),
+        ..MeshData::default()
+    })
+    .unwrap();
+    for seed in 0..6 {
+        let mut random = Random::new(seed);
+        let depth = Depth::Each((0..36).map(|_| 1 + random.below(4) as u32).collect());
+        let options = DiceOptions { depth, max_step: [1, 10][seed as usize % 2], ..DiceOptions::default() };
+        let tessellation = Tessellation::<f64>::new(&Topology::new(&mesh), &options).unwrap();
+        let quads = tessellation.quads().iter().map(|face| face.to_vec());
+        let faces = quads.chain(tessellation.triangles().iter().map(|face| face.to_vec()));
+        let edges: HashSet<[u32; 2]> = faces
+            .flat_map(|face| (0..face.len()).map(move |i| [face[i], face[(i + 1) % face.len()]]))
+            .map(|[a, b]| [a.min(b), a.max(b)])
+            .collect();
+        let places: Vec<DVec3> = tessellation.positions().iter().map(|&p| p.into()).collect();
+        for [a, b] in edges {
+            let (from, along) = (places[a as usize], places[b as usize] - places[a as usize]);
+            let between = places.iter().filter(|&&p| {
+                let t = (p - from).dot(along) / along.length_squared();
+                (1e-6..1.0 - 1e-6).contains(&t) && (p - from - t * along).length() < 1e-9
+            });
+            assert_eq!(between.count(), 0, "seed {seed}: on the edge {a}-{b}");
+        }
+    }
 }
 
 /// What is asked for by hand is what is made: an edge has the depth of its deeper side.

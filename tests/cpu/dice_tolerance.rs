@@ -28,7 +28,7 @@ fn distance(surface: &LimitSurface, point: DVec3, start: &Place) -> f64 {
 }
 
 /// The greatest distance from points in some of the faces to the limit surface.
-fn measure(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> f64 {
+pub fn measure(mesh: &ControlMesh, tessellation: &Tessellation<f64>) -> f64 {
     let surface = LimitSurface::new(mesh).unwrap();
     // Where facets are few, no vertex around need have its place on the face that is nearest.
     let dense = match mesh.face_count() < 20 {

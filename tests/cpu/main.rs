@@ -10,6 +10,7 @@ mod dice;
 mod dice_closed;
 mod dice_tolerance;
 mod edge_normals;
+mod edits;
 mod error;
 mod exactness;
 mod face_varying;
@@ -24,6 +25,8 @@ mod properties;
 mod reader_properties;
 mod readers;
 mod records;
+mod repair;
+
 mod schemes;
 mod topology;
 mod twin_comments;

@@ -1,7 +1,7 @@
 //! Nothing that is read, however broken, may panic, run for long or use up memory.
 
 use ash_subdiv::ControlMesh;
-use ash_subdiv::mesh::ObjOptions;
+use ash_subdiv::mesh::{ObjOptions, RepairOptions};
 use proptest::prelude::*;
 
 const OBJ: &str = "# comment\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0 1\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 1\nvn 0 0 1\n\
@@ -11,6 +11,9 @@ const OBJ: &str = "# comment\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0 1\nv 2 0 0\nv 2
 fn read_obj(bytes: &[u8]) {
     for drop_isolated in [false, true] {
         let _ = ControlMesh::from_obj_bytes(bytes, &ObjOptions { drop_isolated });
+    }
+    for weld in [None, Some(0.0), Some(0.01)] {
+        let _ = ControlMesh::from_obj_bytes_repaired(bytes, &RepairOptions { weld });
     }
 }
 
@@ -128,7 +131,7 @@ mod gltf {
     }
 
     fn read_gltf(bytes: &[u8]) -> bool {
-        let named = GltfOptions { mesh: Some("node".into()), folder: None };
+        let named = GltfOptions { mesh: Some("node".into()), folder: None, quads: true };
         let _ = ControlMesh::from_gltf_bytes(bytes, &named);
         ControlMesh::from_gltf_bytes(bytes, &GltfOptions::default()).is_ok()
     }
@@ -212,6 +215,30 @@ mod gltf {
                 }
             }
             read_gltf(&glb(&json));
+        }
+    }
+}
+
+mod ply {
+    use super::*;
+
+    const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        property float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n";
+
+    fn read_ply(bytes: &[u8]) {
+        let _ = ControlMesh::from_ply_bytes(bytes);
+        let _ = ControlMesh::from_ply_bytes_repaired(bytes, &RepairOptions::default());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, cases: 1000, ..ProptestConfig::default() })]
+
+        #[test]
+        fn ply_mutated(bytes in mutated(PLY.into())) {
+            read_ply(&bytes);
+            let binary = String::from_utf8_lossy(&bytes).replace("ascii", "binary_big_endian");
+            read_ply(binary.as_bytes());
         }
     }
 }

@@ -16,7 +16,7 @@ fn shared_meshes_have_the_vertices_and_faces_their_text_has() {
     let mut read_count = 0;
     for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes")).unwrap() {
         let path = entry.unwrap().path();
-        // Three faces meet at edges of the fan: the test below.
+        // Three faces meet at edges of the fan: the test below, and those of `repair`.
         if path.extension().is_none_or(|ending| ending != "obj") || path.ends_with("catmark_fan.obj") {
             continue;
         }
@@ -60,8 +60,8 @@ fn paths_that_are_wrong() {
     let default = ReadOptions::default();
     assert_error(&folder.join("none.obj"), &default, "there is no such file");
     assert_error(&folder.join("none.GLB"), &default, "there is no such file");
-    assert_error(&folder.join("a.stl"), &default, "files ending in .stl can't be read: use .obj, .gltf or .glb");
-    assert_error(&folder.join("a"), &default, "the name has no ending: it must be .obj, .gltf or .glb");
+    assert_error(&folder.join("a.stl"), &default, "files ending in .stl can't be read: use .obj, .ply, .gltf or .glb");
+    assert_error(&folder.join("a"), &default, "the name has no ending: it must be .obj, .ply, .gltf or .glb");
     std::fs::create_dir_all(folder.join("folder.obj")).unwrap();
     assert_error(&folder.join("folder.obj"), &default, "this is a directory: name a file in it");
 }

@@ -3,7 +3,8 @@
 use super::super::cull::{CullArg, cull};
 use super::super::described::help;
 use super::super::parse;
-use super::super::source::DeviceArgs;
+use super::super::rules::RulesArgs;
+use super::super::source::{DeviceArgs, ReadingArgs};
 use super::presets::{self, Preset};
 use super::results::Results;
 use ash_subdiv::adaptive::Sums;
@@ -16,14 +17,15 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = help::<Results>(NOTES, EXAMPLES), allow_negative_numbers = true)]
 pub(in super::super) struct BenchArgs {
-    /// Control meshes: files ending in .obj, .gltf or .glb.
+    /// Control meshes: files ending in .obj, .ply, .gltf or .glb.
     pub(super) mesh: Vec<PathBuf>,
     /// A built-in shape, see `subdiv shapes`; several with commas. The creature if no mesh is given.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(super) shape: Vec<String>,
-    /// Take out vertices that belong to no face, instead of refusing the file (OBJ).
-    #[arg(long)]
-    pub(super) drop_isolated: bool,
+    #[command(flatten)]
+    pub(super) reading: ReadingArgs,
+    #[command(flatten)]
+    pub(super) rules: RulesArgs,
     /// Schemes, with commas; all if not given.
     #[arg(long, value_name = "SCHEME", value_delimiter = ',', value_parser = parse::one_of(Scheme::ALL, Scheme::name))]
     pub(super) schemes: Vec<Scheme>,
@@ -120,7 +122,7 @@ pub(in super::super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "creases", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "sharpness", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
+        conflicts_with_all = ["mesh", "shape", "strict", "weld", "rebuild_quads", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "creases", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "sharpness", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]

@@ -1,11 +1,13 @@
 //! The meshes that are drawn.
 
 use super::super::error::CliError;
+use super::super::output;
+use super::super::source::notes;
 use super::args::BenchArgs;
 use super::facts::{MeshOut, sharpness_in_name};
 use super::unique;
 use ash_subdiv::bench::{Subject, Subset};
-use ash_subdiv::mesh::{ReadOptions, SHARPNESS_INFINITE, read, replicate, shape};
+use ash_subdiv::mesh::{SHARPNESS_INFINITE, replicate, shape};
 use ash_subdiv::{ControlMesh, MeshData};
 use std::path::PathBuf;
 
@@ -50,19 +52,20 @@ impl BenchArgs {
 
     /// Reads files and makes shapes, with each sharpness that is asked for.
     fn originals(&self) -> Result<Vec<Original>, CliError> {
-        let options = ReadOptions { drop_isolated: self.drop_isolated, ..ReadOptions::default() };
         let mut meshes = Vec::new();
         for path in unique(&self.mesh, |path| path) {
             // Without its folder, where that is enough.
             let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
             let alone = self.mesh.iter().all(|other| other == path || name(other) != name(path));
             let name = name(path).filter(|_| alone).unwrap_or_else(|| path.display().to_string());
-            meshes.push((name, read(path, &options)?));
+            let (mesh, repairs) = self.reading.read(path, None)?;
+            notes(&repairs).iter().for_each(|note| output::note(format_args!("{name}: {note}")));
+            meshes.push((name, self.rules.apply(mesh)?));
         }
         let usual = [self.preset.map_or("creature", |preset| preset.shape).to_owned()];
         let shapes = if self.mesh.is_empty() && self.shape.is_empty() { &usual } else { &self.shape[..] };
         for name in unique(shapes, |name| name) {
-            meshes.push((name.clone(), shape(name)?));
+            meshes.push((name.clone(), self.rules.apply(shape(name)?)?));
         }
         let sweep = self.sharpness_sweep();
         let mut originals = Vec::new();

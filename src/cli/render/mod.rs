@@ -6,6 +6,7 @@ mod draw;
 use super::described::described;
 use super::error::CliError;
 use super::info::Patches;
+use super::local::Local;
 use super::output::{self, Progress, write_file};
 use super::paint::{ErrorMap, Legend, LevelMap, Painting};
 use super::picture::unpremultiply;
@@ -81,7 +82,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     args.check_shading()?;
     let legend = if args.shading.is_painted() { Legend::height(args.size)? } else { 0 };
     let progress = Progress::new("reading the mesh");
-    let mesh = args.mesh.load()?;
+    let (mesh, local) = Local::of(args.mesh.load(&progress)?)?;
     let painting = args.painting(&mesh, &progress)?;
     progress.now("building tables");
     let evaluation = args.factor.level.map_or(args.evaluation.evaluation, |_| Evaluation::Subdivision);
@@ -97,7 +98,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let patches = Patches::of(&tables);
     let size @ [width, height] = [args.size[0], args.size[1] - legend];
     let seen = args.seen_points(&mesh, texels.as_ref())?;
-    let view = args.camera.view(&seen, f64::from(width) / f64::from(height))?.sized(width, height);
+    let view = args.camera.in_space(local).view(&seen, f64::from(width) / f64::from(height))?.sized(width, height);
     progress.now("drawing");
     let (samples, device, mut pixels, statistics) = args.device.run(|headless| {
         let samples = args.check_limits(headless.properties())?;

@@ -31,7 +31,8 @@ fn check_count(name: &str, accessor: &Accessor, positions: &Accessor) -> Result<
 #[cfg(test)]
 mod tests;
 
-use super::{ControlMesh, FaceVarying, MeshData, MeshError};
+use super::repair::{quads, weld};
+use super::{ControlMesh, FaceVarying, MeshData, MeshError, RepairOptions, Repairs};
 use ::gltf::json;
 use accessor::Accessor;
 use error::format_error;
@@ -51,6 +52,9 @@ pub struct GltfOptions {
     pub mesh: Option<String>,
     /// Where files that the glTF names are looked for.
     pub folder: Option<PathBuf>,
+    /// Put quads together that were split into triangles, as exporters do: by their order in the file, or else by shape. Only where
+    /// most triangles are parts of quads, and never across seams of texture coordinates or materials.
+    pub quads: bool,
 }
 
 const NGONS: &str = "FB_ngon_encoding";
@@ -78,8 +82,9 @@ impl ControlMesh {
     /// * Polygons are those that the extension `FB_ngon_encoding` marks: triangles in a row that share their first
     ///   corner and go on where the last ended. Without it, triangles, strips and fans give triangles. Points, lines
     ///   and triangles with two corners at one place are passed over.
-    /// * Vertices of one mesh whose positions are equal in every bit become one vertex, so that seams of texture
-    ///   coordinates or normals are no boundaries of the surface. `TEXCOORD_0` and `NORMAL` are kept a face corner;
+    /// * Edges of one mesh that lie on one another (their ends are equal in every bit) become one edge, so that seams of texture
+    ///   coordinates, normals or materials are no boundaries of the surface. Where more than two lie on one another, each is joined
+    ///   with the one that bounds the same solid. A sheet and its back are not joined, nor are pieces that only touch. `TEXCOORD_0` and `NORMAL` are kept a face corner;
     ///   where only some primitives have them, the others get (0, 0) and (0, 0, 0).
     /// * The transforms of the nodes are applied; one that mirrors turns the faces round. That of a node with a skin is
     ///   not, as the format has it. Skins and morph targets are not applied.
@@ -90,23 +95,45 @@ impl ControlMesh {
     /// [`MeshError::Format`] for a file that is broken or requires extensions that change the shape,
     /// [`MeshError::UnknownMesh`], and those of [`ControlMesh::new`].
     pub fn from_gltf_bytes(bytes: &[u8], options: &GltfOptions) -> Result<Self, MeshError> {
-        let (json, binary) = container::split(bytes)?;
-        let root = container::parse(json)?;
-        check_extensions(&root)?;
-        let mut instances = scene::instances(&root)?;
-        if let Some(name) = &options.mesh {
-            instances = scene::choose(instances, name)?;
-        }
-        let buffers = container::buffers(&root, binary, options.folder.as_deref())?;
-        let mut builder = Builder::default();
-        for instance in &instances {
-            builder.add_instance(&root, &buffers, instance)?;
-        }
-        if builder.data.face_sizes.is_empty() {
-            return Err(format_error("the scene has no triangles: points and lines have no surface"));
-        }
-        Self::new(builder.finish())
+        Self::new(read(bytes, options)?.0)
     }
+
+    /// As [`ControlMesh::from_gltf_bytes`], with what is odd about the file mended: see [`repair`](super::repair).
+    ///
+    /// # Errors
+    /// As [`ControlMesh::from_gltf_bytes`], for what can't be mended.
+    pub fn from_gltf_bytes_repaired(
+        bytes: &[u8],
+        options: &GltfOptions,
+        repair: &RepairOptions,
+    ) -> Result<(Self, Repairs), MeshError> {
+        let (data, rebuilt_quads) = read(bytes, options)?;
+        let (mesh, repairs) = Self::repaired(data, repair)?;
+        Ok((mesh, Repairs { rebuilt_quads, ..repairs }))
+    }
+}
+
+/// The data of a file, and how many quads were put together.
+pub(super) fn read(bytes: &[u8], options: &GltfOptions) -> Result<(MeshData, usize), MeshError> {
+    let (json, binary) = container::split(bytes)?;
+    let root = container::parse(json)?;
+    check_extensions(&root)?;
+    let mut instances = scene::instances(&root)?;
+    if let Some(name) = &options.mesh {
+        instances = scene::choose(instances, name)?;
+    }
+    let buffers = container::buffers(&root, binary, options.folder.as_deref())?;
+    let mut builder = Builder::default();
+    for instance in &instances {
+        builder.add_instance(&root, &buffers, instance)?;
+    }
+    if builder.data.face_sizes.is_empty() {
+        return Err(format_error("the scene has no triangles: points and lines have no surface"));
+    }
+    let groups = std::mem::take(&mut builder.groups);
+    let mut data = builder.finish();
+    let rebuilt = if options.quads { quads::rebuild(&mut data, &groups) } else { 0 };
+    Ok((data, rebuilt))
 }
 
 fn check_extensions(root: &json::Root) -> Result<(), MeshError> {
@@ -133,6 +160,11 @@ struct Builder {
     attributes: Vec<u32>,
     has_texcoords: bool,
     has_normals: bool,
+    /// Of every vertex, the first one of its instance that has its position.
+    places: Vec<u32>,
+    /// Of every face, the number of its primitive; `u32::MAX` where the file says which triangles are polygons.
+    groups: Vec<u32>,
+    primitives: u32,
 }
 
 /// What a vertex of a primitive became.
@@ -149,9 +181,9 @@ impl Builder {
         buffers: &[Cow<'_, [u8]>],
         instance: &Instance<'_>,
     ) -> Result<(), MeshError> {
-        let mut welded = HashMap::new();
+        let mut places = HashMap::new();
         for primitive in &instance.mesh.primitives {
-            self.add_primitive(root, buffers, instance, primitive, &mut welded)?;
+            self.add_primitive(root, buffers, instance, primitive, &mut places)?;
         }
         Ok(())
     }
@@ -162,7 +194,7 @@ impl Builder {
         buffers: &[Cow<'_, [u8]>],
         instance: &Instance<'_>,
         primitive: &Primitive,
-        welded: &mut HashMap<[u64; 3], u32>,
+        places: &mut HashMap<[u64; 3], u32>,
     ) -> Result<(), MeshError> {
         let Checked::Valid(mode) = primitive.mode else {
             return Err(format_error("a primitive has an unknown mode: it must be 0 to 6"));
@@ -190,6 +222,8 @@ impl Builder {
         let linear = DMat3::from_mat4(instance.transform);
         let mirrored = linear.determinant() < 0.0;
         let normal_transform = cofactors(linear) * if mirrored { -1.0 } else { 1.0 };
+        let group = if ngons { u32::MAX } else { self.primitives };
+        self.primitives += 1;
         let mut locals: HashMap<u32, Local> = HashMap::new();
         polygons::for_each_face(&indices, mode, ngons, |corners| {
             let first = self.data.face_vertices.len();
@@ -203,7 +237,7 @@ impl Builder {
             }
             for &corner in corners {
                 let local = *locals.entry(corner).or_insert_with(|| {
-                    let vertex = self.weld(positions.get(corner as usize), instance, welded);
+                    let vertex = self.add_vertex(positions.get(corner as usize), instance, places);
                     let texcoord = texcoords.as_ref().map_or([0.0; 2], |texcoords| texcoords.get(corner as usize));
                     let normal = normals.as_ref().map_or([0.0; 3], |normals| normals.get(corner as usize));
                     let normal = (normal_transform * DVec3::from(normal)).normalize_or_zero();
@@ -220,6 +254,7 @@ impl Builder {
                 self.attributes[first + 1..].reverse();
             }
             self.data.face_sizes.push(corners.len() as u32);
+            self.groups.push(group);
             Ok(())
         })?;
         self.has_texcoords |= texcoords.is_some();
@@ -227,20 +262,22 @@ impl Builder {
         Ok(())
     }
 
-    /// The vertex at a position of an instance's mesh, new if none is there yet.
-    fn weld(&mut self, position: [f64; 3], instance: &Instance<'_>, welded: &mut HashMap<[u64; 3], u32>) -> u32 {
+    /// Adds a vertex of an instance's mesh, and notes which others have its position.
+    fn add_vertex(&mut self, position: [f64; 3], instance: &Instance<'_>, places: &mut HashMap<[u64; 3], u32>) -> u32 {
+        let vertex = self.data.positions.len() as u32;
         // Adding zero makes -0 and 0 the same.
-        *welded.entry(position.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
-            let position = DVec3::from(position);
-            let placed = instance.transform.transform_point3(position);
-            // An infinite coordinate would make the others NaN, and hide from the message what is wrong.
-            let placed = if position.is_finite() { placed } else { position };
-            self.data.positions.push(placed.to_array());
-            self.data.positions.len() as u32 - 1
-        })
+        self.places.push(*places.entry(position.map(|x| (x + 0.0).to_bits())).or_insert(vertex));
+        let position = DVec3::from(position);
+        let placed = instance.transform.transform_point3(position);
+        // An infinite coordinate would make the others NaN, and hide from the message what is wrong.
+        let placed = if position.is_finite() { placed } else { position };
+        self.data.positions.push(placed.to_array());
+        vertex
     }
 
+    /// Joins what the file split, edge by edge.
     fn finish(mut self) -> MeshData {
+        weld::join(&mut self.data, &self.places);
         if self.has_texcoords {
             self.data.texcoords = Some(FaceVarying { values: self.texcoords, indices: self.attributes.clone() });
         }

@@ -1,12 +1,14 @@
 //! Wavefront OBJ, with the tags OpenSubdiv's regression shapes have.
 
+mod edits;
 mod statements;
 mod tags;
 #[cfg(test)]
 mod tests;
 
-use super::{ControlMesh, FaceVarying, MeshData, MeshError};
-use statements::{ABSENT, face_corner, for_each_statement, number, number_f32};
+use super::{ControlMesh, FaceVarying, MeshData, MeshError, Place, RepairOptions, Repairs};
+use statements::{ABSENT, NOTHING, face_corner, for_each_statement, number, number_f32, number_or_none};
+use std::borrow::Cow;
 
 /// How [`ControlMesh::from_obj_str`] reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,6 +25,7 @@ struct Lines {
     faces: Vec<usize>,
     creases: Vec<usize>,
     corners: Vec<usize>,
+    edits: Vec<usize>,
     /// With the face, since [`ControlMesh::new`] tells which face is wrong, not which hole.
     holes: Vec<(u32, usize)>,
 }
@@ -34,17 +37,25 @@ struct ObjFile {
     lines: Lines,
     texcoords: FaceVarying<[f32; 2]>,
     normals: FaceVarying<[f32; 3]>,
+    /// Whether what [`repair`](super::repair) mends is no error.
+    mend: bool,
 }
 
 impl ControlMesh {
     /// Reads the text of an OBJ file. Objects, groups, materials and smoothing are passed over: all faces of the file
     /// become one mesh, and polygons stay polygons.
     ///
-    /// Understood are `v` (more than three components are ignored), `vt` (one to three; the third is ignored), `vn`,
+    /// Understood are `v` (more than three components are ignored), `vt` (one to three; the third is ignored; v is
+    /// turned round, for in OBJ it runs up from the bottom of the image), `vn`,
     /// `f` with indices that count from one or back, and the tags `t crease`, `corner`, `hole`,
     /// `interpolateboundary`, `creasemethod`, `smoothtriangles` and `facevaryinginterpolateboundary`, whose vertices
-    /// and faces count from zero. A crease may be a chain of more than two vertices. Where only some faces have
-    /// texture coordinates the others get (0, 0), and likewise the normal (0, 0, 0).
+    /// and faces count from zero, and `vertexedit`, `edgeedit` and `faceedit`, which become [`Edit`](super::Edit)s. A crease
+    /// may be a chain of more than two vertices. Where only some faces have texture coordinates the others get (0, 0), and
+    /// likewise the normal (0, 0, 0).
+    ///
+    /// The integers of an edit are paths: the number of those that follow, a face, a child a level, and the corner or edge of the last
+    /// face (of a `faceedit` none). Its strings are `add P value`, `subtract P value` or `set P value`, with three numbers a path, in
+    /// object space; `set P sharpness`, with one number a path; of a `faceedit` just `hole`. Numbers beyond those are passed over.
     ///
     /// Without a tag the rules are those of [`MeshData::default`]; OpenSubdiv's own test programs take
     /// [`EdgeOnly`](super::BoundaryRule::EdgeOnly) for a file without `interpolateboundary`.
@@ -60,11 +71,7 @@ impl ControlMesh {
     /// [`MeshError::Syntax`] for a statement that can't be read, and those of [`ControlMesh::new`] with their line
     /// ([`MeshError::AtLine`]); in these, vertices and faces count from zero as everywhere.
     pub fn from_obj_str(text: &str, options: &ObjOptions) -> Result<Self, MeshError> {
-        let mut file = ObjFile::default();
-        for_each_statement(text, |line, statement| {
-            file.read(line, statement).map_err(|message| MeshError::Syntax { line, message })
-        })?;
-        file.into_mesh(options)
+        ObjFile::parse(text, false)?.into_mesh(options)
     }
 
     /// As [`ControlMesh::from_obj_str`], from the bytes of a file.
@@ -75,33 +82,57 @@ impl ControlMesh {
     /// # Errors
     /// As [`ControlMesh::from_obj_str`].
     pub fn from_obj_bytes(bytes: &[u8], options: &ObjOptions) -> Result<Self, MeshError> {
-        let utf_16 = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
-            let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
-            String::from_utf16_lossy(&units).into()
-        };
-        let text = match bytes {
-            [0xff, 0xfe, rest @ ..] => utf_16(rest, u16::from_le_bytes),
-            [0xfe, 0xff, rest @ ..] => utf_16(rest, u16::from_be_bytes),
-            _ => String::from_utf8_lossy(bytes),
-        };
-        Self::from_obj_str(&text, options)
+        Self::from_obj_str(&decoded(bytes), options)
+    }
+
+    /// As [`ControlMesh::from_obj_bytes`], with what is odd about the file mended: see [`repair`](super::repair). Repairs know
+    /// their line. Numbers that are none are accepted where nothing needs them.
+    ///
+    /// # Errors
+    /// As [`ControlMesh::from_obj_str`], for what can't be mended.
+    pub fn from_obj_bytes_repaired(bytes: &[u8], options: &RepairOptions) -> Result<(Self, Repairs), MeshError> {
+        ObjFile::parse(&decoded(bytes), true)?.into_repaired(options)
+    }
+}
+
+fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    let utf_16 = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
+        String::from_utf16_lossy(&units).into()
+    };
+    match bytes {
+        [0xff, 0xfe, rest @ ..] => utf_16(rest, u16::from_le_bytes),
+        [0xfe, 0xff, rest @ ..] => utf_16(rest, u16::from_be_bytes),
+        _ => String::from_utf8_lossy(bytes),
     }
 }
 
 impl ObjFile {
+    fn parse(text: &str, mend: bool) -> Result<Self, MeshError> {
+        let mut file = Self { mend, ..Self::default() };
+        for_each_statement(text, |line, statement| {
+            file.read(line, statement).map_err(|message| MeshError::Syntax { line, message })
+        })?;
+        Ok(file)
+    }
+
     fn read(&mut self, line: usize, statement: &str) -> Result<(), String> {
         let mut words = statement.split_ascii_whitespace();
         match words.next() {
             Some("f") => return self.read_face(line, words),
             Some("v") => {
+                let number = if self.mend { number_or_none } else { number };
                 self.data.positions.push(components(words, "v", number)?);
                 self.lines.vertices.push(line);
             }
             Some("vt") => {
-                let u = number_f32(words.next().ok_or("\"vt\" needs one number or more, but has none")?)?;
-                self.texcoords.values.push([u, words.next().map_or(Ok(0.0), number_f32)?]);
+                let texcoord = texcoord(words);
+                self.texcoords.values.push(if self.mend { texcoord.unwrap_or([f32::NAN; 2]) } else { texcoord? });
             }
-            Some("vn") => self.normals.values.push(components(words, "vn", number_f32)?),
+            Some("vn") => {
+                let normal = components(words, "vn", number_f32);
+                self.normals.values.push(if self.mend { normal.unwrap_or([f32::NAN; 3]) } else { normal? });
+            }
             Some("t") => return tags::read(words, line, &mut self.data, &mut self.lines),
             _ => {}
         }
@@ -112,13 +143,13 @@ impl ObjFile {
         let counts = [self.data.positions.len(), self.texcoords.values.len(), self.normals.values.len()];
         let first = self.data.face_vertices.len();
         for word in words {
-            let [vertex, texcoord, normal] = face_corner(word, counts)?;
+            let [vertex, texcoord, normal] = face_corner(word, counts, self.mend)?;
             self.data.face_vertices.push(vertex);
             self.texcoords.indices.push(texcoord);
             self.normals.indices.push(normal);
         }
         for (what, indices) in [("texture coordinate", &self.texcoords.indices), ("normal", &self.normals.indices)] {
-            if indices[first..].windows(2).any(|pair| (pair[0] == ABSENT) != (pair[1] == ABSENT)) {
+            if !self.mend && indices[first..].windows(2).any(|pair| (pair[0] == ABSENT) != (pair[1] == ABSENT)) {
                 return Err(format!(
                     "some corners of the face have a {what} and some have none: give it to all or none"
                 ));
@@ -131,7 +162,7 @@ impl ObjFile {
 
     fn into_mesh(self, options: &ObjOptions) -> Result<ControlMesh, MeshError> {
         self.check_indices()?;
-        let Self { mut data, mut lines, texcoords, normals } = self;
+        let Self { mut data, mut lines, texcoords, normals, .. } = self;
         data.texcoords = completed(texcoords, [0.0; 2]);
         data.normals = completed(normals, [0.0; 3]);
         // Without faces all vertices would go, and the error would be the wrong one.
@@ -139,10 +170,23 @@ impl ObjFile {
         let kept = (options.drop_isolated && droppable).then(|| drop_isolated(&mut data, &mut lines)).transpose()?;
         ControlMesh::new(data).map_err(|mut error| {
             if let Some(kept) = kept {
-                number_as_in_file(&mut error, &kept);
+                error.renumber(|vertex| kept[vertex as usize], |face| face);
             }
             lines.locate(error)
         })
+    }
+
+    fn into_repaired(mut self, options: &RepairOptions) -> Result<(ControlMesh, Repairs), MeshError> {
+        self.check_indices()?;
+        complete(&mut self.texcoords, &self.data.face_sizes, [0.0; 2]);
+        complete(&mut self.normals, &self.data.face_sizes, [0.0; 3]);
+        let Self { mut data, lines, texcoords, normals, .. } = self;
+        let given = |indices: &[u32]| indices.iter().any(|&index| index != ABSENT);
+        data.texcoords = Some(texcoords).filter(|texcoords| given(&texcoords.indices));
+        data.normals = Some(normals).filter(|normals| given(&normals.indices));
+        let (mesh, mut repairs) = ControlMesh::repaired(data, options).map_err(|error| lines.locate(error))?;
+        repairs.list.iter_mut().for_each(|repair| repair.line = lines.of(repair.first));
+        Ok((mesh, repairs))
     }
 
     /// Indices may point forward in the file, so they can be checked only when all of it is read.
@@ -162,7 +206,7 @@ impl ObjFile {
                     ("texture coordinate", self.texcoords.indices[corner], texcoords),
                     ("normal", self.normals.indices[corner], normals),
                 ] {
-                    if index != ABSENT && index as usize >= count {
+                    if !self.mend && index != ABSENT && index as usize >= count {
                         return Err(at_line(MeshError::CornerIndex { what, corner, index, count }));
                     }
                 }
@@ -184,6 +228,41 @@ fn components<'a, T: Copy + Default, const N: usize>(
         *component = number(word)?;
     }
     Ok(components)
+}
+
+/// One number or more; the first two count. In OBJ v runs up from the bottom of the image, here down from its top.
+fn texcoord<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f32; 2], String> {
+    let u = number_f32(words.next().ok_or("\"vt\" needs one number or more, but has none")?)?;
+    let v = words.next().map_or(Ok(0.0), |word| number_f32(word).and_then(|_| number(word)))?;
+    Ok([u, from_top(v) as f32])
+}
+
+/// Puts a texture coordinate's v from the bottom of the image to its top, and back. In double precision, so that v comes back as
+/// it was.
+pub(crate) fn from_top(v: f64) -> f64 {
+    1.0 - v
+}
+
+/// Gives the corners of faces that have no values at all the value `fill`, if other faces have some.
+fn complete<T>(attribute: &mut FaceVarying<T>, face_sizes: &[u32], fill: T) {
+    let fill_index = attribute.values.len() as u32;
+    if attribute.indices.iter().all(|&index| index == ABSENT) {
+        return;
+    }
+    let is_wrong = |index: u32| index >= fill_index && index != ABSENT;
+    attribute.indices.iter_mut().filter(|index| is_wrong(**index)).for_each(|index| *index = NOTHING);
+    let (mut rest, mut filled) = (attribute.indices.as_mut_slice(), false);
+    for &size in face_sizes {
+        let (face, tail) = rest.split_at_mut(size as usize);
+        if face.iter().all(|&index| index == ABSENT) {
+            filled |= !face.is_empty();
+            face.fill(fill_index);
+        }
+        rest = tail;
+    }
+    if filled {
+        attribute.values.push(fill);
+    }
 }
 
 /// Gives corners that have no value the value `fill`; none at all if no corner has one.
@@ -237,26 +316,28 @@ fn drop_isolated(data: &mut MeshData, lines: &mut Lines) -> Result<Vec<u32>, Mes
     Ok(kept)
 }
 
-/// Puts the numbers that vertices have in the file into an error about the mesh they were renumbered for.
-fn number_as_in_file(error: &mut MeshError, kept: &[u32]) {
-    let renumber = |vertex: &mut u32| *vertex = kept[*vertex as usize];
-    match error {
-        MeshError::RepeatedVertex { vertex, .. } => renumber(vertex),
-        MeshError::NonManifoldEdge { edge, .. }
-        | MeshError::InconsistentOrientation { edge, .. }
-        | MeshError::NoSuchEdge { edge, .. } => edge.iter_mut().for_each(renumber),
-        _ => {}
-    }
-}
-
 impl Lines {
+    /// The line of something.
+    fn of(&self, place: Place) -> Option<usize> {
+        match place {
+            Place::Vertex(vertex) => self.vertices.get(vertex as usize).copied(),
+            Place::Face(face) | Place::Edge { face, .. } => self.faces.get(face as usize).copied(),
+            Place::Crease(crease) => self.creases.get(crease).copied(),
+            Place::Corner(corner) => self.corners.get(corner).copied(),
+            Place::Hole(face) => self.holes.iter().find(|hole| hole.0 == face).map(|hole| hole.1),
+        }
+    }
+
     /// Adds the line of the element that `error` is about.
     fn locate(&self, error: MeshError) -> MeshError {
         let line = match &error {
-            MeshError::IsolatedVertex { vertex } => Some(self.vertices[*vertex as usize]),
+            MeshError::IsolatedVertex { vertex } | MeshError::NotFinite { vertex, .. } => {
+                Some(self.vertices[*vertex as usize])
+            }
             MeshError::NoSuchEdge { crease, .. } => Some(self.creases[*crease]),
             MeshError::NoSuchVertex { corner, .. } => Some(self.corners[*corner]),
             MeshError::NoSuchFace { face, .. } => self.holes.iter().find(|hole| hole.0 == *face).map(|hole| hole.1),
+            MeshError::BadEdit { edit, .. } => Some(self.edits[*edit]),
             MeshError::BadSharpness { what: "crease", index, .. } => Some(self.creases[*index]),
             MeshError::BadSharpness { index, .. } => Some(self.corners[*index]),
             error => error.face().map(|face| self.faces[face as usize]),

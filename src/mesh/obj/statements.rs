@@ -42,6 +42,13 @@ pub(super) fn number(word: &str) -> Result<f64, String> {
     }
 }
 
+/// A number; what writers put in place of one is none.
+pub(super) fn number_or_none(word: &str) -> Result<f64, String> {
+    const NONE: [&str; 3] = ["nan", "inf", "ind"];
+    let lower = word.to_ascii_lowercase();
+    if NONE.iter().any(|none| lower.contains(none)) { Ok(f64::NAN) } else { number(word) }
+}
+
 /// A finite number in single precision.
 pub(super) fn number_f32(word: &str) -> Result<f32, String> {
     let number = number(word)? as f32;
@@ -50,17 +57,25 @@ pub(super) fn number_f32(word: &str) -> Result<f32, String> {
 
 /// What the part of a face corner that is not written counts as.
 pub(super) const ABSENT: u32 = u32::MAX;
+/// What an index counts as that names nothing, where that is mended.
+pub(super) const NOTHING: u32 = ABSENT - 1;
 
 /// The vertex, texture coordinate and normal of a face corner, counted from zero, [`ABSENT`] where not given.
 ///
-/// `counts` tells how many of each came before, for indices that count back.
-pub(super) fn face_corner(word: &str, counts: [usize; 3]) -> Result<[u32; 3], String> {
+/// `counts` tells how many of each came before, for indices that count back. With `mend`, texture coordinates and normals may
+/// name nothing.
+pub(super) fn face_corner(word: &str, counts: [usize; 3], mend: bool) -> Result<[u32; 3], String> {
     let mut corner = [ABSENT; 3];
     let mut parts = word.split('/');
     for ((index, what), count) in corner.iter_mut().zip(["vertex", "texture coordinate", "normal"]).zip(counts) {
         match parts.next() {
             None | Some("") => {}
-            Some(part) => *index = face_index(part, what, count)?,
+            Some(part) => {
+                *index = match face_index(part, what, count) {
+                    Err(_) if mend && what != "vertex" => NOTHING,
+                    other => other?,
+                }
+            }
         }
     }
     if corner[0] == ABSENT || parts.next().is_some() {
@@ -73,7 +88,7 @@ fn face_index(word: &str, what: &str, count: usize) -> Result<u32, String> {
     let wrong = || format!("\"{word}\" is not the index of a {what}: indices count from 1, or back from -1");
     match word.parse::<i64>().map_err(|_| wrong())? {
         0 => Err(wrong()),
-        index @ 1.. => u32::try_from(index - 1).ok().filter(|&index| index != ABSENT).ok_or_else(wrong),
+        index @ 1.. => u32::try_from(index - 1).ok().filter(|&index| index < NOTHING).ok_or_else(wrong),
         back => usize::try_from(back.unsigned_abs())
             .ok()
             .and_then(|back| count.checked_sub(back))

@@ -1,17 +1,17 @@
 //! OpenSubdiv's tags: `t name integers/floats/strings arguments…`.
 
-use super::{Lines, statements};
+use super::{Lines, edits, statements};
 use crate::mesh::{BoundaryRule, Corner, Crease, CreaseMethod, FaceVaryingRule, MeshData, TriangleRule};
 use std::str::FromStr;
 
 /// A tag whose arguments are as many as it announces.
-struct Tag<'a> {
-    name: &'a str,
+pub(super) struct Tag<'a> {
+    pub(super) name: &'a str,
     /// The announcement, as written.
     counts: &'a str,
-    integers: Vec<&'a str>,
-    floats: Vec<&'a str>,
-    strings: Vec<&'a str>,
+    pub(super) integers: Vec<&'a str>,
+    pub(super) floats: Vec<&'a str>,
+    pub(super) strings: Vec<&'a str>,
 }
 
 /// Reads the tag made of `words` (those after the `t`). Tags of unknown name are passed over.
@@ -26,6 +26,10 @@ pub(super) fn read<'a>(
         "crease" => tag.add_creases(line, data, lines)?,
         "corner" => tag.add_corners(line, data, lines)?,
         "hole" => tag.add_holes(line, data, lines)?,
+        "vertexedit" | "edgeedit" | "faceedit" => {
+            data.edits.extend(edits::read(&tag)?);
+            lines.edits.resize(data.edits.len(), line);
+        }
         "interpolateboundary" => {
             data.boundary = match tag.only_integer()? {
                 "0" => BoundaryRule::None,
@@ -140,12 +144,12 @@ impl<'a> Tag<'a> {
     }
 
     /// The message for arguments of the wrong kind or number.
-    fn shape(&self, takes: &str, example: &str) -> String {
+    pub(super) fn shape(&self, takes: &str, example: &str) -> String {
         format!("the tag \"{}\" has {} arguments, but takes {takes} (such as {example})", self.name, self.counts)
     }
 
     /// The message for an argument that is not among the choices.
-    fn value(&self, value: &str, choices: &str) -> String {
+    pub(super) fn value(&self, value: &str, choices: &str) -> String {
         format!("\"{value}\" is no value of the tag \"{}\": use {choices}", self.name)
     }
 }
@@ -158,7 +162,7 @@ fn indices(words: &[&str]) -> Result<Vec<u32>, String> {
 }
 
 /// Anything from ten up is infinitely sharp, so "inf" is welcome here.
-fn sharpness(word: &str) -> Result<f32, String> {
+pub(super) fn sharpness(word: &str) -> Result<f32, String> {
     match word.parse::<f32>() {
         Ok(f32::INFINITY) => Ok(f32::INFINITY),
         _ => statements::number_f32(word),

@@ -1,5 +1,5 @@
 use super::*;
-use crate::mesh::{BoundaryRule, Corner, Crease, CreaseMethod, FaceVaryingRule, TriangleRule};
+use crate::mesh::{BoundaryRule, Change, Corner, Crease, CreaseMethod, Edit, FaceVaryingRule, TriangleRule};
 
 const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
@@ -72,14 +72,14 @@ fn further_components_are_accepted() {
     let text = QUAD.replace(" 0\n", " 0 1 0.5 0.5\n");
     assert_eq!(read(&text), read(QUAD));
     let data = read_after_quad("v 2 0 0\nvt 0.5\nvt 0.5 0.25\nvt 0.5 0.25 9\nf 3/1 2/2 5/3\n");
-    assert_eq!(data.texcoords.unwrap().values[..3], [[0.5, 0.0], [0.5, 0.25], [0.5, 0.25]]);
+    assert_eq!(data.texcoords.unwrap().values[..3], [[0.5, 1.0], [0.5, 0.75], [0.5, 0.75]], "v runs up the image");
 }
 
 #[test]
 fn face_corners_of_every_form() {
     let attributes = "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n";
     let quad = |face: &str| read(&QUAD.replace("f 1 2 3 4", &format!("{attributes}f {face}"))).into_data();
-    let texcoords = Some(FaceVarying { values: vec![[0., 0.], [1., 0.], [1., 1.]], indices: vec![0, 1, 2, 0] });
+    let texcoords = Some(FaceVarying { values: vec![[0., 1.], [1., 1.], [1., 0.]], indices: vec![0, 1, 2, 0] });
     let normals = Some(FaceVarying { values: vec![[0., 0., 1.]], indices: vec![0; 4] });
     for (face, has_texcoords, has_normals) in [
         ("1 2 3 4", false, false),
@@ -112,7 +112,7 @@ fn indices_may_point_forward() {
 #[test]
 fn faces_without_attributes_get_zero_where_others_have_them() {
     let data = read_after_quad("v 2 0 0\nvt 1 1\nvn 1 0 0\nf 3/1/1 2/1/1 5/1/1\n");
-    let texcoords = FaceVarying { values: vec![[1., 1.], [0., 0.]], indices: vec![1, 1, 1, 1, 0, 0, 0] };
+    let texcoords = FaceVarying { values: vec![[1., 0.], [0., 0.]], indices: vec![1, 1, 1, 1, 0, 0, 0] };
     assert_eq!(data.texcoords, Some(texcoords));
     let normals = FaceVarying { values: vec![[1., 0., 0.], [0., 0., 0.]], indices: vec![1, 1, 1, 1, 0, 0, 0] };
     assert_eq!(data.normals, Some(normals));
@@ -157,6 +157,64 @@ fn every_value_of_the_tags() {
         let text = format!("t smoothtriangles 0/0/1 smooth\nt smoothtriangles 0/0/1 {value}");
         assert_eq!(read_after_quad(&text).triangle_rule, rule);
     }
+}
+
+#[test]
+fn edits() {
+    let data = read_after_quad(
+        "t vertexedit 9/6/3 4 0 1 2 3 3 0 0 1 1 2 3 4 5 6 add P value\nt vertexedit 4/4/3 3 0 3 2 1 2 3 9 subtract P value\n\
+         t vertexedit 4/3/3 3 0 1 2 0.5 0 -1 set P value\nt vertexedit 4/1/3 3 0 1 2 inf set P sharpness\n\
+         t edgeedit 8/2/3 3 0 1 2 3 0 0 3 1.5 10 set P sharpness\nt faceedit 4/0/1 3 0 3 2 hole\n",
+    );
+    let edit = |children: &[u32], change| Edit { face: 0, children: children.to_vec(), change };
+    let expected = [
+        edit(&[1, 2], Change::Offset { corner: 3, offset: [1., 2., 3.] }),
+        edit(&[0], Change::Offset { corner: 1, offset: [4., 5., 6.] }),
+        edit(&[3], Change::Offset { corner: 2, offset: [-1., -2., -3.] }),
+        edit(&[1], Change::Position { corner: 2, position: [0.5, 0., -1.] }),
+        edit(&[1], Change::CornerSharpness { corner: 2, sharpness: f32::INFINITY }),
+        edit(&[1], Change::EdgeSharpness { edge: 2, sharpness: 1.5 }),
+        edit(&[0], Change::EdgeSharpness { edge: 3, sharpness: 10. }),
+        edit(&[3, 2], Change::Hole),
+    ];
+    assert_eq!(data.edits, expected);
+    // At level 0 they are made.
+    let data = read_after_quad("t vertexedit 3/3/3 2 0 2 1 1 1 add P value\nt faceedit 2/0/1 1 0 hole");
+    assert_eq!((data.positions[2], data.holes, data.edits), ([2., 2., 1.], vec![0], vec![]));
+}
+
+#[test]
+fn errors_of_edits() {
+    let few = "line 6: the tag \"vertexedit\" names 2 paths, which need 6 numbers (3 each), but has 5";
+    assert_error_after_quad("t vertexedit 8/5/3 3 0 1 2 3 0 1 3 1 2 3 4 5 add P value", few);
+    let none = "line 6: the tag \"edgeedit\" names 1 paths, which need 1 numbers (1 each), but has 0";
+    assert_error_after_quad("t edgeedit 4/0/3 3 0 1 2 set P sharpness", none);
+    let choices = "add P value, subtract P value, set P value or set P sharpness";
+    let value = format!("line 6: \"add P sharpness\" is no value of the tag \"vertexedit\": use {choices}");
+    assert_error_after_quad("t vertexedit 4/1/3 3 0 1 2 1 add P sharpness", &value);
+    let value = "line 6: \"set P value\" is no value of the tag \"edgeedit\": use set P sharpness";
+    assert_error_after_quad("t edgeedit 4/3/3 3 0 1 2 1 2 3 set P value", value);
+    let value = "line 6: \"\" is no value of the tag \"faceedit\": use hole";
+    assert_error_after_quad("t faceedit 3/0/0 2 0 1", value);
+    let announces = "line 6: path 1 announces 3 numbers, but 2 follow";
+    assert_error_after_quad("t faceedit 6/0/1 2 0 1 3 0 1 hole", announces);
+    let least = "line 6: path 0 has 1 numbers: a path of \"vertexedit\" is a face and its corner or edge at least";
+    assert_error_after_quad("t vertexedit 2/3/3 1 0 1 2 3 add P value", least);
+    let least = "line 6: path 0 has 0 numbers: a path of \"faceedit\" is a face at least";
+    assert_error_after_quad("t faceedit 1/0/1 0 hole", least);
+    let shape = "takes one path or more, each led by its length (such as 3/3/3)";
+    let shape = format!("line 6: the tag \"faceedit\" has 0/0/1 arguments, but {shape}");
+    assert_error_after_quad("t faceedit 0/0/1 hole", &shape);
+    let number = "line 6: \"-1\" in a path is no number: paths are made of numbers from 0";
+    assert_error_after_quad("t faceedit 3/0/1 2 0 -1 hole", number);
+    let child = "line 7: edit 1: level 2: there is no child 4: the face has 4 (0 to 3)";
+    assert_error_after_quad("t faceedit 3/0/1 2 0 1 hole\nt faceedit 4/0/1 3 0 1 4 hole", child);
+    let corner = "line 6: edit 0: level 1: there is no corner 7: the face has 4 (0 to 3)";
+    assert_error_after_quad("t vertexedit 4/3/3 3 0 1 7 1 2 3 add P value", corner);
+    let face = "line 6: edit 0: level 0: it names face 1, but the mesh has 1 faces";
+    assert_error_after_quad("t faceedit 3/0/1 2 1 0 hole", face);
+    let number = "line 6: \"x\" is not a finite number: write it like 1.5 or -2e3";
+    assert_error_after_quad("t vertexedit 4/3/3 3 0 1 2 1 2 x add P value", number);
 }
 
 #[test]

@@ -32,6 +32,7 @@ pub fn replicate(mesh: &ControlMesh, copies: [u32; 3], spacing: f64) -> Result<C
         creases: data.creases.repeat(count),
         corners: data.corners.repeat(count),
         holes: data.holes.repeat(count),
+        edits: std::iter::repeat_n(&data.edits, count).flatten().cloned().collect(),
         ..*data
     };
     let mut place = 0;
@@ -49,6 +50,7 @@ pub fn replicate(mesh: &ControlMesh, copies: [u32; 3], spacing: f64) -> Result<C
                 out.corners[tags(data.corners.len())].iter_mut().for_each(|corner| corner.vertex += vertex);
                 let face = (place * data.face_sizes.len()) as u32;
                 out.holes[tags(data.holes.len())].iter_mut().for_each(|hole| *hole += face);
+                out.edits[tags(data.edits.len())].iter_mut().for_each(|edit| edit.face += face);
                 place += 1;
             }
         }

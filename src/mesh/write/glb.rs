@@ -1,6 +1,6 @@
 //! GLB: glTF 2.0 in one file. It has triangles only.
 
-use super::Polygons;
+use super::Pieces;
 use serde_json::json;
 use std::io::{self, Write};
 
@@ -9,17 +9,18 @@ const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Writes the vertices of a mesh as GLB, with these triangles. Quads are not looked at: glTF has none.
+/// Writes the vertices and triangles of a mesh as GLB. Quads are not looked at: glTF has none.
 ///
 /// # Errors
 /// Those of `out`, and [`io::ErrorKind::FileTooLarge`] where the file would have 4 GiB or more.
-pub fn write_glb(mesh: &Polygons, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
-    let texcoords = mesh.texcoords.unwrap_or_default();
+pub fn write_glb(mesh: &dyn Pieces, out: &mut dyn Write) -> io::Result<()> {
+    let ([vertices, _], [_, triangles]) = (mesh.vertex_counts(), mesh.face_counts());
+    let texcoords = if mesh.has_texcoords() { vertices } else { 0 };
     let parts: [(&str, &str, usize, usize); 4] = [
-        ("POSITION", "VEC3", mesh.positions.len(), 12),
-        ("NORMAL", "VEC3", mesh.normals.len(), 12),
-        ("TEXCOORD_0", "VEC2", texcoords.len(), 8),
-        ("", "SCALAR", 3 * triangles.len(), 4),
+        ("POSITION", "VEC3", vertices, 12),
+        ("NORMAL", "VEC3", vertices, 12),
+        ("TEXCOORD_0", "VEC2", texcoords, 8),
+        ("", "SCALAR", 3 * triangles, 4),
     ];
     let (mut views, mut accessors, mut attributes) = (Vec::new(), Vec::new(), serde_json::Map::new());
     let mut length = 0;
@@ -31,7 +32,7 @@ pub fn write_glb(mesh: &Polygons, triangles: &[[u32; 3]], out: &mut dyn Write) -
         let mut accessor =
             json!({ "bufferView": accessors.len(), "componentType": component, "count": count, "type": kind });
         if name == "POSITION" {
-            let [low, high] = bounds(mesh.positions);
+            let [low, high] = bounds(mesh)?;
             (accessor["min"], accessor["max"]) = (json!(low), json!(high));
         }
         if !name.is_empty() {
@@ -62,15 +63,23 @@ pub fn write_glb(mesh: &Polygons, triangles: &[[u32; 3]], out: &mut dyn Write) -
     out.write_all(&text)?;
     out.write_all(&(length as u32).to_le_bytes())?;
     out.write_all(b"BIN\0")?;
-    for numbers in [mesh.positions.as_flattened(), mesh.normals.as_flattened(), texcoords.as_flattened()] {
-        numbers.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+    let mut write = |numbers: &[f32]| numbers.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()));
+    mesh.vertices(&mut |piece| write(piece.positions.as_flattened()))?;
+    mesh.vertices(&mut |piece| write(piece.normals.as_flattened()))?;
+    if mesh.has_texcoords() {
+        mesh.vertices(&mut |piece| write(piece.texcoords.unwrap_or_default().as_flattened()))?;
     }
-    triangles.as_flattened().iter().try_for_each(|vertex| out.write_all(&vertex.to_le_bytes()))
+    mesh.triangles(&mut |piece| piece.as_flattened().iter().try_for_each(|vertex| out.write_all(&vertex.to_le_bytes())))
 }
 
-fn bounds(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
-    let fold = |start: f32, of: fn(f32, f32) -> f32| {
-        positions.iter().fold([start; 3], |bound, p| std::array::from_fn(|axis| of(bound[axis], p[axis])))
-    };
-    [fold(f32::INFINITY, f32::min), fold(f32::NEG_INFINITY, f32::max)]
+fn bounds(mesh: &dyn Pieces) -> io::Result<[[f32; 3]; 2]> {
+    let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    mesh.vertices(&mut |piece| {
+        for p in piece.positions {
+            bounds[0] = std::array::from_fn(|axis| bounds[0][axis].min(p[axis]));
+            bounds[1] = std::array::from_fn(|axis| bounds[1][axis].max(p[axis]));
+        }
+        Ok(())
+    })?;
+    Ok(bounds)
 }

@@ -2,15 +2,57 @@
 
 #[cfg(feature = "gltf")]
 mod glb;
+mod kept;
 mod obj;
 mod ply;
 
 #[cfg(feature = "gltf")]
 pub use glb::write_glb;
+pub use kept::Kept;
 pub use obj::write_obj;
 pub use ply::write_ply;
 
-/// A mesh of triangles and quads.
+use std::io;
+
+/// A mesh of triangles and quads that is handed out in pieces: each time it is asked for, and in the same order.
+pub trait Pieces {
+    /// Numbers of vertices, and of those that come first and are no copies of others.
+    fn vertex_counts(&self) -> [usize; 2];
+    /// Numbers of quads and of triangles.
+    fn face_counts(&self) -> [usize; 2];
+    /// Whether there are texture coordinates.
+    fn has_texcoords(&self) -> bool;
+    /// The vertex whose position a vertex has: itself unless it is a copy.
+    fn position_of(&self, vertex: u32) -> u32;
+    /// Hands out all vertices.
+    ///
+    /// # Errors
+    /// Those of `visit`.
+    fn vertices(&self, visit: &mut dyn FnMut(Vertices) -> io::Result<()>) -> io::Result<()>;
+    /// Hands out all quads, counter-clockwise.
+    ///
+    /// # Errors
+    /// Those of `visit`.
+    fn quads(&self, visit: &mut dyn FnMut(&[[u32; 4]]) -> io::Result<()>) -> io::Result<()>;
+    /// Hands out all triangles, counter-clockwise.
+    ///
+    /// # Errors
+    /// Those of `visit`.
+    fn triangles(&self, visit: &mut dyn FnMut(&[[u32; 3]]) -> io::Result<()>) -> io::Result<()>;
+}
+
+/// Vertices next to each other.
+#[derive(Debug, Clone, Copy)]
+pub struct Vertices<'v> {
+    /// Object space.
+    pub positions: &'v [[f32; 3]],
+    /// One a vertex.
+    pub normals: &'v [[f32; 3]],
+    /// One a vertex, if there are any.
+    pub texcoords: Option<&'v [[f32; 2]]>,
+}
+
+/// A mesh of triangles and quads in arrays: one piece.
 #[derive(Debug, Clone, Copy)]
 pub struct Polygons<'m> {
     /// Object space.
@@ -27,17 +69,42 @@ pub struct Polygons<'m> {
     pub triangles: &'m [[u32; 3]],
 }
 
-impl Polygons<'_> {
-    /// The vertex whose position a vertex has.
+impl Pieces for Polygons<'_> {
+    fn vertex_counts(&self) -> [usize; 2] {
+        [self.positions.len(), self.copies.0 as usize]
+    }
+
+    fn face_counts(&self) -> [usize; 2] {
+        [self.quads.len(), self.triangles.len()]
+    }
+
+    fn has_texcoords(&self) -> bool {
+        self.texcoords.is_some()
+    }
+
     fn position_of(&self, vertex: u32) -> u32 {
         let (first, sources) = self.copies;
         vertex.checked_sub(first).map_or(vertex, |copy| sources[copy as usize])
     }
 
-    fn faces(&self) -> impl Iterator<Item = &[u32]> {
-        let quads = self.quads.iter().map(<[u32; 4]>::as_slice);
-        quads.chain(self.triangles.iter().map(<[u32; 3]>::as_slice))
+    fn vertices(&self, visit: &mut dyn FnMut(Vertices) -> io::Result<()>) -> io::Result<()> {
+        let &Self { positions, normals, texcoords, .. } = self;
+        visit(Vertices { positions, normals, texcoords })
     }
+
+    fn quads(&self, visit: &mut dyn FnMut(&[[u32; 4]]) -> io::Result<()>) -> io::Result<()> {
+        visit(self.quads)
+    }
+
+    fn triangles(&self, visit: &mut dyn FnMut(&[[u32; 3]]) -> io::Result<()>) -> io::Result<()> {
+        visit(self.triangles)
+    }
+}
+
+/// Hands out all faces: the quads, then the triangles.
+fn for_each_face(mesh: &dyn Pieces, mut visit: impl FnMut(&[u32]) -> io::Result<()>) -> io::Result<()> {
+    mesh.quads(&mut |quads| quads.iter().try_for_each(|quad| visit(quad)))?;
+    mesh.triangles(&mut |triangles| triangles.iter().try_for_each(|triangle| visit(triangle)))
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ fn ply_has_what_its_header_says() {
     let number = |at: usize| f32::from_le_bytes(body[4 * at..4 * at + 4].try_into().unwrap());
     // Vertex 3: position, normal, texture coordinates.
     let vertex: Vec<f32> = (24..32).map(number).collect();
-    assert_eq!(vertex, [0.0, 1.0, 0.25, 0.0, 0.0, 1.0, 0.0, 1.0]);
+    assert_eq!(vertex, [0.0, 1.0, 0.25, 0.0, 0.0, 1.0, 0.0, 0.0]);
     assert_eq!(&body[8 * 32..8 * 32 + 9], &[4, 0, 0, 0, 0, 1, 0, 0, 0]);
     assert_eq!(body[8 * 32 + 34], 3);
 }
@@ -58,7 +58,7 @@ fn ply_has_what_its_header_says() {
 #[test]
 fn glb_is_read_back() {
     let mut bytes = Vec::new();
-    write_glb(&polygons(), &[[0, 1, 2], [0, 2, 3], [4, 6, 5]], &mut bytes).unwrap();
+    write_glb(&Polygons { triangles: &[[0, 1, 2], [0, 2, 3], [4, 6, 5]], ..polygons() }, &mut bytes).unwrap();
     assert_eq!(u32::from_le_bytes(bytes[8..12].try_into().unwrap()) as usize, bytes.len());
     let document = gltf::Gltf::from_slice(&bytes).unwrap();
     let blob = document.blob.as_deref().unwrap();

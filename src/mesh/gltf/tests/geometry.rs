@@ -124,6 +124,75 @@ fn primitives_of_a_mesh_are_welded_and_may_lack_attributes() {
     assert!(normals.indices[8..].iter().all(|&i| normals.values[i as usize] == [0., 0., 0.]));
 }
 
+/// A mesh of boxes, each face with vertices of its own, as files have it that have flat normals: corner and turns of each.
+fn boxes(lows: &[[f32; 3]]) -> File {
+    const FACES: [[usize; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let (mut positions, mut indices) = (Vec::new(), Vec::new());
+    for low in lows {
+        for face in FACES {
+            let first = positions.len() as u16;
+            positions.extend(
+                face.map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|x| x as f32))
+                    .map(|p| [p[0] + low[0], p[1] + low[1], p[2] + low[2]]),
+            );
+            indices.extend([0, 1, 2, 0, 2, 3].map(|i| first + i));
+        }
+    }
+    let mut file = File::new(&positions, &indices);
+    file.primitive_mut()["extensions"] = json!({ NGONS: {} });
+    file
+}
+
+#[test]
+fn pieces_that_touch_stay_apart() {
+    // In a corner, along an edge, with a whole face; three around an edge; and eight that fill a cube.
+    let around = [[0., 0., 0.], [1., 1., 0.], [1., 0., 0.]];
+    let block: Vec<[f32; 3]> = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|x| x as f32)).collect();
+    let cases = [
+        &[[0., 0., 0.], [1., 1., 1.]][..],
+        &[[0., 0., 0.], [1., 1., 0.]],
+        &[[0., 0., 0.], [1., 0., 0.]],
+        &around,
+        &block,
+    ];
+    for lows in cases {
+        let data = boxes(lows).read();
+        assert_eq!((data.positions.len(), data.face_sizes.len()), (8 * lows.len(), 6 * lows.len()), "{lows:?}");
+        let mesh = ControlMesh::new(data).unwrap();
+        assert_eq!(mesh.boundary_edge_count(), 0, "{lows:?}");
+        // Each box is whole: its faces have its eight vertices.
+        for part in 0..lows.len() as u32 {
+            let mut vertices: Vec<u32> = (6 * part..6 * part + 6).flat_map(|face| mesh.face(face).to_vec()).collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            assert_eq!(vertices.len(), 8);
+        }
+    }
+}
+
+#[test]
+fn a_sheet_and_its_back_stay_apart() {
+    let back = [SQUARE[3], SQUARE[2], SQUARE[1], SQUARE[0]];
+    // Twice the same way round: a picture on a wall.
+    for other in [back, SQUARE] {
+        let mut file = File::new(&[SQUARE, other].concat(), &[0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7]);
+        file.primitive_mut()["extensions"] = json!({ NGONS: {} });
+        let mesh = ControlMesh::new(file.read()).unwrap();
+        assert_eq!((mesh.vertex_count(), mesh.boundary_edge_count()), (8, 8));
+    }
+}
+
+#[test]
+fn a_fin_stays_apart_from_what_it_stands_on() {
+    let fin = [[1., 0., 0.], [1., 1., 0.], [1., 1., 1.], [1., 0., 1.]];
+    let right = [[1., 0., 0.], [2., 0., 0.], [2., 1., 0.], [1., 1., 0.]];
+    let mut file =
+        File::new(&[SQUARE, fin, right].concat(), &[0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7, 8, 9, 10, 8, 10, 11]);
+    file.primitive_mut()["extensions"] = json!({ NGONS: {} });
+    let data = file.read();
+    assert_eq!(data.face_vertices, [0, 1, 2, 3, 4, 5, 6, 7, 1, 8, 9, 2]);
+}
+
 #[test]
 fn indices_of_every_type() {
     let bytes = |size: usize| [0u8, 1, 2, 0, 2, 3].map(|i| (i as u32).to_le_bytes()[..size].to_vec()).concat();
