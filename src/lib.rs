@@ -38,7 +38,7 @@
 //! | 4 | [`patch`] | construction and evaluation of patches, generic over the value | Vulkan |
 //! | 3 | `blend` (public in [`patch`]) | weighted sums: values, one-rings with tangent frames, Bezier curves, the regular patch | schemes |
 //! | 2 | [`topology`] | half-edges, one-rings, sharp edges, patch kinds | positions |
-//! | 1 | [`mesh`] | control meshes, the readers (OBJ, glTF), built-in shapes | all above |
+//! | 1 | [`mesh`] | control meshes, the readers (OBJ, PLY, glTF), repair, built-in shapes | all above |
 //! | 1 | [`gpu`] | device facts, memory, shaders, pipelines | meshes |
 //!
 //! # Example

@@ -177,7 +177,7 @@ fn cases_of_loose_faces() {
         let path = case(name);
         let (loose, notes) = info(&path);
         assert!(loose["boundary_edges"].as_u64() > Some(0));
-        assert!(notes.len() == 1 && notes[0].ends_with("--weld 1e-6 joins them"), "{name}: {notes:?}");
+        assert!(notes.last().is_some_and(|note| note.ends_with("--weld 1e-6 joins them")), "{name}: {notes:?}");
         let welded = json(&format!("info {} --weld 1e-6", path.display()));
         assert_eq!(welded["boundary_edges"], 0, "{name}");
         assert!(faces == 0 || welded["faces"] == faces, "{name}");
@@ -188,7 +188,8 @@ fn cases_of_loose_faces() {
         ("more/cubes_touch_edge.glb", 12, 24),
         ("more/decal_same_mesh.glb", 0, 0),
     ] {
-        let (info, notes) = info(&case(name));
+        let (info, mut notes) = info(&case(name));
+        notes.retain(|note| !note.contains("quads are put together"));
         assert_eq!(notes, [""; 0], "{name}");
         if faces > 0 {
             assert_eq!((&info["faces"], &info["edges"]), (&faces.into(), &edges.into()), "{name}");

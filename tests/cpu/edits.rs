@@ -8,6 +8,8 @@ use crate::limit_surface::everything;
 use ash_subdiv::dice::{Depth, DiceOptions, Place, Tessellation};
 use ash_subdiv::limit::{LimitSurface, refine};
 use ash_subdiv::mesh::{Change, Crease, CreaseMethod, Edit, ReadOptions, SHARPNESS_INFINITE, read};
+use ash_subdiv::patch::Scheme;
+use ash_subdiv::table::{CpuSurface, Notice, prepare};
 use ash_subdiv::topology::Topology;
 use ash_subdiv::{ControlMesh, MeshData, grid_torus, shape};
 use glam::{DQuat, DVec3};
@@ -469,4 +471,42 @@ fn files_with_edits_are_tessellated() {
         assert!(high > 0.4, "{number}: {high}");
         assert_eq!(tessellation.quads().len(), 9 * 256 - if number == 4 { 16 } else { 0 }, "{number}");
     }
+}
+
+/// What draws patches has the mesh refined, and keeps the edits when vertices move.
+#[test]
+fn prepared_meshes_have_their_edits() {
+    let mesh = shape("machine-part").unwrap();
+    let mut random = Random::new(5);
+    let edited = with(&mesh, random_edits(&mut random, &mesh, 6));
+    let prepared = prepare(&edited, 0).unwrap();
+    assert_eq!((prepared.steps.len(), prepared.mesh().edit_level()), (edited.edit_level(), 0));
+    let moved: Vec<[f64; 3]> =
+        mesh.data().positions.iter().map(|&p| (DVec3::from(p) * 1.1 + 0.1 * random.vector()).into()).collect();
+    let moved = ControlMesh::new(MeshData { positions: moved, ..edited.data().clone() }).unwrap();
+    let again = prepare(&moved, 0).unwrap();
+    for (mesh, expected) in [(&edited, prepared.mesh()), (&moved, again.mesh())] {
+        let control: Vec<DVec3> = mesh.data().positions.iter().map(|&p| p.into()).collect();
+        let refined = prepared.steps.iter().fold(control, |vertices, step| step.apply(&vertices));
+        let expected: Vec<DVec3> = expected.data().positions.iter().map(|&p| p.into()).collect();
+        assert_eq!(refined, expected);
+    }
+    let surface = CpuSurface::new(&edited, Scheme::Gregory, 0).unwrap();
+    let notice = Notice::RefinedEdits { count: 6, level: edited.edit_level() };
+    assert!(surface.notices().contains(&notice), "{:?}", surface.notices());
+}
+
+/// Facets are as deep as the edges at the levels of their edits ask for.
+#[test]
+fn lengths_see_edits() {
+    let mesh = shape("cube").unwrap();
+    let far = Change::Offset { corner: 2, offset: [0.0, 0.0, 3.0] };
+    let edited = with(&mesh, vec![Edit { face: 1, children: vec![0, 2, 1], change: far }]);
+    let deepest = |mesh: &ControlMesh| {
+        let options = DiceOptions { depth: Depth::EdgeLength(0.3), ..DiceOptions::default() };
+        let tessellation = Tessellation::<f64>::new(&Topology::new(mesh), &options).unwrap();
+        tessellation.plan().depth_histogram().len() - 1
+    };
+    // Edges of a quarter at level 3, then three long: 3 / 2^4 < 0.3.
+    assert_eq!((deepest(&mesh), deepest(&edited)), (3, 7));
 }
