@@ -8,6 +8,7 @@ mod adaptive_twin;
 mod common;
 mod dice;
 mod dice_closed;
+mod dice_edits;
 mod dice_tolerance;
 mod edge_normals;
 mod edits;
