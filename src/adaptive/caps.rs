@@ -4,6 +4,7 @@ use super::alone::Alone;
 use super::feature::Class;
 use super::few::{FEW, Few};
 use super::look::Seen;
+use super::numbering::Numbering;
 use super::rows::{BlocksMut, Rows};
 use crate::blend::{Blend, Frame, PatchCorner, RingValues, Row};
 use crate::limit::Stencils;
@@ -204,31 +205,36 @@ impl Caps {
         }
         let places = quad.map(|h| around.topology.place(h));
         let rings = places.map(|place| &known[&place.ring]);
+        let of_rings = rings.map(|(ring, frame)| (ring, frame));
+        // Of a long ring only what the rows read is looked at: each cap around it would look at all of it.
+        let is_long = rings.iter().any(|(ring, _)| ring.edges.len() > MANY as usize);
+        let long = is_long.then(|| Stencils::new(self.points_between(of_rings, places)));
         // Numbered as they come around the corners, so that caps that look alike have one pattern.
-        let seen = rings.iter().zip(places).flat_map(|((ring, frame), place)| terms(ring, frame, place.index as usize));
-        let mut firsts: Vec<(u32, u32)> = seen.zip(0..).collect();
-        firsts.sort_unstable();
-        firsts.dedup_by_key(|&mut (vertex, _)| vertex);
-        let mut order: Vec<u32> = (0..firsts.len() as u32).collect();
-        order.sort_unstable_by_key(|&i| firsts[i as usize].1);
-        let mut numbers = vec![0; firsts.len()];
-        order.iter().zip(0..).for_each(|(&i, number)| numbers[i as usize] = number);
-        let vertices: Vec<u32> = order.iter().map(|&i| firsts[i as usize].0).collect();
-        let number = |vertex: u32| numbers[firsts.partition_point(|&(v, _)| v < vertex)];
-        let rows = if vertices.len() <= FEW {
-            let few = |row: &Row| Few::new(row.weights().iter().map(|&(vertex, weight)| (number(vertex), weight)));
-            let rings = rings.map(|(ring, frame)| (ring.map(few), frame.map(few)));
-            few_rows(&self.points_between(rings.each_ref().map(|(ring, frame)| (ring, frame)), places))
-        } else {
-            let mut rows = Stencils::new(self.points_between(rings.map(|(ring, frame)| (ring, frame)), places));
-            rows.indices.iter_mut().for_each(|vertex| *vertex = number(*vertex));
-            rows
+        let numbering = match &long {
+            Some(rows) => Numbering::new(rows.indices.iter().copied()),
+            None => {
+                let corners = rings.iter().zip(places);
+                Numbering::new(corners.flat_map(|((ring, frame), place)| terms(ring, frame, place.index as usize)))
+            }
         };
+        let rows = match long {
+            None if numbering.vertices.len() <= FEW => {
+                let few = |row: &Row| Few::new(row.weights().iter().map(|&(v, weight)| (numbering.number(v), weight)));
+                let rings = rings.map(|(ring, frame)| (ring.map(few), frame.map(few)));
+                few_rows(&self.points_between(rings.each_ref().map(|(ring, frame)| (ring, frame)), places))
+            }
+            rows => {
+                let mut rows = rows.unwrap_or_else(|| Stencils::new(self.points_between(of_rings, places)));
+                rows.indices.iter_mut().for_each(|vertex| *vertex = numbering.number(*vertex));
+                rows
+            }
+        };
+        let vertices = &numbering.vertices;
         let pattern = match self.alike.entry(Alike::new(&rows)) {
             Entry::Occupied(known) => *known.get(),
             Entry::Vacant(unknown) => *unknown.insert(push_pattern(&mut self.patterns, rows, vertices.len())),
         };
-        self.push(pattern, &vertices);
+        self.push(pattern, vertices);
         Ok(())
     }
 

@@ -36,6 +36,7 @@ mod grids;
 mod leaves;
 mod level;
 mod look;
+mod numbering;
 mod options;
 mod plan;
 mod rows;
