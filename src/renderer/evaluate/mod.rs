@@ -15,8 +15,9 @@ mod two_pass;
 
 pub(crate) use check::check_evaluation;
 pub(crate) use drawn::{Asked, Drawn};
+pub(crate) use indices::SharedIndices;
 #[cfg(all(feature = "measure", feature = "headless"))]
-pub(crate) use indices::{SharedIndices, topology};
+pub(crate) use indices::topology;
 pub(crate) use lattice::{BoundLattice, Lattice, LatticePipelines};
 pub(crate) use path::path;
 pub(crate) use recorder::{Bound, DrawnGroup, Place, Recorder};
