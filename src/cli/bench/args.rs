@@ -122,7 +122,7 @@ pub(in super::super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "strict", "weld", "rebuild_quads", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "creases", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "sharpness", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
+        conflicts_with_all = ["mesh", "shape", "strict", "weld", "rebuild_quads", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "creases", "sums", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "sharpness", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]

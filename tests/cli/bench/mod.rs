@@ -219,8 +219,12 @@ fn bench_draws_subsets_and_files() {
     let alone = folder("bench-isolated").join("alone.obj");
     fs::write(&alone, fs::read_to_string(&cube).unwrap() + "v 9 9 9\n").unwrap();
     let few = format!("bench {SMALL} --factors 1 --paths bilinear {}", alone.display());
-    assert!(String::from_utf8_lossy(&run(&few).stderr).contains("vertex 8 belongs to no face"));
-    assert!(run(&format!("{few} --drop-isolated")).status.success());
+    let told = |options: &str| String::from_utf8(run(&format!("{few} {options}")).stderr).unwrap();
+    assert!(told("--strict").contains("vertex 8 belongs to no face"));
+    assert!(run(&format!("{few} --strict --drop-isolated")).status.success());
+    let mended = run(&few);
+    let note = String::from_utf8(mended.stderr).unwrap();
+    assert!(mended.status.success() && note.contains("1 vertex"), "{note}");
     fails("bench --shape torus --patches irregular", 1, "torus: it has no irregular patches: choose others");
 }
 
