@@ -240,11 +240,13 @@ fn a_model_takes_another_mesh() {
             let factor = if options.edge_factors { Factor::Edges(1.0) } else { Factor::Uniform(SEGMENTS as f32) };
             for (i, (&mesh, &new)) in meshes.iter().zip(&news).enumerate() {
                 let frame = begin(&mut renderer);
-                // What the lost frame was to send is of tables that are gone.
-                // SAFETY: recorded outside rendering, and never run.
-                let lost = |cmd| unsafe { renderer.cmd_prepare(cmd, frame) };
+                // What a lost frame was to send is of tables that are gone.
                 match i % 2 {
-                    1 => stage.headless.record(lost).expect("recorded"),
+                    1 => {
+                        renderer.set_mesh(model, meshes[i + 1]).expect("one that is never drawn");
+                        // SAFETY: recorded outside rendering, and never run.
+                        stage.headless.record(|cmd| unsafe { renderer.cmd_prepare(cmd, frame) }).expect("recorded");
+                    }
                     _ => stage.prepare(&mut renderer, frame),
                 }
                 renderer.set_mesh(model, mesh).expect("another mesh");
