@@ -221,6 +221,10 @@ fn a_model_takes_another_mesh() {
     data.creases = [[0, 1], [1, 3], [3, 2], [2, 0]].map(|vertices| Crease { vertices, sharpness: 0.0 }).into();
     let soft = ControlMesh::new(data).expect("edges of the cube");
     let [half, sharp] = [0.7, 2.5].map(|sharpness| soft.with_sharpness(&[sharpness; 4], &[]).expect("sharpness"));
+    let told = |creases: &[f32], corners: &[f32]| soft.with_sharpness(creases, corners).unwrap_err().to_string();
+    assert_eq!(told(&[1.0; 3], &[]), "sharpness of 3 creases is given, but the mesh has 4");
+    assert_eq!(told(&[1.0; 4], &[1.0]), "sharpness of 1 corners is given, but the mesh has 0");
+    assert!(told(&[-1.0; 4], &[]).contains("sharpness is a number from 0 up"));
     let other = shape("valences").expect("built in");
     for options in ways() {
         let adaptive = options.adaptive;

@@ -26,7 +26,7 @@ impl Frame {
 /// What the renderer knows of the frame that is being recorded.
 pub(crate) struct Begun {
     frame: Frame,
-    /// Whether it is neither lost nor, before the first, none.
+    /// Whether commands may name it: not before the first frame, nor once it is lost.
     is_open: bool,
     pub(super) is_prepared: bool,
     /// What was recorded to be sent to the device, in order.

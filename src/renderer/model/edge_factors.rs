@@ -72,20 +72,16 @@ impl EdgeFactors {
     /// Records the copy that is due, if one is.
     ///
     /// # Safety
-    /// `cmd` is being recorded, outside rendering.
+    /// As [`Streamed::cmd_send`].
     pub(crate) unsafe fn cmd_send(
         &mut self,
         device: &ash::Device,
         cmd: vk::CommandBuffer,
         frame: u32,
     ) -> Result<(), GpuError> {
-        if self.of_corners.is_elsewhere(frame) {
-            self.of_corners.write(frame, &self.written)?;
-        }
         self.largest = self.largest_written;
         // SAFETY: as the caller promises.
-        unsafe { self.of_corners.cmd_send(device, cmd, frame) };
-        Ok(())
+        unsafe { self.of_corners.cmd_send(device, cmd, frame, &self.written) }
     }
 
     pub(crate) fn buffer(&self) -> &Buffer {

@@ -49,19 +49,15 @@ impl Positions {
     /// Records the copy that is due, if one is.
     ///
     /// # Safety
-    /// `cmd` is being recorded, outside rendering.
+    /// As [`Streamed::cmd_send`].
     pub(crate) unsafe fn cmd_send(
         &mut self,
         device: &ash::Device,
         cmd: vk::CommandBuffer,
         frame: u32,
     ) -> Result<(), GpuError> {
-        if self.streamed.is_elsewhere(frame) {
-            self.streamed.write(frame, &self.stored)?;
-        }
         // SAFETY: as the caller promises.
-        unsafe { self.streamed.cmd_send(device, cmd, frame) };
-        Ok(())
+        unsafe { self.streamed.cmd_send(device, cmd, frame, &self.stored) }
     }
 
     /// What shaders read.

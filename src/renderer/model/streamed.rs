@@ -54,16 +54,11 @@ impl Streamed {
         Ok(Self { buffer, staged, size, pending: None, sent: false })
     }
 
-    /// Takes new contents, for the copy of this frame, or of a later one that [writes them again](Streamed::is_elsewhere).
+    /// Takes new contents, for the copy of this frame.
     pub(crate) fn write<T: NoUninit>(&mut self, frame: u32, contents: &[T]) -> Result<(), GpuError> {
         self.staged.write(u64::from(frame) * self.size, contents)?;
         self.pending = Some(frame);
         Ok(())
-    }
-
-    /// Whether the newest contents were not sent and are in the copy of another frame, from which this one must not send them.
-    pub(crate) fn is_elsewhere(&self, frame: u32) -> bool {
-        self.pending.is_some_and(|pending| pending != frame)
     }
 
     /// Has the copy of this frame sent again, which was lost.
@@ -75,11 +70,21 @@ impl Streamed {
         self.pending.is_some() || !self.sent
     }
 
-    /// Records the copy that is due, if one is.
+    /// Records the copy that is due, if one is. `newest` is what was written last: another frame's copy of it must not be sent by
+    /// this frame, which gets its own.
     ///
     /// # Safety
-    /// `cmd` is being recorded, outside rendering; the newest contents are not elsewhere.
-    pub(crate) unsafe fn cmd_send(&mut self, device: &ash::Device, cmd: vk::CommandBuffer, frame: u32) {
+    /// `cmd` is being recorded, outside rendering.
+    pub(crate) unsafe fn cmd_send<T: NoUninit>(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        frame: u32,
+        newest: &[T],
+    ) -> Result<(), GpuError> {
+        if self.pending.is_some_and(|pending| pending != frame) {
+            self.write(frame, newest)?;
+        }
         // Before the first copy every frame's holds the first contents, or newer ones.
         if self.is_due() {
             let src_offset = u64::from(frame) * self.size;
@@ -89,6 +94,7 @@ impl Streamed {
         }
         self.pending = None;
         self.sent = true;
+        Ok(())
     }
 
     /// What is on the device.
