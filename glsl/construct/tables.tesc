@@ -5,6 +5,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "draw/construction.glsl"
 #define KEPT_FRAMES IS_CACHED
+#ifdef MAY_BE_ADAPTIVE
+#define READS_LEAVES
+#endif
 #include "construct/control.glsl"
 #include "construct/stencils.glsl"
 #ifdef SHARED
@@ -61,8 +64,31 @@ void read_corner(uint corner) {
 #endif
 }
 
+#ifdef READS_LEAVES
+// What it has of its leaf: along its edges patches by leaves share what their owners make.
+void look_up_corner(uint corner) {
+    own = leaf_corner(in_patch_number[0], uint(gl_InvocationID));
+#ifdef SHARED
+    vec3 with[SHARED_VECTORS];
+    for (int i = 0; i < SHARED_VECTORS; ++i) {
+        with[i] = vec3(0.0);
+    }
+    float lod = 0.0;
+#ifdef DISPLACED
+    lod = leaf_corner_lod(corner, in_patch_number[0], uint(gl_InvocationID));
+#endif
+    write_shared(corner, with, 0.0, lod);
+#endif
+}
+#endif
+
 void main() {
     uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
+#ifdef READS_LEAVES
+    if (IS_BY_LEAVES) {
+        look_up_corner(corner);
+    } else
+#endif
     if (IS_CACHED) {
         read_corner(corner);
     } else {

@@ -90,6 +90,17 @@
 #define LEAF_REGULAR 0u
 #define LEAF_CAP 1u
 #define LEAF_CREASE 2u
+// What patches are: not of leaves, a face each, a leaf or a part of one each.
+#define NOT_ADAPTIVE 0u
+#define BY_FACES 1u
+#define BY_LEAVES 2u
+// The second word of a patch by leaves: where on which edge of the leaf a triangle begins (from bit 0) and ends, in parts of the
+// edge, and the level of the leaf.
+#define PIECE_PARTS 1024u
+#define PIECE_MASK 2047u
+#define PIECE_TO_SHIFT 11u
+#define PIECE_EDGE_SHIFT 22u
+#define PIECE_LEVEL_SHIFT 24u
 // Words of a face, and the first of those that say who owns the positions, the normals. An owner is a patch from OWNER_SHIFT on, whether
 // it is a wedge, and its edge or corner; or none, where a neighbour is not refined.
 #define FACE_WORDS 18u

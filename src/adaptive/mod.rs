@@ -45,6 +45,6 @@ pub use counts::LevelCounts;
 pub use error::AdaptiveError;
 pub use feature::Reason;
 pub(crate) use grids::{fill, grid, is_boundary};
-pub use options::{AdaptiveOptions, MAX_DEPTH, Sums};
+pub use options::{AdaptiveOptions, DrawnBy, MAX_DEPTH, Sums};
 pub use plan::{LEAF, Leaf, LeafKind, Plan, RefinedCell, Root};
 pub use rows::{Block, Mask, Rows};

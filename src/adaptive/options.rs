@@ -18,6 +18,20 @@ named! {
     }
 }
 
+named! {
+    /// What patches are. The surface is the same.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum DrawnBy {
+        /// One a face, which finds the leaf of each of its vertices (Brainerd et al. 2016): few patches, factors as without adaptive
+        /// subdivision, every evaluation.
+        #[default]
+        Faces = "faces",
+        /// One a leaf (Niessner et al. 2012), or triangles around its centre if leaves are finer beyond one of its edges: more patches,
+        /// each with control points of its own. [`Evaluation::Tessellation`](crate::Evaluation::Tessellation) only.
+        Leaves = "leaves",
+    }
+}
+
 /// Depths to which faces are refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AdaptiveOptions {
@@ -32,6 +46,8 @@ pub struct AdaptiveOptions {
     pub refine_creases: bool,
     /// What refined vertices are sums of.
     pub sums: Sums,
+    /// What patches are.
+    pub drawn_by: DrawnBy,
 }
 
 impl AdaptiveOptions {

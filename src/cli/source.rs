@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::Progress;
 use super::parse;
 use super::rules::RulesArgs;
-use ash_subdiv::adaptive::{AdaptiveOptions, Sums};
+use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy, Sums};
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{ReadOptions, RepairOptions, Repairs, read, read_repaired, shape};
 use ash_subdiv::table::{CpuSurface, Notice, TableOptions};
@@ -55,6 +55,10 @@ pub(super) struct SourceArgs {
     /// With --adaptive: what refined vertices are sums of, those one level above or control vertices
     #[arg(long, value_name = "OF", requires = "adaptive", default_value = "levels", value_parser = parse::one_of(Sums::ALL, Sums::name))]
     sums: Sums,
+
+    /// With --adaptive: what patches are, a face each or a leaf each. The surface is the same; by leaves --evaluation is tessellation
+    #[arg(long, value_name = "WHAT", requires = "adaptive", default_value = "faces", value_parser = parse::one_of(DrawnBy::ALL, DrawnBy::name))]
+    by: DrawnBy,
 
     #[command(flatten)]
     rules: RulesArgs,
@@ -121,6 +125,7 @@ impl SourceArgs {
             depth,
             sharp_depth: self.sharp_depth,
             sums: self.sums,
+            drawn_by: self.by,
             ..AdaptiveOptions::default()
         })
     }

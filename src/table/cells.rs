@@ -1,8 +1,10 @@
 //! The cells of the caller's faces that a prepared mesh has as faces, and the curves of its edges.
 
-use super::patch_id::{FaceOrigin, MAX_PARTS, PatchId};
+use super::patch_id::{FaceOrigin, MAX_LEVEL, MAX_PARTS, PatchId};
+use super::pieces::{LeafPart, Line, Pieces, SIDE};
 use super::plan::Patch;
-use super::wedges::CutFace;
+use super::wedges::{CutFace, Part};
+use crate::adaptive::Plan;
 use crate::mesh::{ControlMesh, MeshError};
 use crate::topology::{PatchKind, Topology};
 
@@ -91,6 +93,16 @@ impl OnCurve {
         let index = 2 * index + u16::from(second != self.reversed);
         Self { part: CurvePart { curve, level: level + 1, index }, ..self }
     }
+
+    /// The part between two places, counted from where the half-edge starts; there are `side` on all of it, and the part is one of
+    /// its halves, their halves and so on.
+    fn part(self, [from, to]: [u32; 2], side: u32) -> Self {
+        match to - from == side {
+            true => self,
+            false if from < side / 2 => self.half(false).part([from, to], side / 2),
+            false => self.half(true).part([from - side / 2, to - side / 2], side / 2),
+        }
+    }
 }
 
 /// What the faces and half-edges of a prepared mesh are of the caller's.
@@ -154,13 +166,13 @@ impl Cells {
     pub(super) fn cut(self, topology: &Topology, faces: &[CutFace]) -> Self {
         let (whole, curves) = edges_as_curves(topology);
         let mesh = topology.mesh();
-        let of_face = |cut: &CutFace| PatchId::whole(self.parts.first(cut.face) + cut.corner.unwrap_or(0));
+        let of_face = |cut: &CutFace| PatchId::whole(self.parts.first(cut.face) + cut.part.corner().unwrap_or(0));
         // From the corner of half-edge h to the centre of its face.
         let spoke = |h: u32, reversed| OnCurve { part: CurvePart { curve: curves + h, level: 0, index: 0 }, reversed };
         let mut of_half_edges = Vec::with_capacity(4 * faces.len());
-        for &CutFace { face, corner } in faces {
+        for &CutFace { face, part } in faces {
             let corners = mesh.face_corners(face);
-            match corner {
+            match part.corner() {
                 None => of_half_edges.extend_from_slice(&whole[corners]),
                 Some(corner) => {
                     let h = corners.start as u32 + corner;
@@ -170,6 +182,48 @@ impl Cells {
         }
         let curves = curves + mesh.corner_count() as u32;
         Self { of_faces: faces.iter().map(of_face).collect(), of_half_edges, curves, ..self }
+    }
+
+    /// Of a mesh that is cut by leaves; `topology` is of the mesh before.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if a [`PatchId`] has no room for so many levels.
+    pub(super) fn cut_by_leaves(self, topology: &Topology, plan: &Plan, pieces: &Pieces) -> Result<Self, MeshError> {
+        let (whole, curves) = match self.of_half_edges.is_empty() {
+            true => edges_as_curves(topology),
+            false => (self.of_half_edges.clone(), self.curves),
+        };
+        let mut of_faces = Vec::with_capacity(pieces.faces.len());
+        for cut in &pieces.faces {
+            let (leaf, first) = match cut.part {
+                Part::Leaf(leaf) => (leaf, 0),
+                Part::OfLeaf(leaf, LeafPart { edge, .. }) => (leaf, edge),
+                Part::Whole | Part::Wedge(_) => continue,
+            };
+            let leaf = &plan.leaves[leaf as usize];
+            let root = match plan.roots[leaf.root as usize].level {
+                0 => self.of_face(leaf.face),
+                _ => PatchId::of_part(self.of_face(leaf.face).face() + leaf.part),
+            };
+            let steps = leaf.level - plan.roots[leaf.root as usize].level;
+            if root.level() + steps > MAX_LEVEL {
+                let (count, max) = ((root.level() + steps) as usize, MAX_LEVEL as usize);
+                return Err(MeshError::TooLarge { what: "levels of refinement", count, max });
+            }
+            of_faces.push(root.cell(steps, [leaf.u, leaf.v], first, leaf.transition));
+        }
+        // The curve of an edge within a face begins there.
+        let edges = Topology::new(&pieces.mesh);
+        let (numbers, count) = number_edges(&edges);
+        let of_half_edge = |(h, line): (u32, &Line)| match *line {
+            Line::Edge(of, ends) => whole[of as usize].part(ends, 2 * SIDE),
+            Line::Inner => OnCurve {
+                part: CurvePart { curve: curves + numbers[h as usize], level: 0, index: 0 },
+                reversed: edges.twin(h).is_some_and(|twin| twin < h),
+            },
+        };
+        let of_half_edges = (0..).zip(&pieces.lines).map(of_half_edge).collect();
+        Ok(Self { of_faces, of_half_edges, curves: curves + count, ..self })
     }
 
     /// Where the vertices of the prepared mesh start among those that shaders read: after the control vertices where it is

@@ -1,7 +1,7 @@
 //! The CPU twin: every patch of a mesh, constructed and evaluated on the host.
 
 use super::{FaceOrigin, Notice, Patch, PatchPlan, Prepared, TableError, TableOptions, prepare_for};
-use crate::adaptive;
+use crate::adaptive::{self, AdaptiveOptions, DrawnBy};
 use crate::blend::{Blend, Point, Sample, scalar, unit_normal};
 use crate::mesh::ControlMesh;
 use crate::patch::Scheme;
@@ -46,13 +46,15 @@ impl CpuSurface {
         Self::with_options(mesh, &TableOptions { scheme, refine, ..TableOptions::default() })
     }
 
-    /// The patches that a model with these options has.
+    /// The patches that a model with these options has; of adaptive surfaces always those by faces.
     ///
     /// # Errors
     /// A refined mesh that cannot be addressed; faces that the scheme has no patch for; those of [`adaptive::Plan::new`], and
     /// [`TableError::NotAdaptive`].
     pub fn with_options(mesh: &ControlMesh, options: &TableOptions) -> Result<Self, TableError> {
-        let (prepared, plan, adaptive) = prepare_for(mesh, options)?;
+        // The surface is the same, and so a face finds its leaves.
+        let adaptive = options.adaptive.map(|adaptive| AdaptiveOptions { drawn_by: DrawnBy::Faces, ..adaptive });
+        let (prepared, plan, adaptive) = prepare_for(mesh, &TableOptions { adaptive, ..*options })?;
         Ok(Self { prepared, plan, leaves: adaptive.map(Leaves::new) })
     }
 

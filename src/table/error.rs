@@ -22,6 +22,12 @@ pub enum TableError {
         /// The evaluation that was asked for.
         evaluation: Evaluation,
     },
+    /// Patches by leaves in another evaluation than the tessellation stages.
+    #[error("evaluation by {} has no patches by leaves: only by {} there are such; draw by faces", evaluation.name(), Evaluation::Tessellation.name())]
+    NotByLeaves {
+        /// The evaluation that was asked for.
+        evaluation: Evaluation,
+    },
     /// Shared normals of a scheme that is not watertight.
     #[error("the scheme {} has no edges that both patches evaluate alike: for shared normals and displacement choose gregory", scheme.name())]
     NothingShared {

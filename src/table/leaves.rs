@@ -1,11 +1,13 @@
 //! What shaders read of faces that are refined: quadtrees, leaves, and who owns edges and corners.
 
+use super::pieces::LeafPart;
 use super::plan::PatchPlan;
 use super::prepare::Prepared;
+use super::wedges::Part;
 use crate::adaptive::{self, LEAF, LeafKind, LevelCounts};
 use crate::constants::{
     FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE, OWNER_SHIFT, OWNERS,
-    WEDGE_BIT,
+    PIECE_EDGE_SHIFT, PIECE_LEVEL_SHIFT, PIECE_TO_SHIFT, WEDGE_BIT,
 };
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::Topology;
@@ -17,7 +19,7 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeafTable {
     /// For each patch from the first that is refined on, in order: its root, of a wedge that around the start of its edge, then that
-    /// around the end; the owners of the positions on its edges, from corner k to the next, and at its corners; likewise the owners of
+    /// around the end; by leaves its leaf, then which part of the leaf it is, and the leaf's level. Then the owners of the positions on its edges, from corner k to the next, and at its corners; likewise the owners of
     /// the normals, which differ where infinitely sharp edges part faces. An owner is a patch from bit `OWNER_SHIFT` on, with
     /// `WEDGE_BIT` where it is a wedge, and its edge or corner; or `OWNER_NONE`, where a neighbour is not refined. Of patches that are
     /// not refined zeros.
@@ -113,7 +115,11 @@ impl LeafTable {
         let faces = faces.map(|patch| {
             let mut words = [0; FACE_WORDS as usize];
             if patch.refined {
-                words[..2].copy_from_slice(&prepared.roots(&plan, patch));
+                words[..2].copy_from_slice(&match prepared.cut_face(patch.face).map(|cut| cut.part) {
+                    Some(Part::Leaf(leaf)) => leaf_piece(&plan, leaf, LeafPart::default()),
+                    Some(Part::OfLeaf(leaf, part)) => leaf_piece(&plan, leaf, part),
+                    _ => prepared.roots(&plan, patch),
+                });
                 let (edges, normals) = (OWNERS as usize, NORMAL_OWNERS as usize);
                 for (k, h) in patch.corners(topology).enumerate() {
                     [words[edges + k], words[normals + k]] = owners.edge(h);
@@ -145,6 +151,12 @@ pub(super) fn is_refined(plan: &adaptive::Plan, face: u32) -> bool {
         node => plan.leaves[(node & !LEAF) as usize].kind == LeafKind::Regular,
     };
     !(roots.is_empty() || roots.len() == 1 && whole(roots.start))
+}
+
+/// The leaf that a patch is of; its level from bit [`PIECE_LEVEL_SHIFT`] on, and of a triangle the edge and the ends.
+fn leaf_piece(plan: &adaptive::Plan, leaf: u32, LeafPart { edge, ends: [from, to] }: LeafPart) -> [u32; 2] {
+    let level = plan.leaves[leaf as usize].level;
+    [leaf, from | to << PIECE_TO_SHIFT | edge << PIECE_EDGE_SHIFT | level << PIECE_LEVEL_SHIFT]
 }
 
 fn leaf_words(

@@ -16,6 +16,7 @@ mod leaves;
 mod model;
 mod options;
 mod patch_id;
+mod pieces;
 mod plan;
 mod prepare;
 mod rings;

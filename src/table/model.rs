@@ -59,8 +59,9 @@ impl ModelTables {
         let topology = prepared.topology();
         let fans = subdivides.then(|| SubdivisionTable::new(topology, &plan)).transpose()?;
         let converts = options.evaluation == Evaluation::GeometryTwoPass;
+        let by_leaves = options.is_by_leaves();
         // The stencil table puts the patches in its own order, so it comes first.
-        let stencils = (options.construction == Construction::Stencil && !subdivides || converts)
+        let stencils = (options.construction == Construction::Stencil && !subdivides && !by_leaves || converts)
             .then(|| StencilTable::new(topology, &mut plan))
             .transpose()?;
         let sharing = options.sharing();
@@ -76,7 +77,8 @@ impl ModelTables {
             return Err(TableError::NothingShared { scheme: options.scheme });
         }
         let leaves = adaptive.map(|adaptive| LeafTable::new(&prepared, &plan, adaptive));
-        let rings = (stencils.is_none() && !subdivides || shared.is_some()).then(|| RingTable::new(topology, &plan));
+        let rings = (stencils.is_none() && !subdivides || shared.is_some()) && !by_leaves;
+        let rings = rings.then(|| RingTable::new(topology, &plan));
         Ok(Self {
             texcoords: plan.texcoords(topology),
             edges: edges.filter(|_| options.edge_factors),
@@ -165,7 +167,8 @@ impl ModelTables {
     /// How many texels a corner has room for, where what it owns and shares is kept between draws; else 0. GLSL twin:
     /// `glsl/lib/construct/cached.glsl`.
     pub(crate) fn kept_texels(&self) -> u32 {
-        if self.options.construction != Construction::Cached || self.options.evaluation == Evaluation::Subdivision {
+        let keeps = self.options.construction == Construction::Cached && !self.options.is_by_leaves();
+        if !keeps || self.options.evaluation == Evaluation::Subdivision {
             return 0;
         }
         let owned = self.plan.groups().iter().map(|group| group.scheme.owned(group.kind)).max().unwrap_or(0);

@@ -1,7 +1,7 @@
 //! What tables are built for.
 
 use super::Sharing;
-use crate::adaptive::AdaptiveOptions;
+use crate::adaptive::{AdaptiveOptions, DrawnBy};
 use crate::named::named;
 use crate::patch::{Fallback, Scheme};
 #[cfg(doc)]
@@ -119,5 +119,10 @@ impl TableOptions {
             (false, true) => Sharing::Normals,
             (false, false) => Sharing::Positions,
         }
+    }
+
+    /// Whether patches are leaves of adaptive subdivision.
+    pub(crate) fn is_by_leaves(self) -> bool {
+        self.adaptive.is_some_and(|adaptive| adaptive.drawn_by == DrawnBy::Leaves)
     }
 }

@@ -63,6 +63,17 @@ impl PatchId {
         place.with(LEVEL, self.level() + 1).with(FIRST, quadrant)
     }
 
+    /// The cell `steps` levels below this one at column and row `at` of those in it, seen from this patch; the patch starts from corner
+    /// `first` of the cell, and patches are finer beyond the edges with a bit in `transition`.
+    pub(super) fn cell(self, steps: u32, at: [u32; 2], first: u32, transition: u32) -> Self {
+        let last = (1 << steps) - 1;
+        let [u, v] = (0..self.first()).fold(at, |[u, v], _| [last - v, u]);
+        let place = self.with(U, (self.u() << steps) + u).with(V, (self.v() << steps) + v);
+        // From the first corner on, as all that patches have for their edges.
+        let turned = (transition << 4 | transition) >> first & 15;
+        place.with(LEVEL, self.level() + steps).with(FIRST, (self.first() + first) % 4).with(TRANSITION, turned)
+    }
+
     pub(super) fn with_first(self, first: u32) -> Self {
         self.with(FIRST, first)
     }
@@ -102,7 +113,7 @@ impl PatchId {
         self.get(BOUNDARY)
     }
 
-    /// The edges beyond which patches are one level finer: a bit each, as in [`PatchId::boundary`]. None has any yet.
+    /// The edges beyond which patches are finer, of patches by leaves: a bit each, as in [`PatchId::boundary`].
     pub fn transition(self) -> u32 {
         self.get(TRANSITION)
     }

@@ -7,9 +7,10 @@ use super::error::TableError;
 use super::leaves::is_refined;
 use super::options::{Evaluation, TableOptions};
 use super::patch_id::MAX_LEVEL;
+use super::pieces::cut_by_leaves;
 use super::plan::{Patch, PatchPlan};
 use super::wedges::{CutFace, Wedges};
-use crate::adaptive;
+use crate::adaptive::{self, DrawnBy};
 use crate::limit::{Stencils, VertexEdits, refine};
 use crate::mesh::{ControlMesh, MAX_CORNERS, MeshError, SHARPNESS_INFINITE};
 use crate::patch::{Fallback, Scheme, Undefined};
@@ -146,7 +147,7 @@ pub struct Prepared {
     rounded_caps: u32,
 }
 
-/// Faces of a prepared mesh that are cut in wedges.
+/// Faces of a prepared mesh that are cut, in wedges or by leaves.
 #[derive(Debug, Clone)]
 struct Cut {
     /// The mesh before.
@@ -230,7 +231,12 @@ impl Prepared {
     /// The face of [`Prepared::whole`] that a face of the prepared mesh is, or that it is a wedge of; then the corner from which the
     /// wedge's edge starts.
     pub fn whole_face(&self, face: u32) -> (u32, Option<u32>) {
-        self.cut.as_ref().map_or((face, None), |cut| (cut.faces[face as usize].face, cut.faces[face as usize].corner))
+        self.cut_face(face).map_or((face, None), |cut| (cut.face, cut.part.corner()))
+    }
+
+    /// What a face of the prepared mesh was before some were cut.
+    pub(super) fn cut_face(&self, face: u32) -> Option<CutFace> {
+        self.cut.as_ref().map(|cut| cut.faces[face as usize])
     }
 
     /// The roots of the quadtrees that a patch is evaluated by: of a wedge those around the two ends of its edge, else twice the same.
@@ -242,10 +248,16 @@ impl Prepared {
         [first + corner, next]
     }
 
-    /// Has the faces that have centres in a plan cut in wedges, and plans all.
+    /// Has the faces that have centres in a plan cut in wedges, or all by leaves, and plans all.
     fn with_leaves(self, scheme: Scheme, plan: adaptive::Plan) -> Result<Planned, TableError> {
         let Self { topology: whole, cells, .. } = self;
+        let by_leaves = plan.options.drawn_by == DrawnBy::Leaves;
         let (topology, cells, cut) = match plan.centre_faces.is_empty() {
+            _ if by_leaves => {
+                let pieces = cut_by_leaves(&whole, &plan)?;
+                let cells = cells.cut_by_leaves(&whole, &plan, &pieces)?;
+                (Arc::new(Topology::new(&pieces.mesh)), cells, Some(Cut { whole, faces: pieces.faces }))
+            }
             true => (whole, cells, None),
             false => {
                 let Wedges { mesh, faces } = Wedges::new(&whole, &plan.centre_faces)?;
@@ -256,7 +268,7 @@ impl Prepared {
         let prepared = Self { topology, cells, cut, rounded_caps: plan.rounded_caps, ..self };
         let is_refined = |face| {
             let (face, corner) = prepared.whole_face(face);
-            corner.is_some() || is_refined(&plan, face)
+            by_leaves || corner.is_some() || is_refined(&plan, face)
         };
         let patches = PatchPlan::new(&prepared.topology, &prepared.cells, scheme, Fallback::Refuse, is_refined)?;
         Ok((prepared, patches, Some(plan)))
@@ -341,6 +353,9 @@ pub(crate) fn prepare_for(mesh: &ControlMesh, options: &TableOptions) -> Result<
     let is_whole = refine == 0 && mesh.edit_level() == 0;
     match (options.adaptive, evaluation) {
         (Some(_), Evaluation::Subdivision) => Err(TableError::NotAdaptive { evaluation }),
+        (Some(_), _) if options.is_by_leaves() && evaluation != Evaluation::Tessellation => {
+            Err(TableError::NotByLeaves { evaluation })
+        }
         (Some(adaptive), _) => {
             let prepared = Prepared { rounds_sharpness: false, ..Prepared::refined(mesh, refine)? };
             let plan = adaptive::Plan::new(&prepared.topology, scheme, &adaptive)?;

@@ -1,5 +1,6 @@
 //! Faces cut in wedges: the triangles between their edges and their centres.
 
+use super::pieces::LeafPart;
 use crate::mesh::{ControlMesh, FaceVarying, MeshData, MeshError};
 use crate::topology::{Topology, draws_face};
 
@@ -11,12 +12,33 @@ pub(super) struct Wedges {
     pub faces: Vec<CutFace>,
 }
 
-/// A face, or a wedge of one, of the mesh before faces were cut.
+/// A face, or a part of one, of the mesh before faces were cut.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CutFace {
     pub face: u32,
-    /// The corner from which the edge of a wedge starts; `None` of a face that is whole.
-    pub corner: Option<u32>,
+    pub part: Part,
+}
+
+/// A part of a face.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Part {
+    Whole,
+    /// The wedge at the edge from a corner.
+    Wedge(u32),
+    /// A leaf of adaptive subdivision, by its number.
+    Leaf(u32),
+    /// A triangle of one.
+    OfLeaf(u32, LeafPart),
+}
+
+impl Part {
+    /// The corner from which the edge of a wedge starts.
+    pub(super) fn corner(self) -> Option<u32> {
+        match self {
+            Self::Wedge(corner) => Some(corner),
+            _ => None,
+        }
+    }
 }
 
 impl Wedges {
@@ -28,9 +50,9 @@ impl Wedges {
         let (mesh, draws) = (topology.mesh(), draws_face(topology));
         let old = mesh.data();
         let is_whole = |face: &u32| cut.binary_search(face).is_err();
-        let whole = (0..mesh.face_count() as u32).filter(is_whole).map(|face| CutFace { face, corner: None });
+        let whole = (0..mesh.face_count() as u32).filter(is_whole).map(|face| CutFace { face, part: Part::Whole });
         let wedges = cut.iter().flat_map(|&face| {
-            (0..mesh.face(face).len() as u32).map(move |corner| CutFace { face, corner: Some(corner) })
+            (0..mesh.face(face).len() as u32).map(move |corner| CutFace { face, part: Part::Wedge(corner) })
         });
         let faces: Vec<CutFace> = whole.chain(wedges).collect();
 
@@ -38,12 +60,12 @@ impl Wedges {
         data.face_sizes.clear();
         data.face_vertices.clear();
         let mut indices = Vec::new();
-        for (number, &CutFace { face, corner }) in (0..).zip(&faces) {
+        for (number, &CutFace { face, part }) in (0..).zip(&faces) {
             if !draws[face as usize] {
                 data.holes.push(number);
             }
             let corners = mesh.face_corners(face);
-            let Some(corner) = corner else {
+            let Some(corner) = part.corner() else {
                 data.face_sizes.push(corners.len() as u32);
                 data.face_vertices.extend_from_slice(mesh.face(face));
                 indices.extend(corners);
@@ -72,7 +94,7 @@ impl Wedges {
     }
 }
 
-fn mean<const N: usize>(points: impl ExactSizeIterator<Item = [f64; N]>) -> [f64; N] {
+pub(super) fn mean<const N: usize>(points: impl ExactSizeIterator<Item = [f64; N]>) -> [f64; N] {
     let count = points.len() as f64;
     points.fold([0.0; N], |sum, point| std::array::from_fn(|i| sum[i] + point[i] / count))
 }

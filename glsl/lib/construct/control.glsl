@@ -39,6 +39,9 @@ layout(location = 5) out vec3 owned[][OWNED];
 #ifdef TEXCOORD
 #include "draw/tables.glsl"
 #endif
+#ifdef READS_LEAVES
+#include "evaluate/leaves.glsl"
+#endif
 #ifdef CAPTURE
 layout(location = 11) patch out uint captured_patch;
 #endif
@@ -48,6 +51,9 @@ layout(location = 12) out uint outside[];
 layout(location = 13) out vec4 pixel_box[];
 #include "edges/culling.glsl"
 #include "edges/edge_factors.glsl"
+#ifdef READS_LEAVES
+#include "construct/leaf.glsl"
+#endif
 
 // What is left to do when all control points are written and a barrier is passed. `patch_number` counts within the draw.
 void finish_patch(uint patch_number) {
@@ -64,7 +70,11 @@ void finish_patch(uint patch_number) {
     float asked[CORNERS], outer[CORNERS];
     float largest = 1.0, smallest = MAX_FACTOR;
     for (uint k = 0u; k < CORNERS; ++k) {
+#ifdef READS_LEAVES
+        asked[k] = IS_BY_LEAVES ? leaf_factor(patch_number, k) : plus_factor(patch_number, k);
+#else
         asked[k] = plus_factor(patch_number, k);
+#endif
         outer[k] = within_limits(asked[k]);
         largest = max(largest, outer[k]);
         smallest = min(smallest, outer[k]);
@@ -126,7 +136,11 @@ void finish_corner(uint patch_number) {
         handed_on[gl_InvocationID][i] = ROW_OF(numbers, i);
     }
     if ((DRAW_FLAGS & CULL_FLAGS) != 0u) {
+#ifdef READS_LEAVES
+        Examined examined = IS_BY_LEAVES ? examine_leaf(patch_number) : examine(points);
+#else
         Examined examined = examine(points);
+#endif
         outside[gl_InvocationID] = examined.outside;
         pixel_box[gl_InvocationID] = examined.pixel_box;
     }

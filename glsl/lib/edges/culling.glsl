@@ -31,8 +31,8 @@ vec4 clip_row(int i) {
 }
 
 #if HULL > 0
-// Of what a corner keeps of its control points.
-Examined examine(vec3 kept[OWNED]) {
+// Of points between which a patch lies.
+Examined examine_points(vec3 points[HULL]) {
     vec4 box = vec4(1e30, 1e30, -1e30, -1e30);
     if ((DRAW_FLAGS & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
         return Examined(0u, box, false);
@@ -41,7 +41,7 @@ Examined examine(vec3 kept[OWNED]) {
     vec4 sides = vec4(-1e30), hind_sides = vec4(1e30);
     vec2 depths = vec2(-1e30), hind_depths = vec2(1e30);
     for (int i = 0; i < HULL; ++i) {
-        vec3 at = to_world(i == 0 ? kept[0] : POINT_OF(kept, i));
+        vec3 at = to_world(points[i]);
         vec4 clip = view.measured_view_projection * vec4(at, 1.0);
         vec4 before_sides = clip.w + vec4(clip.xy, -clip.xy);
         vec2 before_depths = vec2(clip.z, clip.w - clip.z);
@@ -68,6 +68,15 @@ Examined examine(vec3 kept[OWNED]) {
     uvec4 bits = uvec4(beyond_sides) << uvec4(0u, 1u, 2u, 3u);
     uvec2 more = uvec2(beyond_depths) << uvec2(4u, 5u);
     return Examined(bits.x | bits.y | bits.z | bits.w | more.x | more.y, box, !within);
+}
+
+// Of what a corner keeps of its control points.
+Examined examine(vec3 kept[OWNED]) {
+    vec3 points[HULL];
+    for (int i = 0; i < HULL; ++i) {
+        points[i] = i == 0 ? kept[0] : POINT_OF(kept, i);
+    }
+    return examine_points(points);
 }
 
 // Whether no pixel's centre lies within a box.

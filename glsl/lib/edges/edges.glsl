@@ -6,7 +6,7 @@
 #include "evaluate/patch.glsl"
 #include "edges/shared_bits.glsl"
 #ifdef MAY_BE_ADAPTIVE
-#include "evaluate/leaves.glsl"
+#include "evaluate/adaptive.glsl"
 #endif
 
 // Across an edge at `t` from its start, by what its ends see across it and their transversals: the same from either end, but for

@@ -41,7 +41,8 @@ layout(location = 2) out vec2 out_texcoord;
 #endif
 
 #ifdef MAY_BE_ADAPTIVE
-#include "evaluate/leaves.glsl"
+#define HANDS_ON_LEAVES
+#include "evaluate/adaptive.glsl"
 #endif
 #ifdef SHARED
 #include "edges/edges.glsl"

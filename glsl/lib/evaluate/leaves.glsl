@@ -1,6 +1,6 @@
 // Faces that are refined where they have to be: a quadtree over (u, v), whose leaves are bicubic B-spline patches, with a crease
 // along one edge or without, and Gregory patches. Rust twins: src/adaptive/evaluate.rs, src/adaptive/crease.rs,
-// src/table/leaves.rs.
+// src/table/leaves.rs, src/table/pieces.rs.
 #ifndef LEAVES_GLSL
 #define LEAVES_GLSL
 
@@ -9,8 +9,11 @@
 #include "draw/tables.glsl"
 #include "evaluate/patch.glsl"
 
-// Whether patches are refined. Triangles are then wedges, each between an edge of a face other than a quad and the face's centre.
-layout(constant_id = ID_ADAPTIVE) const bool ADAPTIVE = false;
+// What patches are. Of faces that are refined, triangles are wedges, each between an edge of a face other than a quad and the face's
+// centre; by leaves, they are between a part of an edge of a leaf and the leaf's centre.
+layout(constant_id = ID_ADAPTIVE) const uint PATCHES = NOT_ADAPTIVE;
+const bool ADAPTIVE = PATCHES != NOT_ADAPTIVE;
+const bool IS_BY_LEAVES = PATCHES == BY_LEAVES;
 
 layout(set = 1, binding = BINDING_TABLE_TEXELS + 4) uniform usamplerBuffer quadtree_texels;
 layout(set = 1, binding = BINDING_TABLE_TEXELS + 5) uniform usamplerBuffer leaf_texels;
@@ -86,10 +89,33 @@ Spline bezier(float t) {
     return Spline(cubic_basis(t), slope);
 }
 
-// A leaf at its own parameters. Rust twin: `Plan::evaluate_leaf`.
-Surface evaluate_leaf(uint leaf, vec2 at) {
+// The control points of a leaf, as they are stored; of an end cap, those that its corners have twice are those of the edge before (f+),
+// and `others` those of the edge after (f-).
+struct LeafPoints {
+    vec3 points[4][4];
+    vec3 others[4];
+};
+
+LeafPoints leaf_points(uint leaf) {
     uint start = LEAF_FOURS * leaf;
+    LeafPoints of_leaf;
+    for (int i = 0; i < 4; ++i) {
+        uvec4 row = leaf_four(start + 1u + uint(i));
+        for (int j = 0; j < 4; ++j) {
+            of_leaf.points[i][j] = vertex_position(row[j]);
+        }
+    }
     uvec4 head = leaf_four(start);
+    if (head.x == LEAF_CAP) {
+        for (uint k = 0u; k < 4u; ++k) {
+            of_leaf.others[k] = vertex_position(head.y + k);
+        }
+    }
+    return of_leaf;
+}
+
+// A leaf with these control points at its own parameters; `head` is the first four of it. Rust twin: `Plan::evaluate_leaf`.
+Surface evaluate_leaf(uvec4 head, LeafPoints of_leaf, vec2 at) {
     bool is_cap = head.x == LEAF_CAP;
     Spline in_u = spline(at.x), in_v = spline(at.y);
     if (is_cap) {
@@ -106,28 +132,27 @@ Surface evaluate_leaf(uint leaf, vec2 at) {
         }
     }
     // As seen from one of them, for sums to keep the bits of small leaves.
-    uvec4 rows[4] = { leaf_four(start + 1u), leaf_four(start + 2u), leaf_four(start + 3u), leaf_four(start + 4u) };
-    vec3 origin = vertex_position(rows[1].y);
+    vec3 origin = of_leaf.points[0][1];
     vec3 points[4][4];
     for (int i = 0; i < 4; ++i) {
         for (int j = 0; j < 4; ++j) {
-            precise vec3 point = vertex_position(rows[i][j]) - origin;
+            precise vec3 point = of_leaf.points[i][j] - origin;
             points[i][j] = point;
         }
     }
     if (is_cap) {
         // The face points f+ and f- of each corner, blended by (u, v).
         precise float s = 1.0 - at.x, t = 1.0 - at.y;
-#define INNER(i, j, k, a, b) \
+#define FACE_POINT(i, j, k, a, b) \
     { \
-        precise vec3 change = (vertex_position(head.y + k) - origin) - points[i][j]; \
+        precise vec3 change = (of_leaf.others[k] - origin) - points[i][j]; \
         points[i][j] = blend(points[i][j], a, change, b); \
     }
-        INNER(1, 1, 0u, at.x, at.y)
-        INNER(2, 1, 1u, at.y, s)
-        INNER(2, 2, 2u, s, t)
-        INNER(1, 2, 3u, t, at.x)
-#undef INNER
+        FACE_POINT(1, 1, 0, at.x, at.y)
+        FACE_POINT(2, 1, 1, at.y, s)
+        FACE_POINT(2, 2, 2, s, t)
+        FACE_POINT(1, 2, 3, t, at.x)
+#undef FACE_POINT
     }
     vec3 of_u[4], slopes[4];
     for (int i = 0; i < 4; ++i) {
@@ -140,14 +165,17 @@ Surface evaluate_leaf(uint leaf, vec2 at) {
     return Surface(position, du, dv, vec3(0.0));
 }
 
-// A place on the surface: the root of a quadtree, and (u, v) there.
+// A place on the surface: the root of a quadtree, by leaves a leaf, and (u, v) there.
 struct Spot {
     uint root;
     vec2 at;
 };
 
-// Rust twin: `Plan::locate`.
-Surface evaluate_spot(Spot spot) {
+// The leaf in which it lies, and (u, v) there. Rust twin: `Plan::locate`.
+Spot in_leaf(Spot spot) {
+    if (IS_BY_LEAVES) {
+        return spot;
+    }
     vec2 at = spot.at;
     uint node = quadtree_node(spot.root);
     for (uint level = 0u; level < MAX_DEPTH && (node & LEAF_BIT) == 0u; ++level) {
@@ -156,7 +184,12 @@ Surface evaluate_spot(Spot spot) {
         at = inside;
         node = quadtree_node(node + far.x + 2u * far.y);
     }
-    return evaluate_leaf(node & ~LEAF_BIT, at);
+    return Spot(node & ~LEAF_BIT, at);
+}
+
+Surface evaluate_spot(Spot spot) {
+    Spot of_leaf = in_leaf(spot);
+    return evaluate_leaf(leaf_four(LEAF_FOURS * of_leaf.root), leaf_points(of_leaf.root), of_leaf.at);
 }
 
 uint face_word(uint patch_number, uint word) {
@@ -170,10 +203,29 @@ Spot wedge_spot(uint patch_number, vec3 at) {
     return Spot(face_word(patch_number, far ? 1u : 0u), far ? vec2(at.z, along) : vec2(along, at.z));
 }
 
+// A point of edge `edge` of a leaf. Rust twin: `on_side` in src/table/pieces.rs.
+vec2 on_leaf_edge(uint edge, uint part) {
+    float t = float(part) / float(PIECE_PARTS);
+    return edge == 0u ? vec2(t, 0.0) : edge == 1u ? vec2(1.0, t) : edge == 2u ? vec2(1.0 - t, 1.0) : vec2(0.0, 1.0 - t);
+}
+
+// The point of a triangle between a part of an edge of a leaf and the leaf's centre, with these barycentric coordinates.
+Spot piece_spot(uint patch_number, vec3 at) {
+    uint piece = face_word(patch_number, 1u), edge = piece >> PIECE_EDGE_SHIFT & 3u;
+    vec2 from = on_leaf_edge(edge, piece & PIECE_MASK), to = on_leaf_edge(edge, piece >> PIECE_TO_SHIFT & PIECE_MASK);
+    precise vec2 place = (at.x * from + at.y * to) + at.z * vec2(0.5);
+    return Spot(face_word(patch_number, 0u), place);
+}
+
+// The point of a triangle.
+Spot triangle_spot(uint patch_number, vec3 at) {
+    return IS_BY_LEAVES ? piece_spot(patch_number, at) : wedge_spot(patch_number, at);
+}
+
 // The point of the patch that is evaluated.
 Spot own_spot(vec3 at) {
 #ifdef TRIANGLE
-    return wedge_spot(evaluated_patch, at);
+    return triangle_spot(evaluated_patch, at);
 #else
     return Spot(face_word(evaluated_patch, 0u), at.xy);
 #endif
@@ -211,61 +263,25 @@ uint normal_owner_of(uint edge_or_corner) {
     return face_word(evaluated_patch, NORMAL_OWNERS + edge_or_corner);
 }
 
+// Whether the patch itself is the owner of its edge or corner.
+bool is_own(uint owner, uint edge_or_corner) {
+    return owner >> OWNER_SHIFT == evaluated_patch && (owner & 3u) == (edge_or_corner & 3u);
+}
+
 // A point of an edge, or a corner, as the owner has it; `back` is its distance from the end of this patch's edge.
 Spot spot_of(uint owner, uint edge_or_corner, vec3 at, float back) {
     uint of = owner >> OWNER_SHIFT, k = owner & 3u;
-    if (of == evaluated_patch && k == (edge_or_corner & 3u)) {
+    if (is_own(owner, edge_or_corner)) {
         return own_spot(at);
     }
     // The other side goes the other way.
     float way = edge_or_corner < 4u ? back : 0.0;
     precise float left = 1.0 - way;
     if ((owner & WEDGE_BIT) != 0u) {
-        return wedge_spot(of, k == 0u ? vec3(left, way, 0.0) : k == 1u ? vec3(0.0, left, way) : vec3(way, 0.0, left));
+        return triangle_spot(of, k == 0u ? vec3(left, way, 0.0) : k == 1u ? vec3(0.0, left, way) : vec3(way, 0.0, left));
     }
     vec2 place = k == 0u ? vec2(way, 0.0) : k == 1u ? vec2(1.0, way) : k == 2u ? vec2(left, 1.0) : vec2(0.0, left);
     return Spot(face_word(of, 0u), place);
-}
-
-// Whether leaves make a point of an edge or a corner.
-bool is_of_leaves(bvec4 on) {
-    return ADAPTIVE && owner_of(edge_or_corner(on)) != OWNER_NONE;
-}
-
-// The patch as if it were not refined: the scheme's.
-Surface evaluate_whole(vec3 at);
-
-// A patch that is refined: its leaves inside; on edges and at corners those of the owner, with its normal as `facing`. Where a
-// neighbour is not refined, what both make of their corners.
-Surface evaluate_leaves(vec3 at) {
-    bvec4 on = edges_of(at);
-    uint owner = 0u, of_normal = 0u, edge = 0u;
-    Spot spot = own_spot(at);
-    float back = 0.0;
-    if (any(on)) {
-        edge = edge_or_corner(on);
-        owner = owner_of(edge);
-        if (owner == OWNER_NONE) {
-            return evaluate_whole(at);
-        }
-        of_normal = normal_owner_of(edge);
-        back = way_back(on, at);
-        spot = spot_of(owner, edge, at, back);
-    }
-    Surface surface = evaluate_spot(spot);
-#ifdef DISPLACED
-    surface.facing = unit_normal(surface.du, surface.dv, vec3(0.0));
-#endif
-    if (of_normal != owner) {
-        Surface side = evaluate_spot(spot_of(of_normal, edge, at, back));
-        surface.du = side.du;
-        surface.dv = side.dv;
-    }
-    return surface;
-}
-
-Surface evaluate_surface(vec3 at) {
-    return ADAPTIVE ? evaluate_leaves(at) : evaluate_whole(at);
 }
 
 #endif

@@ -13,7 +13,7 @@ Surface evaluate_gregory_quad(float u, float v) {
 #undef CORNER
 }
 
-#include "evaluate/leaves.glsl"
+#include "evaluate/adaptive.glsl"
 
 Surface evaluate_whole(vec3 at) {
     return evaluate_gregory_quad(at.x, at.y);

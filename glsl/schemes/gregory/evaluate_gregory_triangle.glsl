@@ -60,7 +60,7 @@ Surface evaluate_gregory_triangle(float u, float v, float w) {
     return Surface(position_at(u, v, w, inner), along_u, along_v, cross(b, c));
 }
 
-#include "evaluate/leaves.glsl"
+#include "evaluate/adaptive.glsl"
 
 Surface evaluate_whole(vec3 at) {
     return evaluate_gregory_triangle(at.x, at.y, at.z);

@@ -37,6 +37,9 @@ pub(crate) fn check_evaluation(
     if evaluation == Evaluation::Tessellation {
         return Ok(());
     }
+    if tables.options().is_by_leaves() {
+        return Err(Error::NotEvaluatedBy { id, evaluation, what: "patches by leaves" });
+    }
     let shares = evaluation.shares(construction);
     let stencils = evaluation == Evaluation::Geometry;
     let what = match tables.sharing() {

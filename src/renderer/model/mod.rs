@@ -129,7 +129,7 @@ fn stages(tables: &ModelTables, options: &ModelOptions, pipelines: &ModelPipelin
             edge_factors: tables.edges().is_some() && evaluation != Evaluation::Tessellation,
             stride: tables.kept_texels(),
             attributes: false,
-            adaptive: group.refined,
+            adaptive: group.refined.then(|| tables.options().adaptive.unwrap_or_default().drawn_by),
         };
         PatchStages { attributes: path(evaluation).has_attributes(&pipelines.draws, stages), ..stages }
     };

@@ -77,11 +77,12 @@ impl ModelPipelines {
             self.draws.make(key, |key, made_for| path.recipe(stages, cut, key, made_for))?;
             let of_style = |style| self.draws.get(PipelineKey { style, geometry: key }).unwrap_or_default();
             pipelines.extend((0..styles).map(of_style));
-            if stages.adaptive {
+            if stages.adaptive.is_some() {
                 self.cached.make_refinement(&self.draws.shaders)?;
             }
             match (stages.construction, stages.evaluation) {
                 (_, Evaluation::Subdivision) => {}
+                _ if stages.is_by_leaves() => {}
                 (Construction::Cached, Evaluation::GeometryTwoPass) => self.convert(stages)?,
                 (Construction::Cached, _) => self.cached.make(stages, &self.draws.shaders)?,
                 _ => {}

@@ -32,6 +32,11 @@ impl Cut {
         Self { listed: self.listed, ..Self::default() }
     }
 
+    /// Of patches by leaves, whose control points do not tell which way they face.
+    pub(crate) fn of_leaves(self) -> Self {
+        Self { cull: Cull { back: false, ..self.cull }, ..self }
+    }
+
     /// GLSL twin: `DRAW_FLAGS` in `glsl/lib/edges/factors.glsl`.
     pub(crate) fn flags(self, has_hull: bool) -> u32 {
         let Cull { frustum, back, small } = if has_hull { self.cull } else { Cull::NONE };

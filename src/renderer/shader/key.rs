@@ -2,6 +2,7 @@
 
 use super::axes::{Output, Patch, ShaderKey, Source};
 use super::cut::Cut;
+use crate::adaptive::DrawnBy;
 use crate::constants;
 use crate::gpu::{DeviceProperties, Spacing, Specialization};
 use crate::patch::Scheme;
@@ -62,8 +63,8 @@ pub(crate) struct PatchStages {
     pub stride: u32,
     /// Whether the vertex shader has the control points as attributes of an instance.
     pub attributes: bool,
-    /// Whether its faces are refined: leaves are evaluated.
-    pub adaptive: bool,
+    /// What the patches are, where leaves are evaluated.
+    pub adaptive: Option<DrawnBy>,
 }
 
 /// The patch that a scheme's shaders are compiled for.
@@ -101,18 +102,23 @@ impl Capture {
 }
 
 impl PatchStages {
+    /// Whether patches are leaves, whose control points the control shader looks up.
+    pub(crate) fn is_by_leaves(self) -> bool {
+        self.adaptive == Some(DrawnBy::Leaves)
+    }
+
     /// Control points that go into the control shader: one a corner, or one a patch that only says which patch it is.
     pub(crate) fn input_points(self) -> u32 {
         match self.construction {
-            Construction::TwoStage => self.kind.corners() as u32,
-            Construction::Stencil | Construction::Cached => 1,
+            Construction::TwoStage if !self.is_by_leaves() => self.kind.corners() as u32,
+            _ => 1,
         }
     }
 
     /// What tells apart the pipelines that make control points by compute: what is of no concern to them is as usual.
     pub(crate) fn for_control_points(self) -> Self {
         let (evaluation, spacing) = (Evaluation::Tessellation, Spacing::Equal);
-        Self { evaluation, spacing, edge_factors: false, attributes: false, adaptive: false, ..self }
+        Self { evaluation, spacing, edge_factors: false, attributes: false, adaptive: None, ..self }
     }
 
     /// Whether it does with no more control points than a device has attributes.
@@ -151,8 +157,8 @@ impl PatchStages {
     /// The vertex shader.
     pub(crate) fn vertex(self) -> ShaderKey {
         match self.construction {
-            Construction::TwoStage => self.shader(Source::TwoStageVert, Output::Surface),
-            Construction::Stencil | Construction::Cached => ShaderKey::of(Source::PatchNumberVert),
+            Construction::TwoStage if !self.is_by_leaves() => self.shader(Source::TwoStageVert, Output::Surface),
+            _ => ShaderKey::of(Source::PatchNumberVert),
         }
     }
 
@@ -160,7 +166,7 @@ impl PatchStages {
     /// `glsl/lib/edges/culling.glsl`.
     pub(crate) fn has_hull(self) -> bool {
         // Leaves may reach beyond the control points of the whole.
-        patch(self.scheme, self.kind).shaders().hull > 0 && !self.adaptive
+        patch(self.scheme, self.kind).shaders().hull > 0 && self.adaptive.is_none()
     }
 
     /// What tells apart the pipelines that list which patches can be seen.
@@ -180,11 +186,20 @@ impl PatchStages {
 
     /// What the shaders of draws that are cut so are specialized to, but for those that evaluate and shade.
     pub(crate) fn specialization(self, cut: Cut, device: &DeviceProperties) -> [Specialization; 12] {
+        let flags = match self.is_by_leaves() {
+            true => cut.of_leaves().flags(true),
+            false => cut.flags(self.has_hull()),
+        };
+        let adaptive = match self.adaptive {
+            None => constants::NOT_ADAPTIVE,
+            Some(DrawnBy::Faces) => constants::BY_FACES,
+            Some(DrawnBy::Leaves) => constants::BY_LEAVES,
+        };
         [
             Specialization::uint(constants::ID_CORNERS, self.kind.corners() as u32),
             Specialization::float(constants::ID_MAX_FACTOR, device.max_tessellation_level as f32),
             Specialization::uint(constants::ID_STRIDE, self.stride),
-            Specialization::uint(constants::ID_DRAW_FLAGS, cut.flags(self.has_hull())),
+            Specialization::uint(constants::ID_DRAW_FLAGS, flags),
             Specialization::bool(constants::ID_MAY_BE_FITTED, self.scheme == Scheme::GregoryFitted),
             Specialization::bool(constants::ID_MAY_HAVE_PENTAGONS, self.scheme.has_pentagons()),
             Specialization::bool(constants::ID_HAS_SPEAKERS, self.has_speakers),
@@ -192,15 +207,15 @@ impl PatchStages {
             reads_texels(device),
             Specialization::bool(constants::ID_LISTED, cut.is_listed()),
             Specialization::uint(constants::ID_CONSTRUCTION, construction_number(self.construction)),
-            Specialization::bool(constants::ID_ADAPTIVE, self.adaptive),
+            Specialization::uint(constants::ID_ADAPTIVE, adaptive),
         ]
     }
 
     /// The control shader.
     pub(crate) fn control(self, capture: Capture, texcoords: bool) -> ShaderKey {
         let source = match self.construction {
-            Construction::TwoStage => Source::TwoStageTesc,
-            Construction::Stencil | Construction::Cached => Source::TablesTesc,
+            Construction::TwoStage if !self.is_by_leaves() => Source::TwoStageTesc,
+            _ => Source::TablesTesc,
         };
         let output = match capture {
             Capture::Grid => Output::CaptureVertices,
@@ -260,7 +275,7 @@ mod tests {
             edge_factors: false,
             stride,
             attributes: false,
-            adaptive: false,
+            adaptive: None,
         };
         // As many as every Vulkan device has, unless patches share more.
         for (sharing, stride, needed) in

@@ -29,7 +29,8 @@ pub(crate) fn patches(stages: PatchStages, cut: Cut) -> String {
         flag(stages.has_speakers, "speakers"),
         flag(stages.edge_factors, "factors of edges"),
         flag(stages.attributes, "attributes"),
-        flag(stages.adaptive, "adaptive"),
+        flag(stages.adaptive.is_some(), "adaptive"),
+        flag(stages.is_by_leaves(), "by leaves"),
     ];
     let mut name = format!("{} {kind}, {}, {}", scheme.name(), construction.name(), evaluation.name());
     for word in more.into_iter().chain(cut.words()).filter(|word| !word.is_empty()) {
@@ -58,7 +59,7 @@ mod tests {
             edge_factors: false,
             stride: 4,
             attributes: false,
-            adaptive: false,
+            adaptive: None,
         };
         assert_eq!(patches(stages, Cut::default()), "gregory irregular quads, cached, tessellation");
         assert_eq!(
