@@ -95,12 +95,14 @@
 #define BY_FACES 1u
 #define BY_LEAVES 2u
 // The second word of a patch by leaves: where on which edge of the leaf a triangle begins (from bit 0) and ends, in parts of the
-// edge, and the level of the leaf.
+// edge; the level of the leaf; and where the triangle ends in a point: in the middle of an edge of the leaf, or its centre.
 #define PIECE_PARTS 1024u
 #define PIECE_MASK 2047u
 #define PIECE_TO_SHIFT 11u
 #define PIECE_EDGE_SHIFT 22u
 #define PIECE_LEVEL_SHIFT 24u
+#define PIECE_APEX_SHIFT 28u
+#define APEX_IS_CENTRE 4u
 // Words of a face, and the first of those that say who owns the positions, the normals. An owner is a patch from OWNER_SHIFT on, whether
 // it is a wedge, and its edge or corner; or none, where a neighbour is not refined.
 #define FACE_WORDS 18u

@@ -7,7 +7,7 @@ use super::wedges::Part;
 use crate::adaptive::{self, LEAF, LeafKind, LevelCounts};
 use crate::constants::{
     FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE, OWNER_SHIFT, OWNERS,
-    PIECE_EDGE_SHIFT, PIECE_LEVEL_SHIFT, PIECE_TO_SHIFT, WEDGE_BIT,
+    PIECE_APEX_SHIFT, PIECE_EDGE_SHIFT, PIECE_LEVEL_SHIFT, PIECE_TO_SHIFT, WEDGE_BIT,
 };
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::Topology;
@@ -153,10 +153,11 @@ pub(super) fn is_refined(plan: &adaptive::Plan, face: u32) -> bool {
     !(roots.is_empty() || roots.len() == 1 && whole(roots.start))
 }
 
-/// The leaf that a patch is of; its level from bit [`PIECE_LEVEL_SHIFT`] on, and of a triangle the edge and the ends.
-fn leaf_piece(plan: &adaptive::Plan, leaf: u32, LeafPart { edge, ends: [from, to] }: LeafPart) -> [u32; 2] {
-    let level = plan.leaves[leaf as usize].level;
-    [leaf, from | to << PIECE_TO_SHIFT | edge << PIECE_EDGE_SHIFT | level << PIECE_LEVEL_SHIFT]
+/// The leaf that a patch is of; its level from bit [`PIECE_LEVEL_SHIFT`] on, and of a triangle the edge, its ends and the apex.
+fn leaf_piece(plan: &adaptive::Plan, leaf: u32, part: LeafPart) -> [u32; 2] {
+    let (level, LeafPart { edge, ends: [from, to], apex }) = (plan.leaves[leaf as usize].level, part);
+    let triangle = from | to << PIECE_TO_SHIFT | edge << PIECE_EDGE_SHIFT | apex << PIECE_APEX_SHIFT;
+    [leaf, triangle | level << PIECE_LEVEL_SHIFT]
 }
 
 fn leaf_words(

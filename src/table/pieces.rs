@@ -2,6 +2,7 @@
 
 use super::wedges::{CutFace, Part, mean};
 use crate::adaptive::{Leaf, Plan, Root};
+use crate::constants::APEX_IS_CENTRE;
 use crate::mesh::{BoundaryRule, ControlMesh, Crease, FaceVarying, MeshData, MeshError, SHARPNESS_INFINITE};
 use crate::topology::Topology;
 use rustc_hash::FxBuildHasher;
@@ -12,13 +13,15 @@ pub(super) const SIDE: u32 = crate::constants::PIECE_PARTS;
 const _: () = assert!(SIDE == 1 << crate::constants::MAX_DEPTH);
 
 /// A part of a leaf beyond one of whose edges leaves are finer: the triangle between a part of its boundary, which is an edge of
-/// one patch beyond it, too, and its centre.
+/// one patch beyond it, too, and the apex, which all triangles of the leaf have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct LeafPart {
     /// The leaf's edge on which the part lies.
     pub edge: u32,
     /// The ends of the part on that edge, in the order around the leaf, in parts of [`SIDE`].
     pub ends: [u32; 2],
+    /// The leaf's edge whose middle is the apex, or [`APEX_IS_CENTRE`].
+    pub apex: u32,
 }
 
 /// A point on the control mesh, by the element in whose inside it is.
@@ -111,8 +114,8 @@ impl Places<'_> {
         }
     }
 
-    /// The line that a part of edge `k` of a leaf lies on.
-    fn line(&self, leaf: &Leaf, k: u32, ends: [u32; 2]) -> Line {
+    /// The line that a part of edge `k` of a leaf lies on, between its ends.
+    fn line(&self, leaf: &Leaf, (k, ends): (u32, [u32; 2])) -> Line {
         let (side, [u, v]) = cell(self.plan, leaf);
         let (start, is_on_root) = match k {
             0 => (u, v == 0),
@@ -190,8 +193,7 @@ struct Faces {
     texcoords: Vec<[f32; 2]>,
 }
 
-/// Cuts a mesh into the leaves of a plan; each leaf beyond one of whose edges leaves are finer into triangles around its centre. So
-/// every edge of a patch is one of its neighbour, too.
+/// Cuts a mesh into the leaves of a plan; each leaf beyond one of whose edges leaves are finer into triangles. So every edge of a patch is one of its neighbour, too.
 ///
 /// # Errors
 /// [`MeshError::TooLarge`].
@@ -235,22 +237,38 @@ impl Faces {
         let (side, at) = cell(places.plan, leaf);
         let mut parts = Vec::with_capacity(4);
         (0..4).for_each(|k| add_parts(places, leaf, k, [0, side], &mut parts));
-        let is_whole = parts.len() == 4;
-        for &(k, ends) in &parts {
-            let [from, to] = ends.map(|t| on_side(at, side, k, t));
-            self.push(places, leaf, from, places.line(leaf, k, ends));
-            if !is_whole {
-                self.push(places, leaf, to, Line::Inner);
-                self.push(places, leaf, at.map(|t| t + side / 2), Line::Inner);
-                let part = LeafPart { edge: k, ends: ends.map(|t| t * (SIDE / side)) };
-                self.faces.push(CutFace { face: leaf.face, part: Part::OfLeaf(number, part) });
-                self.data.face_sizes.push(3);
+        let point = |(k, [from, _]): (u32, [u32; 2])| on_side(at, side, k, from);
+        if parts.len() == 4 {
+            parts.iter().for_each(|&part| self.push(places, leaf, point(part), places.line(leaf, part)));
+            self.push_face(4, leaf, Part::Leaf(number));
+            return;
+        }
+        // An edge that is halved once has an end of every triangle that is not degenerate.
+        let halved = (0..4).find(|&k| parts.iter().filter(|part| part.0 == k).count() == 2);
+        let apex = halved.map_or(at.map(|t| t + side / 2), |k| on_side(at, side, k, side / 2));
+        let of_apex = |point| point == apex;
+        for (i, &part) in parts.iter().enumerate() {
+            let next = parts[(i + 1) % parts.len()];
+            let points = [point(part), point(next)];
+            if points.into_iter().any(of_apex) {
+                continue;
             }
+            // Of the parts of the boundary that start or end in the apex, each is the side of one triangle.
+            let [before, after] = [parts[(i + parts.len() - 1) % parts.len()], parts[(i + 1) % parts.len()]];
+            let to_apex = if of_apex(point(parts[(i + 2) % parts.len()])) { places.line(leaf, after) } else { Line::Inner };
+            let from_apex = if of_apex(point(before)) { places.line(leaf, before) } else { Line::Inner };
+            self.push(places, leaf, points[0], places.line(leaf, part));
+            self.push(places, leaf, points[1], to_apex);
+            self.push(places, leaf, apex, from_apex);
+            let (edge, ends) = (part.0, part.1.map(|t| t * (SIDE / side)));
+            let apex = halved.unwrap_or(APEX_IS_CENTRE);
+            self.push_face(3, leaf, Part::OfLeaf(number, LeafPart { edge, ends, apex }));
         }
-        if is_whole {
-            self.faces.push(CutFace { face: leaf.face, part: Part::Leaf(number) });
-            self.data.face_sizes.push(4);
-        }
+    }
+
+    fn push_face(&mut self, size: u32, leaf: &Leaf, part: Part) {
+        self.faces.push(CutFace { face: leaf.face, part });
+        self.data.face_sizes.push(size);
     }
 
     /// Adds a corner of a face, and the line to the next.

@@ -22,10 +22,10 @@ vec3 corner_place(uint k) {
 // What of the edge of a whole face the edge from corner k is: a power of two, the same from either side.
 float edge_part(uint k) {
     uint piece = face_word(evaluated_patch, 1u);
-    float part = exp2(-float(piece >> PIECE_LEVEL_SHIFT));
+    float part = exp2(-float(piece_level(piece)));
 #ifdef TRIANGLE
-    uint from = piece & PIECE_MASK, to = piece >> PIECE_TO_SHIFT & PIECE_MASK;
-    part *= k == 0u ? float(to - from) / float(PIECE_PARTS) : 0.5;
+    vec2 way = abs(piece_corner(piece, k) - piece_corner(piece, k == 2u ? 0u : k + 1u));
+    part *= max(way.x, way.y);
 #endif
     return part;
 }
@@ -89,7 +89,7 @@ vec3[5] leaf_corner(uint patch_number, uint k) {
 float leaf_corner_lod(uint corner, uint patch_number, uint k) {
     evaluated_patch = draw.first_patch + patch_number;
     uint owner = owner_of(4u + k);
-    float factor = item.factor * exp2(-float(face_word(owner >> OWNER_SHIFT, 1u) >> PIECE_LEVEL_SHIFT));
+    float factor = item.factor * exp2(-float(piece_level(face_word(owner >> OWNER_SHIFT, 1u))));
     if (metric() == METRIC_PIXELS || metric() == METRIC_CURVATURE) {
         Surface at = evaluate_spot(spot_of(owner, 4u + k, corner_place(k), 0.0));
         precise vec3 a = at.du / 3.0, b = at.dv / 3.0;

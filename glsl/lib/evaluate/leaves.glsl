@@ -10,7 +10,7 @@
 #include "evaluate/patch.glsl"
 
 // What patches are. Of faces that are refined, triangles are wedges, each between an edge of a face other than a quad and the face's
-// centre; by leaves, they are between a part of an edge of a leaf and the leaf's centre.
+// centre; by leaves, they are parts of leaves.
 layout(constant_id = ID_ADAPTIVE) const uint PATCHES = NOT_ADAPTIVE;
 const bool ADAPTIVE = PATCHES != NOT_ADAPTIVE;
 const bool IS_BY_LEAVES = PATCHES == BY_LEAVES;
@@ -209,11 +209,21 @@ vec2 on_leaf_edge(uint edge, uint part) {
     return edge == 0u ? vec2(t, 0.0) : edge == 1u ? vec2(1.0, t) : edge == 2u ? vec2(1.0 - t, 1.0) : vec2(0.0, 1.0 - t);
 }
 
-// The point of a triangle between a part of an edge of a leaf and the leaf's centre, with these barycentric coordinates.
+uint piece_level(uint piece) {
+    return piece >> PIECE_LEVEL_SHIFT & 15u;
+}
+
+// Corner k of a triangle of a leaf, whose second word this is. Rust twin: `LeafPart` in src/table/pieces.rs.
+vec2 piece_corner(uint piece, uint k) {
+    uint edge = piece >> PIECE_EDGE_SHIFT & 3u, apex = piece >> PIECE_APEX_SHIFT;
+    vec2 at_apex = apex == APEX_IS_CENTRE ? vec2(0.5) : on_leaf_edge(apex, PIECE_PARTS / 2u);
+    return k == 2u ? at_apex : on_leaf_edge(edge, (k == 0u ? piece : piece >> PIECE_TO_SHIFT) & PIECE_MASK);
+}
+
+// The point of a triangle of a leaf with these barycentric coordinates.
 Spot piece_spot(uint patch_number, vec3 at) {
-    uint piece = face_word(patch_number, 1u), edge = piece >> PIECE_EDGE_SHIFT & 3u;
-    vec2 from = on_leaf_edge(edge, piece & PIECE_MASK), to = on_leaf_edge(edge, piece >> PIECE_TO_SHIFT & PIECE_MASK);
-    precise vec2 place = (at.x * from + at.y * to) + at.z * vec2(0.5);
+    uint piece = face_word(patch_number, 1u);
+    precise vec2 place = (at.x * piece_corner(piece, 0u) + at.y * piece_corner(piece, 1u)) + at.z * piece_corner(piece, 2u);
     return Spot(face_word(patch_number, 0u), place);
 }
 
