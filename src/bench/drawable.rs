@@ -159,7 +159,7 @@ impl Contestant {
             sharp_depth: (self.creases != Creases::Direct).then(|| depth.max(levels_of_creases(mesh, refine))),
             refine_creases: self.creases == Creases::Refined,
             sums: self.sums,
-            ..AdaptiveOptions::default()
+            drawn_by: self.drawn_by,
         })
     }
 }

@@ -44,7 +44,7 @@ pub use recording::{Crowd, Recording};
 pub use row::{Row, Series};
 pub use subject::{Subject, Subset};
 
-use crate::adaptive::Sums;
+use crate::adaptive::{DrawnBy, Sums};
 use crate::named::named;
 use crate::patch::Scheme;
 use crate::renderer::{Construction, Cull, Evaluation};
@@ -193,6 +193,8 @@ pub struct Contestant {
     pub creases: Creases,
     /// What its refined vertices are sums of, if it is adaptive.
     pub sums: Sums,
+    /// What its patches are, if it is adaptive.
+    pub drawn_by: DrawnBy,
     /// Source of its normals.
     pub normals: Normals,
     /// Patches that it culls.
@@ -210,6 +212,7 @@ impl Contestant {
             depth: None,
             creases: Creases::Direct,
             sums: Sums::Levels,
+            drawn_by: DrawnBy::Faces,
             normals: Normals::Own,
             cull: Cull::NONE,
             cull_by: CullBy::usual(patches),
@@ -246,12 +249,18 @@ impl Contestant {
         normals.flat_map(with).collect()
     }
 
-    /// The same, and adaptive surfaces of these depths, with each way to follow creases and each kind of sums, where the scheme has
-    /// end caps and the path draws them.
-    pub fn at_depths(self, depths: &[u32], creases: &[Creases], sums: &[Sums]) -> Vec<Self> {
+    /// The same, and adaptive surfaces of these depths, with each way to follow creases, each kind of sums and each kind of patches,
+    /// where the scheme has end caps and the path draws them: patches by leaves where it has tessellation stages.
+    pub fn at_depths(self, depths: &[u32], creases: &[Creases], sums: &[Sums], by: &[DrawnBy]) -> Vec<Self> {
         let caps = matches!(self.patches, Some((Scheme::Gregory | Scheme::GregoryFitted, _)));
         let depths = if caps { depths } else { &[] };
-        let of = |depth, creases| sums.iter().map(move |&sums| Self { depth: Some(depth), creases, sums, ..self });
+        let by: Vec<DrawnBy> =
+            by.iter().copied().filter(|&by| by == DrawnBy::Faces || self.path.tessellates()).collect();
+        let ways: Vec<_> = sums.iter().flat_map(|&sums| by.iter().map(move |&by| (sums, by))).collect();
+        let of = |depth, creases| {
+            let way = move |&(sums, drawn_by)| Self { depth: Some(depth), creases, sums, drawn_by, ..self };
+            ways.iter().map(way)
+        };
         let at = |&depth| creases.iter().flat_map(move |&creases| of(depth, creases));
         [self].into_iter().chain(depths.iter().flat_map(at)).collect()
     }

@@ -175,6 +175,7 @@ pub(super) fn run(args: &SampleArgs, json: bool) -> Result<(), CliError> {
     {
         return Err(CliError::Usage(format!("--scheme limit: {message}")));
     }
+    args.mesh.refuse_leaves()?;
     let progress = Progress::new("reading the mesh");
     let mesh = args.mesh.load(&progress)?;
     let scheme = match args.scheme {

@@ -167,6 +167,7 @@ impl ScreenArgs {
 }
 
 pub(super) fn run(args: &ScreenArgs, json: bool) -> Result<(), CliError> {
+    args.mesh.source.refuse_leaves()?;
     let progress = Progress::new("reading the mesh");
     let (mesh, local) = Local::of(args.mesh.load(&progress)?)?;
     progress.now("building tables");

@@ -119,6 +119,19 @@ impl SourceArgs {
         TableOptions { scheme, fallback: self.fallback(), refine: self.refine, adaptive, ..TableOptions::default() }
     }
 
+    /// Refuses patches by leaves, where a command needs a patch a face.
+    ///
+    /// # Errors
+    /// That they were asked for.
+    pub(super) fn refuse_leaves(&self) -> Result<(), CliError> {
+        match self.by {
+            DrawnBy::Faces => Ok(()),
+            DrawnBy::Leaves => Err(CliError::Usage(
+                "--by leaves: the surface is the same by faces, which this command goes by: leave it out".into(),
+            )),
+        }
+    }
+
     /// Depths of adaptive subdivision, if there is any.
     pub(super) fn adaptive(&self) -> Option<AdaptiveOptions> {
         self.adaptive.map(|depth| AdaptiveOptions {

@@ -1,13 +1,14 @@
 //! What shaders read of faces that are refined: quadtrees, leaves, and who owns edges and corners.
 
-use super::pieces::LeafPart;
+use super::pieces::{LeafPart, on_side};
 use super::plan::PatchPlan;
 use super::prepare::Prepared;
 use super::wedges::Part;
 use crate::adaptive::{self, LEAF, LeafKind, LevelCounts};
 use crate::constants::{
-    FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE, OWNER_SHIFT, OWNERS,
-    PIECE_APEX_SHIFT, PIECE_EDGE_SHIFT, PIECE_LEVEL_SHIFT, PIECE_TO_SHIFT, WEDGE_BIT,
+    APEX_IS_CENTRE, FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE,
+    OWNER_SHIFT, OWNERS, PIECE_APEX_SHIFT, PIECE_EDGE_SHIFT, PIECE_LEVEL_SHIFT, PIECE_MASK, PIECE_PARTS,
+    PIECE_TO_SHIFT, WEDGE_BIT,
 };
 use crate::mesh::SHARPNESS_INFINITE;
 use crate::topology::Topology;
@@ -106,6 +107,26 @@ impl Refinement {
 }
 
 impl LeafTable {
+    /// The corners of a patch by leaves, by its number, in (u, v) of its cell ([`PatchId`](super::PatchId)): those of a triangle, or
+    /// [0, 0], [1, 0], [1, 1], [0, 1].
+    ///
+    /// # Panics
+    /// If there is no patch with this number.
+    pub fn cell_corners(&self, patch: usize, is_triangle: bool) -> Vec<[f64; 2]> {
+        let word = self.faces[patch][1];
+        let [from, to] = [word, word >> PIECE_TO_SHIFT].map(|at| at & PIECE_MASK);
+        let on = |edge, part| on_side([0, 0], PIECE_PARTS, edge, part).map(|t| f64::from(t) / f64::from(PIECE_PARTS));
+        if !is_triangle {
+            return (0..4).map(|k| on(k, 0)).collect();
+        }
+        let edge = word >> PIECE_EDGE_SHIFT & 3;
+        let apex = match word >> PIECE_APEX_SHIFT {
+            APEX_IS_CENTRE => [0.5; 2],
+            edge => on(edge, PIECE_PARTS / 2),
+        };
+        vec![on(edge, from), on(edge, to), apex]
+    }
+
     /// For the patches in `patches` of a mesh that was planned.
     pub(super) fn new(prepared: &Prepared, patches: &PatchPlan, plan: adaptive::Plan) -> Self {
         let topology = prepared.topology();

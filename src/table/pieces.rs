@@ -96,7 +96,8 @@ impl Places<'_> {
         let h = self.half_edge(root);
         let ([u, v], prev) = (at, self.topology.prev(h));
         if root.level == 0 {
-            let edge = |k: u32, t: u32| self.on_edge(self.topology.mesh().face_corners(root.face).start as u32 + k, 2 * t);
+            let edge =
+                |k: u32, t: u32| self.on_edge(self.topology.mesh().face_corners(root.face).start as u32 + k, 2 * t);
             return match (u, v) {
                 (u, 0) => edge(0, u),
                 (SIDE, v) => edge(1, v),
@@ -174,7 +175,7 @@ fn cell(plan: &Plan, leaf: &Leaf) -> (u32, [u32; 2]) {
 }
 
 /// A point on edge `k` of a leaf or a root, `t` parts of its side along it.
-fn on_side([u, v]: [u32; 2], side: u32, k: u32, t: u32) -> [u32; 2] {
+pub(super) fn on_side([u, v]: [u32; 2], side: u32, k: u32, t: u32) -> [u32; 2] {
     match k {
         0 => [u + t, v],
         1 => [u + side, v + t],
@@ -213,7 +214,10 @@ pub(super) fn cut_by_leaves(whole: &Topology, plan: &Plan) -> Result<Pieces, Mes
     for &size in &data.face_sizes {
         let vertices = &data.face_vertices[start..start + size as usize];
         for (k, line) in lines[start..start + size as usize].iter().enumerate() {
-            if let Line::Edge(h, _) = *line && whole.sharpness(h) >= SHARPNESS_INFINITE && whole.twin(h).is_some() {
+            if let Line::Edge(h, _) = *line
+                && whole.sharpness(h) >= SHARPNESS_INFINITE
+                && whole.twin(h).is_some()
+            {
                 let vertices = [vertices[k], vertices[(k + 1) % vertices.len()]];
                 data.creases.push(Crease { vertices, sharpness: SHARPNESS_INFINITE });
             }
@@ -255,7 +259,8 @@ impl Faces {
             }
             // Of the parts of the boundary that start or end in the apex, each is the side of one triangle.
             let [before, after] = [parts[(i + parts.len() - 1) % parts.len()], parts[(i + 1) % parts.len()]];
-            let to_apex = if of_apex(point(parts[(i + 2) % parts.len()])) { places.line(leaf, after) } else { Line::Inner };
+            let to_apex =
+                if of_apex(point(parts[(i + 2) % parts.len()])) { places.line(leaf, after) } else { Line::Inner };
             let from_apex = if of_apex(point(before)) { places.line(leaf, before) } else { Line::Inner };
             self.push(places, leaf, points[0], places.line(leaf, part));
             self.push(places, leaf, points[1], to_apex);

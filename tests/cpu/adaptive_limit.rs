@@ -2,7 +2,7 @@
 
 use crate::adaptive::{Distance, Planned, distance, distance_at_samples, shared_mesh};
 use crate::common::limit::{mesh_and_limit, names};
-use ash_subdiv::adaptive::{AdaptiveOptions, Leaf, LeafKind, Reason, Sums};
+use ash_subdiv::adaptive::{AdaptiveOptions, Leaf, LeafKind, Reason};
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::mesh::SHARPNESS_INFINITE;
 use ash_subdiv::{ControlMesh, Scheme, shape};
@@ -99,7 +99,8 @@ fn creases_can_be_refined() {
     let surface = LimitSurface::new(&mesh).unwrap();
     let mut before = 0;
     for depth in 1..=3 {
-        let options = AdaptiveOptions { depth: 1, sharp_depth: Some(depth), refine_creases: true, sums: Sums::Levels };
+        let options =
+            AdaptiveOptions { depth: 1, sharp_depth: Some(depth), refine_creases: true, ..AdaptiveOptions::default() };
         let planned = Planned::new(&mesh, Scheme::Gregory, &options);
         let follows = |leaf: &&Leaf| matches!(leaf.kind, LeafKind::SingleCrease { .. });
         let (following, leaves) = (planned.plan.leaves.iter().filter(follows).count(), planned.plan.leaves.len());

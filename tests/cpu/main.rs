@@ -3,6 +3,7 @@
 mod adaptive;
 mod adaptive_limit;
 mod adaptive_neighbours;
+mod adaptive_pieces;
 mod adaptive_twin;
 #[path = "../common/mod.rs"]
 mod common;

@@ -2,12 +2,13 @@
 
 use crate::common;
 use crate::common::limit::{mesh_and_limit, names, on_limit};
-use ash_subdiv::adaptive::{AdaptiveOptions, Sums};
+use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy, Sums};
 use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::Headless;
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::renderer::Evaluation;
-use ash_subdiv::table::{ModelTables, grid_parameters};
+use ash_subdiv::table::{FaceOrigin, ModelTables, grid_parameters};
+use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, shape, shapes};
 use glam::Vec3;
 use std::collections::HashMap;
@@ -73,6 +74,66 @@ fn samples_come_to_the_limit_surface() {
                 assert!(normals < 2e-3, "{}: {normals:e}", info.name);
             }
         }
+    }
+    headless.finish_silent();
+}
+
+/// Where a patch by leaves has a point of its own parameters: the part of the face, and (u, v) there.
+fn by_leaves_on_limit(
+    mesh: &ControlMesh,
+    tables: &ModelTables,
+    patch: usize,
+    [u, v]: [f64; 2],
+) -> (FaceOrigin, i32, [f64; 2]) {
+    let (kind, origin) = (tables.plan().patches()[patch].kind, tables.origins()[patch]);
+    let triangle = kind == PatchKind::Triangle;
+    let corners = tables.leaves().expect("adaptive").cell_corners(patch, triangle);
+    let weights = match triangle {
+        true => vec![u, v, 1.0 - u - v],
+        false => vec![(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v],
+    };
+    let [u, v] = [0, 1].map(|i| corners.iter().zip(&weights).map(|(corner, weight)| corner[i] * weight).sum::<f64>());
+    // A part of a face other than a quad begins at level 1.
+    let is_quad = mesh.face(origin.face).len() == 4;
+    let side = 0.5_f64.powi(origin.id.level() as i32 - i32::from(!is_quad));
+    let sub = if is_quad { -1 } else { origin.corner.expect("a part") as i32 };
+    (origin, sub, [(f64::from(origin.id.u()) + u) * side, (f64::from(origin.id.v()) + v) * side])
+}
+
+/// Patches by leaves, whole ones and triangles beside finer ones, have the points of the limit surface that their places say.
+#[test]
+fn patches_by_leaves_are_the_limit_surface() {
+    let headless = common::headless();
+    for name in ["machine-part", "polygons", "cloth", "cube", "fan"] {
+        let mesh = shape(name).expect("built in");
+        let surface = LimitSurface::new(&mesh).expect("a surface");
+        let mut before = f64::INFINITY;
+        for (depth, sharp_depth) in [(1, None), (4, Some(5))] {
+            let adaptive =
+                AdaptiveOptions { depth, sharp_depth, drawn_by: DrawnBy::Leaves, ..AdaptiveOptions::default() };
+            let options = ModelOptions { adaptive: Some(adaptive), ..ModelOptions::default() };
+            let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+            let (samples, tables) = (captured.grid(3).expect("a capture"), captured.tables());
+            let patches = tables.plan().patches();
+            assert!(tables.patch_count(PatchKind::Triangle) > 20 && tables.patch_count(PatchKind::IrregularQuad) > 20);
+            let (mut worst, mut regular) = (0.0_f64, 0.0_f64);
+            for (patch, samples) in samples.iter().enumerate() {
+                for (at, sample) in grid_parameters(patches[patch].kind, 3).into_iter().zip(samples) {
+                    let (origin, sub, [u, v]) = by_leaves_on_limit(&mesh, tables, patch, at);
+                    let limit = surface.evaluate(origin.face, sub, u, v);
+                    let away = (Vec3::from(sample.position).as_dvec3() - limit.position).length() / diagonal(&mesh);
+                    worst = worst.max(away);
+                    if origin.id.level() < depth {
+                        regular = regular.max(away);
+                    }
+                }
+            }
+            println!("{name:16} depth {depth}: {worst:8.1e}, away from end caps {regular:8.1e}");
+            // Of those that touch the caps of neighbours, edges are the caps'.
+            assert!(worst < 1.001 * before && regular < 2e-3, "{name} at depth {depth}: {worst:e}, {regular:e}");
+            before = worst;
+        }
+        assert!(before < 2e-3, "{name}: {before:e}");
     }
     headless.finish_silent();
 }

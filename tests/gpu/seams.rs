@@ -4,7 +4,7 @@
 
 use crate::common;
 use crate::common::random::{random_creased_mesh, random_mesh};
-use ash_subdiv::adaptive::AdaptiveOptions;
+use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy};
 use ash_subdiv::capture::{CaptureDraw, Captured, Which};
 use ash_subdiv::headless::{Headless, Texels, Texture};
 use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
@@ -120,16 +120,24 @@ fn adaptive_surfaces_are_watertight() {
     for ((name, mesh), i) in built_in.into_iter().chain(random).zip(0..) {
         let mesh = with_texcoords(mesh);
         let construction = Construction::ALL[i % 3];
-        for (depth, displaced) in [(None, true), (Some(0), true), (Some(1), false), (Some(3), true)] {
-            // Faces of five and more corners are drawn by leaves in any case.
-            let adaptive = depth.map(|depth| AdaptiveOptions { depth, ..AdaptiveOptions::default() });
+        let (faces, leaves) = (DrawnBy::Faces, DrawnBy::Leaves);
+        let ways = [(None, true, faces), (Some(0), true, faces), (Some(1), false, faces), (Some(3), true, faces)];
+        let by_leaves = [(Some(0), false, leaves), (Some(2), true, leaves)];
+        for (depth, displaced, drawn_by) in ways.into_iter().chain(by_leaves) {
+            // Faces of five and more corners are drawn by leaves in any case. Where depths differ, levels do by more than one.
+            let sharp_depth = depth.filter(|_| drawn_by == leaves).map(|depth| 2 * depth);
+            let options = |depth| AdaptiveOptions { depth, sharp_depth, drawn_by, ..AdaptiveOptions::default() };
+            let adaptive = depth.map(options);
             if depth.is_none() && !mesh.data().face_sizes.iter().any(|&size| size > 4) {
                 continue;
             }
             let options =
                 ModelOptions { construction, spacing: SPACINGS[i / 3 % 3], adaptive, ..ModelOptions::default() };
             let tally = tally(&headless, &mesh, &options, displaced.then_some(&texture), i as u64);
-            assert!(tally.is_watertight(), "{name} depth {depth:?} displaced {displaced} {construction:?}: {tally:?}");
+            assert!(
+                tally.is_watertight(),
+                "{name} depth {depth:?} by {drawn_by:?} displaced {displaced} {construction:?}: {tally:?}"
+            );
             samples += tally.samples;
         }
     }

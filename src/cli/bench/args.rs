@@ -7,7 +7,7 @@ use super::super::rules::RulesArgs;
 use super::super::source::{DeviceArgs, ReadingArgs};
 use super::presets::{self, Preset};
 use super::results::Results;
-use ash_subdiv::adaptive::Sums;
+use ash_subdiv::adaptive::{DrawnBy, Sums};
 use ash_subdiv::bench::{Camera, Contestant, Creases, CullBy, Motion, Normals, Path, Subset};
 use ash_subdiv::renderer::Cull;
 use ash_subdiv::{Construction, Scheme, Spacing};
@@ -50,6 +50,9 @@ pub(in super::super) struct BenchArgs {
     /// level; `composed`, of control vertices, all at once.
     #[arg(long, value_name = "OF", value_delimiter = ',', default_value = "levels", value_parser = parse::one_of(Sums::ALL, Sums::name))]
     pub(super) sums: Vec<Sums>,
+    /// With --adaptive: what patches are, with commas: `faces`, one each; `leaves`, one each, of paths with tessellation stages.
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', default_value = "faces", value_parser = parse::one_of(DrawnBy::ALL, DrawnBy::name))]
+    pub(super) by: Vec<DrawnBy>,
     /// Measure each row of the tessellation stages and of instances again with patches culled that are not seen: `back`
     /// those that face away, `frustum` those out of the picture, `small` those between pixels.
     #[arg(long, value_name = "WHICH", value_delimiter = ',', value_enum)]
@@ -122,7 +125,7 @@ pub(in super::super) struct BenchArgs {
     /// Do not measure: take what --json wrote.
     #[arg(
         long, value_name = "FILE.json",
-        conflicts_with_all = ["mesh", "shape", "strict", "weld", "rebuild_quads", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "creases", "sums", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "sharpness", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
+        conflicts_with_all = ["mesh", "shape", "strict", "weld", "rebuild_quads", "drop_isolated", "schemes", "constructions", "paths", "normals", "adaptive", "creases", "sums", "by", "cull", "cull_by", "factors", "patches", "instances", "passes", "motion", "view", "single_sided", "sharpness", "replicate", "refine", "spacing", "size", "frames", "warm_up"]
     )]
     pub(super) results: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Device")]
@@ -213,7 +216,8 @@ impl BenchArgs {
         let depths = if self.adaptive.is_empty() { self.preset.map_or(&[][..], |p| p.depths) } else { &self.adaptive };
         let creases = pick(&self.creases, Some(self.preset.map_or(&[Creases::Direct], |p| p.creases)), &Creases::ALL);
         let sums = pick(&self.sums, None, &Sums::ALL);
-        let adaptive = all.into_iter().flat_map(|contestant| contestant.at_depths(depths, &creases, &sums));
+        let by = pick(&self.by, None, &DrawnBy::ALL);
+        let adaptive = all.into_iter().flat_map(|contestant| contestant.at_depths(depths, &creases, &sums, &by));
         adaptive.flat_map(|contestant| contestant.variants(&normals, &culls, &cull_by)).collect()
     }
 

@@ -2,7 +2,7 @@
 
 use super::super::cull;
 use super::super::described::described;
-use ash_subdiv::adaptive::Sums;
+use ash_subdiv::adaptive::{DrawnBy, Sums};
 use ash_subdiv::bench::{self, BenchOptions, Camera, Contestant, Creases, CullBy, Motion, Normals, Series, Subject};
 use ash_subdiv::measure::statistics::{self, Estimate, Summary, paired_ratio};
 use ash_subdiv::renderer::Cull;
@@ -53,6 +53,10 @@ fn direct() -> String {
     Creases::Direct.name().to_owned()
 }
 
+fn faces() -> String {
+    DrawnBy::Faces.name().to_owned()
+}
+
 fn levels() -> String {
     Sums::Levels.name().to_owned()
 }
@@ -74,6 +78,9 @@ described! {
         /// What its refined vertices are sums of.
         #[serde(default = "levels")]
         pub sums: String,
+        /// What its patches are.
+        #[serde(default = "faces")]
+        pub drawn_by: String,
         /// And by what, if that is not what usually does.
         pub cull: String,
     }
@@ -211,6 +218,7 @@ impl Who {
             adaptive: contestant.depth,
             creases: contestant.creases.name().to_owned(),
             sums: contestant.sums.name().to_owned(),
+            drawn_by: contestant.drawn_by.name().to_owned(),
             cull: cull::name(cull) + &by,
         }
     }
@@ -242,7 +250,8 @@ impl Who {
         let depth = self.adaptive.map(|depth| format!("adaptive {depth}"));
         let creases = (self.creases != Creases::Direct.name()).then(|| format!("{} creases", self.creases));
         let sums = (self.sums != Sums::Levels.name()).then(|| format!("{} sums", self.sums));
-        depth.into_iter().chain(creases).chain(sums)
+        let by = (self.drawn_by != DrawnBy::Faces.name()).then(|| format!("by {}", self.drawn_by));
+        depth.into_iter().chain(creases).chain(sums).chain(by)
     }
 
     fn drawn(&self) -> impl Iterator<Item = String> {

@@ -44,6 +44,7 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
                 "construction_ms",
                 "creases",
                 "cull",
+                "drawn_by",
                 "factor",
                 "fence_ms",
                 "first_frame_ms",
@@ -176,6 +177,7 @@ fn bench_records_crowds() {
             "crowd",
             "cull",
             "draw_ms",
+            "drawn_by",
             "frame_ms",
             "mesh",
             "models",
@@ -198,7 +200,7 @@ fn bench_records_crowds() {
     assert!(page.contains("What the host takes to record a frame"));
     assert!(!page.contains("Plots") && !page.contains("<h2>Rows"));
     let csv = fs::read_to_string(report.join("results.csv")).unwrap();
-    let columns = "mesh,scheme,construction,path,normals,adaptive,creases,sums,cull,crowd,models,";
+    let columns = "mesh,scheme,construction,path,normals,adaptive,creases,sums,drawn_by,cull,crowd,models,";
     assert!(csv.starts_with(columns) && csv.lines().count() == 7, "{csv}");
     fails("bench --recording 0", 2, "invalid value '0' for '--recording <MODELS>': 0 is not in 1..=100000");
 }
