@@ -6,6 +6,7 @@ mod buffer;
 mod draws;
 mod watch;
 
+use crate::adaptive::DrawnBy;
 use crate::gpu::{Domain, PatchBatch, tessellated_vertices};
 use crate::headless::Headless;
 use crate::mesh::ControlMesh;
@@ -110,15 +111,11 @@ impl<'h> Captured<'h> {
             let device = headless.properties().name.clone();
             return Err(Error::Unsupported { device, missing: vec!["vertexPipelineStoresAndAtomics".into()] });
         }
-        let tables = ModelTables::new(mesh, options)?;
-        Ok(Self {
-            headless,
-            options: options.clone(),
-            tables,
-            positions: mesh.positions_f32(),
-            displacement: None,
-            shaders: Vec::new(),
-        })
+        // For grids of patches by leaves.
+        let by_leaves = options.adaptive.is_some_and(|adaptive| adaptive.drawn_by == DrawnBy::Leaves);
+        let options = ModelOptions { edge_factors: options.edge_factors || by_leaves, ..options.clone() };
+        let tables = ModelTables::new(mesh, &options)?;
+        Ok(Self { headless, options, tables, positions: mesh.positions_f32(), displacement: None, shaders: Vec::new() })
     }
 
     /// A model with a displacement map.
@@ -202,7 +199,14 @@ impl<'h> Captured<'h> {
         }
         let places = |kind: PatchKind| if kind.is_triangular() { n * (n + 1) / 2 } else { n * n };
         let bytes = |kind| u64::from(places(kind)) * RECORD_BYTES;
-        let captured = self.capture(Capture::Grid, &CaptureDraw::new((n - 1) as f32), bytes, |patches| Head {
+        let factor = (n - 1) as f32;
+        // By leaves, a factor for all is that of whole faces.
+        let edges = self.tables.edges().filter(|_| self.tables.options().is_by_leaves());
+        let draw = match edges.map(|edges| vec![factor; edges.records.len()]) {
+            Some(edge_factors) => CaptureDraw { edge_factors, ..CaptureDraw::new(Factor::Edges(1.0)) },
+            None => CaptureDraw::new(factor),
+        };
+        let captured = self.capture(Capture::Grid, &draw, bytes, |patches| Head {
             first_patch: patches.start,
             patches: patches.len() as u32,
             grid: n,
