@@ -7,6 +7,7 @@ use super::local::Local;
 use super::output::{self, Progress, Table};
 use super::parse;
 use super::source::{DeviceArgs, SourceArgs, report_notices};
+use ash_subdiv::adaptive::DrawnBy;
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::headless::{Headless, Texture};
 use ash_subdiv::measure::watertight::{
@@ -116,6 +117,12 @@ struct Setup<'h> {
 }
 
 impl WatertightArgs {
+    /// The constructions that differ.
+    fn constructions(&self) -> &'static [Construction] {
+        let by_leaves = self.source.adaptive().is_some_and(|adaptive| adaptive.drawn_by == DrawnBy::Leaves);
+        if by_leaves { &Construction::ALL[..1] } else { &Construction::ALL }
+    }
+
     fn options(&self, construction: Construction, spacing: Spacing, shared_normals: bool) -> ModelOptions {
         let options = self.source.model_options(Scheme::Gregory, construction);
         ModelOptions { spacing, shared_normals, edge_factors: true, ..options }
@@ -166,7 +173,7 @@ pub(super) fn run(args: &WatertightArgs, json: bool) -> Result<(), CliError> {
         let mut samples = 0;
         let mut seed = 0;
         loop {
-            for construction in Construction::ALL {
+            for &construction in args.constructions() {
                 for spacing in Spacing::ALL {
                     for (shared_normals, displaced) in [(false, false), (true, false), (true, true)] {
                         let options = args.options(construction, spacing, shared_normals);

@@ -82,7 +82,12 @@ void finish_patch(uint patch_number) {
     bool culled = (DRAW_FLAGS & CULL_FLAGS) != 0u && is_culled(1.0 / smallest);
     // With fractional spacing an inner factor of nearly 1 would put vertices of the inside on the edge.
     float least = largest > 1.0 && metric() != METRIC_UNIFORM ? min(1.5, MAX_FACTOR) : 1.0;
-    vec2 inner = vec2(max(least, largest));
+    float inside = largest;
+#if defined(READS_LEAVES) && defined(TRIANGLE)
+    // A triangle of a leaf is half as wide along one edge as along the others.
+    inside = IS_BY_LEAVES ? sqrt(smallest * largest) : largest;
+#endif
+    vec2 inner = vec2(max(least, inside));
 #if defined(PENTAGON)
     // One of five pieces: the edge from its first corner, and two spokes, for which all pieces have the same factor.
     gl_TessLevelOuter[0] = largest;
