@@ -38,6 +38,36 @@ fn info_counts_leaves() {
 }
 
 #[test]
+fn patches_by_leaves_draw_the_same_surface() {
+    let folder = folder("by-leaves");
+    let picture = |by: &str, more: &str| {
+        let path = folder.join(format!("{by}.png"));
+        let render = "render --shape machine-part --adaptive 2 --size 200x200 --samples 1 --factor 16";
+        run(&format!("{render} --by {by} {more} -o {}", path.display()));
+        image::open(&path).unwrap().to_rgb8()
+    };
+    let (faces, leaves) = (picture("faces", ""), picture("leaves", "--construction cached"));
+    let differ = |(a, b): &(&image::Rgb<u8>, &image::Rgb<u8>)| (0..3).any(|i| a[i].abs_diff(b[i]) > 12);
+    let different = faces.pixels().zip(leaves.pixels()).filter(differ).count();
+    // Triangles lie elsewhere: along outlines.
+    assert!(different < 200, "{different} pixels");
+    let one = picture("leaves", "--pixels 4 --cull back,frustum,small");
+    let few = faces.pixels().zip(one.pixels()).filter(differ).count();
+    assert!(few < 200, "{few} pixels");
+    let info = json("info --shape machine-part --adaptive 2 --by leaves");
+    assert!(info["patches"]["triangle"].as_u64().unwrap() > 1000, "{info}");
+    assert_eq!(info["patches"]["regular"], 0);
+    let shape = "--shape cube --adaptive 1 --by leaves";
+    let message = "--by leaves: the surface is the same by faces, which this command goes by: leave it out";
+    fails(&format!("sample {shape}"), 2, message);
+    fails(&format!("screen {shape}"), 2, message);
+    let path = folder.join("none.png");
+    let only = "evaluation by instanced has no patches by leaves: only by tessellation there are such; draw by faces";
+    fails(&format!("render {shape} --evaluation instanced -o {}", path.display()), 1, only);
+    assert!(!path.exists());
+}
+
+#[test]
 #[cfg_attr(not(shared), ignore = "needs ../shared")]
 fn info_counts_the_leaves_that_were_published() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/meshes/monsterfrog.obj");

@@ -8,7 +8,7 @@ use crate::common;
 use crate::common::golden;
 use crate::common::passes::{Moment, PassTarget};
 use ash::vk;
-use ash_subdiv::adaptive::AdaptiveOptions;
+use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy};
 use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
@@ -64,8 +64,8 @@ pub struct Picture {
     evaluation: Evaluation,
     /// Of patches on lattices, which the tessellator draws otherwise.
     of_lattice: bool,
-    /// Depth of an adaptive surface.
-    depth: Option<u32>,
+    /// Of an adaptive surface.
+    adaptive: Option<AdaptiveOptions>,
     /// Seen from behind: what is left out when it is seen from the front.
     culled: bool,
 }
@@ -86,7 +86,7 @@ impl Picture {
             displacement: None,
             evaluation: Evaluation::Tessellation,
             of_lattice: false,
-            depth: None,
+            adaptive: None,
             culled: false,
         }
     }
@@ -94,7 +94,13 @@ impl Picture {
     /// An adaptive surface.
     fn of_leaves(shape: &'static str, depth: u32, factor: f32) -> Self {
         let (name, factor) = (format!("leaves-{shape}"), Factor::Uniform(factor));
-        Self { name, depth: Some(depth), factor, ..Self::lit(shape) }
+        let adaptive = Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });
+        Self { name, adaptive, factor, ..Self::lit(shape) }
+    }
+
+    fn by_leaves(self) -> Self {
+        let adaptive = self.adaptive.map(|adaptive| AdaptiveOptions { drawn_by: DrawnBy::Leaves, ..adaptive });
+        Self { adaptive, ..self }
     }
 
     /// Normals, in which schemes differ most.
@@ -187,6 +193,16 @@ pub fn pictures() -> Vec<Picture> {
             format: vk::Format::R8G8B8A8_UNORM,
             around: Some(0.15),
             ..Picture::of_leaves("valences", 5, 32.0)
+        },
+        // Leaves beside finer ones are fans.
+        Picture { name: "by-leaves-wires".into(), layers: wire(), ..Picture::of_leaves("cube", 3, 8.0).by_leaves() },
+        Picture {
+            name: "by-leaves-creature".into(),
+            displacement: Some(0.012),
+            around: Some(0.25),
+            factor: Factor::Curvature(1.0),
+            spacing: Spacing::FractionalOdd,
+            ..Picture::of_leaves("creature", 3, 12.0).by_leaves()
         },
         Picture { name: "transparent".into(), clear: [0.0; 4], ..Picture::lit("cloth") },
         Picture::of_scheme(Scheme::GregoryFitted, "creature-mixed", Some(0.2)),
@@ -320,7 +336,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     // SAFETY: the texture outlives the renderer.
     let displacement = texture.as_ref().map(|texture| unsafe { renderer.add_displacement(texture.into()) });
     let Picture { scheme, spacing, factor, evaluation, .. } = *picture;
-    let adaptive = picture.depth.map(|depth| AdaptiveOptions { depth, ..AdaptiveOptions::default() });
+    let adaptive = picture.adaptive;
     let model_options = ModelOptions {
         construction,
         fallback,
