@@ -9,6 +9,7 @@ use crate::renderer::{DrawItem, ModelId, ModelTables, Options, Renderer, Style, 
 named! {
     /// Models of a frame.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum Crowd {
         /// One model, drawn many times.
         Instances = "instances",
@@ -23,6 +24,7 @@ impl Crowd {}
 
 /// Recording times of a crowd on the host's clock, frame by frame, in milliseconds.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Recording {
     /// Models that are recorded.
     pub crowd: Crowd,

@@ -39,6 +39,7 @@ pub struct CapturedVertex {
 
 /// Which vertices of a draw are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Which {
     /// Every vertex.
     All,

@@ -32,6 +32,7 @@ pub struct Edit {
 
 /// What an edit does.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Change {
     /// Moves a corner of the face by an offset, in object space.
     Offset {

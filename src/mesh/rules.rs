@@ -61,6 +61,7 @@ named! {
 named! {
     /// A package, by the rules that a mesh has there if nobody chooses others.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    #[non_exhaustive]
     pub enum Package {
         /// The Subdivision Surface modifier: smooth boundaries with their corners, texture coordinates that keep boundaries.
         ///

@@ -13,6 +13,7 @@ use crate::topology::{PatchKind, RingKind, Topology};
 named! {
     /// A way to approximate the Catmull-Clark surface by patches, one a face.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+    #[non_exhaustive]
     pub enum Scheme {
         /// Gregory patches for irregular faces ([`gregory`]): quads and triangles, boundaries, G1 everywhere.
         #[default]

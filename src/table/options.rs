@@ -10,6 +10,7 @@ use crate::{Spacing, renderer::ModelOptions};
 named! {
     /// How the control points are made on the GPU. All give the same points but for rounding.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Construction {
         /// The vertex shader turns each control vertex and its one-ring into limit point and tangents, the control shader
         /// assembles the patch. The smaller tables.
@@ -32,6 +33,7 @@ named! {
     /// ([`ModelOptions::edge_factors`]) of which the largest holds inside patches. Where patches share positions to the last bit, they
     /// do so here; for normals and displacement see [`Evaluation::shares`], for patches that are left out [`Evaluation::culls`].
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Evaluation {
         /// The tessellation stages, in each draw anew.
         #[default]

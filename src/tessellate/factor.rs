@@ -7,6 +7,7 @@ use crate::constants::{METRIC_CURVATURE, METRIC_EDGES, METRIC_PIXELS, METRIC_UNI
 /// of those of opposite edges. Factors are kept from 1 to what the device has (64 at least). With
 /// [`Spacing::FractionalOdd`](crate::Spacing::FractionalOdd) or `FractionalEven` nothing pops when they change.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Factor {
     /// This for every edge and inside.
     Uniform(f32),

@@ -1,7 +1,8 @@
 //! A small picture with renderers for it, and the vertices that compute evaluates.
 
 use ash::vk;
-use ash_subdiv::gpu::{Buffer, BufferDesc, MemoryLocation};
+use ash_subdiv::gpu::MemoryLocation;
+use ash_subdiv::headless::objects::{Buffer, BufferDesc};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
 use ash_subdiv::{DrawItem, Error, Frame, ModelId, Options, Renderer, Target, View};
 

@@ -157,10 +157,10 @@ fn evaluated_vertices() {
                 }
                 for (patch, seen) in tables.plan().patches().iter().zip(seen) {
                     let domain = match patch.kind.is_triangular() {
-                        true => ash_subdiv::gpu::Domain::Triangles,
-                        false => ash_subdiv::gpu::Domain::Quads,
+                        true => ash_subdiv::headless::objects::Domain::Triangles,
+                        false => ash_subdiv::headless::objects::Domain::Quads,
                     };
-                    let count = ash_subdiv::gpu::tessellated_vertices(domain, spacing, factor, 64);
+                    let count = ash_subdiv::headless::objects::tessellated_vertices(domain, spacing, factor, 64);
                     assert!(seen >= count, "{name} {spacing:?} {factor}: {seen} vertices of {count}");
                 }
             }

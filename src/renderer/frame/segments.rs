@@ -18,6 +18,7 @@ use ash::vk;
 /// copies, and lives until the model is removed or its segments change, and [`Options::frames_in_flight`](crate::renderer::Options::frames_in_flight)
 /// frames began since.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct EvaluatedVertices {
     /// Patch by patch in the order of [`ModelTables::plan`], in each in the order of
     /// [`grid_parameters`](crate::table::grid_parameters): position and normal in object space, three `f32` each; two more for the texture
