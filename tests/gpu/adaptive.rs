@@ -148,24 +148,14 @@ fn back_style() -> Style {
 /// How many pixels change in each view when patches are left out of a model with this transform, and how much of all vertices is
 /// left out.
 fn missed(
-    headless: &Headless,
-    mesh: &ControlMesh,
+    (headless, target): (&Headless, &Offscreen),
+    renderer: &mut Renderer,
+    (mesh, options): (&ControlMesh, &ModelOptions),
     views: &[View],
     cull: Cull,
     transform: Mat4,
-    style: Style,
-    displaced: Option<&Texture>,
 ) -> (Vec<usize>, f64) {
-    let desc = OffscreenDesc::new(SIDE, SIDE);
-    let target = Offscreen::new(headless, &desc).expect("a target");
-    let options = Options { styles: vec![style], ..Options::default() };
-    let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
-    // SAFETY: the texture outlives the renderer, and every submission is waited for.
-    let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options) }.expect("a renderer");
-    // SAFETY: likewise.
-    let displacement = displaced.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
-    let model_options = ModelOptions { displacement, ..ModelOptions::default() };
-    let model = renderer.add_model(mesh, &model_options).expect("a model");
+    let model = renderer.add_model(mesh, options).expect("a model");
     let transform = transform.to_cols_array_2d();
     let all = DrawItem { transform, displacement: [0.1, 0.0], ..DrawItem::new(model, 6.0) };
     let mut picture = |view: &View, cull: Cull| {
@@ -192,7 +182,18 @@ fn missed(
         all.chunks(4).zip(culled.chunks(4)).filter(|(a, b)| a != b).count()
     };
     let pixels = views.iter().map(pixels).collect();
+    renderer.remove_model(model).expect("it is there");
     (pixels, 1.0 - drawn / whole)
+}
+
+/// A picture, and a renderer of one style for it.
+fn pictures(headless: &Headless, style: Style) -> (Offscreen, Renderer) {
+    let desc = OffscreenDesc::new(SIDE, SIDE);
+    let options = Options { styles: vec![style], ..Options::default() };
+    let target = Target::dynamic(desc.color, desc.depth, desc.samples);
+    // SAFETY: every submission is waited for.
+    let renderer = unsafe { Renderer::new(headless.context(), &target, &options) }.expect("a renderer");
+    (Offscreen::new(headless, &desc).expect("a target"), renderer)
 }
 
 #[test]
@@ -204,7 +205,11 @@ fn what_is_left_out_is_not_missed() {
         let mesh = shape(name).expect("built in");
         let views = [view(&mesh, [-0.6, 0.5, 1.0]), view(&mesh, [0.2, -1.0, 0.1]), close_view(&mesh)];
         for displaced in [None, Some(&texture)] {
-            let (missed, _) = missed(&headless, &mesh, &views, Cull::ALL, Mat4::IDENTITY, back_style(), displaced);
+            let (target, mut renderer) = pictures(&headless, back_style());
+            // SAFETY: the texture outlives the renderer.
+            let displacement = displaced.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
+            let model = (&mesh, &ModelOptions { displacement, ..ModelOptions::default() });
+            let (missed, _) = missed((&headless, &target), &mut renderer, model, &views, Cull::ALL, Mat4::IDENTITY);
             assert_eq!(missed, [0; 3], "{name} displaced {}", displaced.is_some());
         }
         let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
@@ -242,31 +247,40 @@ fn what_faces_away_is_left_out() {
     );
     let headless = common::headless();
     // At most a third of the creature's patches face away as a whole. Half of the mixed one's are triangles, which stay.
-    for (name, least) in [("creature", 0.25), ("creature-mixed", 0.1), ("torus", 0.25), ("cube", 0.0)] {
+    let meshes = [("creature", 0.25), ("creature-mixed", 0.1), ("torus", 0.25), ("cube", 0.0)];
+    let meshes = meshes.map(|(name, least)| {
         let mesh = shape(name).expect("built in");
         let views: Vec<View> = around(12).map(|towards| view(&mesh, towards)).collect();
-        // What a style leaves out, in a mirror, too; and what is hidden, if it leaves out nothing.
-        let (clockwise, both) = (vk::FrontFace::CLOCKWISE, Style::default());
-        let front = Style { cull: vk::CullModeFlags::FRONT, ..both.clone() };
+        (name, least, mesh, views)
+    });
+    // What a style leaves out, in a mirror, too; and what is hidden, if it leaves out nothing.
+    let (clockwise, both) = (vk::FrontFace::CLOCKWISE, Style::default());
+    let front = Style { cull: vk::CullModeFlags::FRONT, ..both.clone() };
+    for style in [back_style(), Style { front_face: clockwise, ..back_style() }, front, both] {
+        // All meshes use its pipelines.
+        let (target, mut renderer) = pictures(&headless, style.clone());
         let mirrored = |view: &View| {
             let mirror = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * Mat4::from_cols_array_2d(&view.view_projection);
             View { view_projection: mirror.to_cols_array_2d(), mirrored: true, ..*view }
         };
-        let views_of_both = [views.clone(), views[..3].iter().map(mirrored).collect()];
-        for style in [back_style(), Style { front_face: clockwise, ..back_style() }, front, both] {
+        for (name, least, mesh, views) in &meshes {
+            let views_of_both = [views.clone(), views[..3].iter().map(mirrored).collect()];
+            let model = (mesh, &ModelOptions::default());
             for transform in [Mat4::IDENTITY, turned] {
                 for views in &views_of_both {
-                    let (missed, share) = missed(&headless, &mesh, views, back, transform, style.clone(), None);
+                    let (missed, share) = missed((&headless, &target), &mut renderer, model, views, back, transform);
                     let what = format!("{name}, {transform}, {style:?}, mirrored {}", views[0].mirrored);
                     assert_eq!(missed, vec![0; views.len()], "{what}");
                     assert!(share >= 0.8 * least, "{what}: {share}");
                 }
             }
         }
-        let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
+    }
+    for (name, least, mesh, views) in &meshes {
+        let captured = Captured::new(&headless, mesh, &ModelOptions::default()).expect("a model");
         let vertices = captured.vertices(6.0).expect("a capture");
         let (mut left_out, mut all) = (0, 0);
-        for view in views {
+        for &view in views {
             let draw = CaptureDraw { view, cull: back, ..CaptureDraw::new(6.0) };
             let culled: Vec<bool> = captured.factors(&draw).expect("a capture").iter().map(|f| f.culled).collect();
             left_out += culled.iter().filter(|&&culled| culled).count();
