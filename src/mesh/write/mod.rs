@@ -1,5 +1,6 @@
-//! Meshes with normals, written to files: OBJ, PLY, GLB.
+//! Meshes with normals, written to files: OBJ, PLY, GLB. Control meshes: see [`control`].
 
+pub mod control;
 #[cfg(feature = "gltf")]
 mod glb;
 mod kept;
