@@ -4,7 +4,7 @@ use super::drawable::timed;
 use super::scene::Scene;
 use super::{Bench, BenchError, Camera, Contestant, Subject};
 use crate::named::named;
-use crate::renderer::{DrawItem, ModelId, ModelTables, Options, Renderer, Style, Target};
+use crate::renderer::{DrawItem, Factor, ModelId, ModelTables, Options, Renderer, Style, Target};
 
 named! {
     /// Models of a frame.
@@ -79,7 +79,9 @@ impl Bench<'_> {
             }
             Ok(id)
         };
-        let item = |model| DrawItem { cull: contestant.cull, ..DrawItem::new(model, 1.0) };
+        let needs_segments = model_options.evaluation.needs_segments();
+        let factor = if needs_segments { Factor::Segments } else { Factor::Uniform(1.0) };
+        let item = |model| DrawItem { cull: contestant.cull, ..DrawItem::new(model, factor) };
         let first = add(&mut renderer)?;
         let mut items = vec![item(first); models as usize];
         let mut recordings = vec![self.record_frames(&mut renderer, subject, contestant, &items, Crowd::Instances)?];

@@ -44,7 +44,10 @@ impl Captured<'_> {
         let new = || Watcher::new(headless, mode, self.options.evaluation, &self.shaders);
         let mut watcher = if self.shaders.is_empty() { kept.take(&watched, new)? } else { new()? };
         let (model, map) = self.add_to(&mut watcher.renderer, mode, draw)?;
-        let CaptureDraw { factor, cull, displacement, .. } = *draw;
+        let CaptureDraw { mut factor, cull, displacement, .. } = *draw;
+        if self.evaluation(mode).needs_segments() {
+            factor = Factor::Segments;
+        }
         let item = DrawItem { factor, cull, displacement, ..DrawItem::new(model, 1.0) };
         for kind in PatchKind::ALL {
             let per_patch = bytes(kind);

@@ -29,8 +29,8 @@ named! {
     /// What evaluates the patches.
     ///
     /// All but the tessellation stages and subdivision evaluate on a lattice with the same number of segments along every edge,
-    /// from 1 to 1024: they are for [`Spacing::Equal`] and [`Factor::Uniform`](crate::renderer::Factor::Uniform), or for factors of edges
-    /// ([`ModelOptions::edge_factors`]) of which the largest holds inside patches. Where patches share positions to the last bit, they
+    /// from 1 to 1024, or with factors of edges ([`ModelOptions::edge_factors`]) of which the largest holds inside patches: they are for
+    /// [`Spacing::Equal`], and for [`Factor::Segments`](crate::renderer::Factor::Segments) where [`Evaluation::needs_segments`]. Where patches share positions to the last bit, they
     /// do so here; for normals and displacement see [`Evaluation::shares`], for patches that are left out [`Evaluation::culls`].
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     #[non_exhaustive]

@@ -19,6 +19,9 @@ pub enum Factor {
     Curvature(f32),
     /// Those of [`Renderer::set_edge_factors`](crate::renderer::Renderer::set_edge_factors), times this.
     Edges(f32),
+    /// The model's own segments ([`Renderer::set_segments`](crate::renderer::Renderer::set_segments)), where
+    /// [`Evaluation::needs_segments`](crate::renderer::Evaluation::needs_segments).
+    Segments,
 }
 
 impl From<f32> for Factor {
@@ -28,10 +31,11 @@ impl From<f32> for Factor {
 }
 
 impl Factor {
-    /// The number in it.
+    /// Number in it; 1 in [`Factor::Segments`].
     pub fn value(self) -> f32 {
         match self {
             Self::Uniform(x) | Self::Pixels(x) | Self::Curvature(x) | Self::Edges(x) => x,
+            Self::Segments => 1.0,
         }
     }
 
@@ -51,7 +55,7 @@ impl Factor {
     /// Its number in a draw's flags.
     pub(crate) fn metric(self) -> u32 {
         match self {
-            Self::Uniform(_) => METRIC_UNIFORM,
+            Self::Uniform(_) | Self::Segments => METRIC_UNIFORM,
             Self::Pixels(_) => METRIC_PIXELS,
             Self::Curvature(_) => METRIC_CURVATURE,
             Self::Edges(_) => METRIC_EDGES,

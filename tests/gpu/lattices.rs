@@ -2,14 +2,14 @@
 
 use crate::common;
 use crate::common::edges::{bits, edge_parameters, shared_edges};
-use crate::common::stage::{Stage, begin, read_vertices};
+use crate::common::stage::{Stage, begin, read_vertices, with_segments};
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedVertex, Which};
 use ash_subdiv::renderer::{Evaluation, Factor, Fragment, Geometry, ModelTables};
 use ash_subdiv::table::{Patch, grid_parameters};
 use ash_subdiv::topology::{PatchKind, Topology};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Fallback, ModelOptions, Options, Renderer, Scheme, Style, shape,
+    Construction, ControlMesh, DrawItem, Fallback, ModelId, ModelOptions, Options, Renderer, Scheme, Style, shape,
 };
 use glam::{Mat4, Vec3};
 use std::collections::{BTreeSet, HashMap};
@@ -282,13 +282,14 @@ fn pictures_follow_positions_and_segments() {
         }
         stage.prepare(&mut renderer, frame);
         for style in 0..2 {
-            let mut picture = |model| {
-                let item = DrawItem { style, ..DrawItem::new(model, n as f32) };
+            let mut picture = |model, evaluation: Evaluation| {
+                let factor = if evaluation.needs_segments() { Factor::Segments } else { Factor::Uniform(n as f32) };
+                let item = DrawItem { style, ..DrawItem::new(model, factor) };
                 stage.draw(&mut renderer, frame, &[item]).expect("a picture")
             };
-            let expected = picture(tessellated);
+            let expected = picture(tessellated, Evaluation::Tessellation);
             for &(model, evaluation) in &models {
-                assert_same(&picture(model), &expected, &format!("{evaluation:?}: {n} in {frame:?}"));
+                assert_same(&picture(model, evaluation), &expected, &format!("{evaluation:?}: {n} in {frame:?}"));
             }
         }
     }
@@ -308,9 +309,7 @@ fn triangles_are_those_of_the_tessellation_stages() {
         let mut expected = [None, None];
         for way in std::iter::once(ModelOptions::default()).chain(ways(Scheme::Gregory)) {
             let model = renderer.add_model(&mesh, &way).expect("a model");
-            if way.evaluation.needs_segments() {
-                renderer.set_segments(model, n).unwrap();
-            }
+            let factor = with_segments(&mut renderer, model, way.evaluation, n);
             let frame = stage.frame(&mut renderer);
             // Of a single quad nothing faces away.
             let styles = if name == "cube" { vec![vec![0, 1], vec![2]] } else { vec![vec![0, 1]] };
@@ -318,7 +317,7 @@ fn triangles_are_those_of_the_tessellation_stages() {
                 let items = styles.into_iter().map(|style| DrawItem {
                     style,
                     colors: [[0.2 + 0.4 * style as f32; 4]; 4],
-                    ..DrawItem::new(model, n as f32)
+                    ..DrawItem::new(model, factor)
                 });
                 let items: Vec<_> = items.collect();
                 let picture = stage.draw(&mut renderer, frame, &items).expect("a picture");
@@ -359,7 +358,7 @@ fn indices_are_shared() {
         renderer.remove_model(first).expect("a model");
         let frame = stage.frame(&mut renderer);
         let third = add(&mut renderer, evaluation, 6);
-        let item = |model| DrawItem::new(model, 6.0);
+        let item = |model| DrawItem::new(model, Factor::Segments);
         let early = stage.draw(&mut renderer, frame, &[item(third)]).unwrap_err().to_string();
         assert!(early.contains("it was not yet prepared"), "{early}");
         let frame = stage.frame(&mut renderer);
@@ -401,10 +400,7 @@ fn items_do_not_depend_on_those_before() {
         // As lists of triangles, and as strips on the CI device.
         for segments in [2, 14] {
             let model = renderer.add_model(&mesh, &way).expect("a model");
-            if way.evaluation.needs_segments() {
-                renderer.set_segments(model, segments).expect("segments");
-            }
-            kinds.push(DrawItem::new(model, segments as f32));
+            kinds.push(DrawItem::new(model, with_segments(&mut renderer, model, way.evaluation, segments)));
         }
     }
     kinds.push(DrawItem { style: 1, ..kinds[0] });
@@ -464,15 +460,16 @@ fn displaced_pictures_are_those_of_the_tessellation_stages() {
                 renderer.set_segments(model, n).unwrap();
             }
             let frame = stage.frame(&mut renderer);
-            let mut picture = |model, height| {
-                let item = DrawItem { displacement: [height, 0.0], ..DrawItem::new(model, n as f32) };
+            let mut picture = |(model, evaluation): (ModelId, Evaluation), height| {
+                let factor = if evaluation.needs_segments() { Factor::Segments } else { Factor::Uniform(n as f32) };
+                let item = DrawItem { displacement: [height, 0.0], ..DrawItem::new(model, factor) };
                 stage.draw(&mut renderer, frame, &[item]).expect("a picture")
             };
-            let [expected, smooth] = [0.1, 0.0].map(|height| picture(models[0].0, height));
+            let [expected, smooth] = [0.1, 0.0].map(|height| picture(models[0], height));
             let differ = |a: &[u8], b: &[u8]| a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 8).count();
             assert!(differ(&expected, &smooth) > 2000, "{}", differ(&expected, &smooth));
             for &(model, evaluation) in &models[1..] {
-                let differ = differ(&picture(model, 0.1), &expected);
+                let differ = differ(&picture((model, evaluation), 0.1), &expected);
                 assert!(differ < 20, "{evaluation:?}, {n} segments, texture coordinates {texcoords}: {differ}");
             }
         }
@@ -493,12 +490,9 @@ fn lattices_may_be_fine() {
         let mut expected = None;
         for options in ways(Scheme::Gregory) {
             let model = renderer.add_model(&mesh, &options).expect("a model");
-            if options.evaluation.needs_segments() {
-                renderer.set_segments(model, segments).unwrap();
-            }
+            let factor = with_segments(&mut renderer, model, options.evaluation, segments);
             let frame = stage.frame(&mut renderer);
-            let picture =
-                stage.draw(&mut renderer, frame, &[DrawItem::new(model, segments as f32)]).expect("a picture");
+            let picture = stage.draw(&mut renderer, frame, &[DrawItem::new(model, factor)]).expect("a picture");
             let what = format!("{name} {:?} {:?}", options.evaluation, options.construction);
             assert_same(&picture, expected.get_or_insert(picture.clone()), &what);
             renderer.remove_model(model).unwrap();
