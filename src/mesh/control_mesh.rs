@@ -66,13 +66,13 @@ pub struct MeshData {
     pub corners: Vec<Corner>,
     /// Faces that shape the surface but are not drawn.
     pub holes: Vec<u32>,
-    /// What boundaries do to the surface.
+    /// Rule of the surface at boundaries.
     pub boundary: BoundaryRule,
-    /// How finite sharpness is subdivided.
+    /// Subdivision of finite sharpness.
     pub crease_method: CreaseMethod,
-    /// How triangles are subdivided.
+    /// Subdivision of triangles.
     pub triangle_rule: TriangleRule,
-    /// How texture coordinates are refined ([`crate::limit::refine`]). Within a patch they are interpolated linearly.
+    /// Refinement of texture coordinates ([`crate::limit::refine`]). Within a patch they are interpolated linearly.
     pub face_varying_rule: FaceVaryingRule,
     /// Changes at finer levels, in the order in which they are made.
     pub edits: Vec<Edit>,

@@ -30,7 +30,7 @@ pub struct Edit {
     pub change: Change,
 }
 
-/// What an edit does.
+/// Change that an edit makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Change {

@@ -2,7 +2,7 @@
 
 use super::scheme::Scheme;
 
-/// What becomes of faces that a scheme has no patches for.
+/// Replacement for patches that a scheme does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Fallback {

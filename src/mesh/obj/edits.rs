@@ -4,7 +4,7 @@ use super::statements::number;
 use super::tags::{Tag, sharpness};
 use crate::mesh::{Change, Edit};
 
-/// What the strings of a tag say.
+/// Operation that the strings of a tag name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Operation {
     Add,

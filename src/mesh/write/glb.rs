@@ -9,7 +9,7 @@ pub(super) const UNSIGNED_INT: u32 = 5125;
 pub(super) const ARRAY_BUFFER: u32 = 34962;
 pub(super) const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// What a GLB file with one mesh says before its numbers.
+/// Head of a GLB file with one mesh: everything before the numbers.
 pub(super) struct Head<'h> {
     pub primitive: Value,
     pub extensions: &'h [&'h str],
@@ -53,7 +53,7 @@ impl Head<'_> {
 /// Writes the vertices and triangles of a mesh as GLB. Quads are not looked at: glTF has none.
 ///
 /// # Errors
-/// Those of `out`, and [`io::ErrorKind::FileTooLarge`] where the file would have 4 GiB or more.
+/// Errors of `out`, and [`io::ErrorKind::FileTooLarge`] where the file would have 4 GiB or more.
 pub fn write_glb(mesh: &dyn Pieces, out: &mut dyn Write) -> io::Result<()> {
     let ([vertices, _], [_, triangles]) = (mesh.vertex_counts(), mesh.face_counts());
     let texcoords = if mesh.has_texcoords() { vertices } else { 0 };

@@ -10,7 +10,7 @@ use std::io::{self, Write};
 /// Writes positions, texture coordinates, normals and faces. Tags have no place.
 ///
 /// # Errors
-/// Those of `out`, and [`io::ErrorKind::FileTooLarge`] where the file would have 4 GiB or more.
+/// Errors of `out`, and [`io::ErrorKind::FileTooLarge`] where the file would have 4 GiB or more.
 pub fn write_glb(mesh: &ControlMesh, out: &mut dyn Write) -> io::Result<()> {
     let split = Split::new(mesh);
     let positions: Vec<[f32; 3]> = split.positions.iter().map(|position| position.map(|x| x as f32)).collect();

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 /// Writes positions, texture coordinates, normals, faces and tags. Edits have no place.
 ///
 /// # Errors
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write_obj(mesh: &ControlMesh, out: &mut dyn Write) -> io::Result<()> {
     let data = mesh.data();
     for [x, y, z] in &data.positions {

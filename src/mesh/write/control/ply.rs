@@ -8,7 +8,7 @@ use std::io::{self, Write};
 /// Writes positions, texture coordinates, normals and faces. Tags have no place.
 ///
 /// # Errors
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write_ply(mesh: &ControlMesh, out: &mut dyn Write) -> io::Result<()> {
     let split = Split::new(mesh);
     writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", split.positions.len())?;
