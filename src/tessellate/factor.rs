@@ -63,20 +63,20 @@ impl Factor {
     }
 }
 
-/// Which patches are left out: by the control shader, or before by compute ([`Renderer::cmd_cull`](crate::renderer::Renderer::cmd_cull)). No
+/// Patches that are culled: by the control shader, or before by compute ([`Renderer::cmd_cull`](crate::renderer::Renderer::cmd_cull)). No
 /// choice changes the factors of the patches that stay.
 ///
-/// Pm- and c-patches are never left out, triangles only by the frustum and as small.
+/// Pm- and c-patches are never culled, triangles only by the frustum and as small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Cull {
-    /// Those beyond a plane of the view frustum; their hull grows by what displacement can move them.
+    /// Patches beyond a plane of the view frustum; their hull grows by what displacement can move them.
     pub frustum: bool,
-    /// Those all of whose triangles face away: those that the style leaves out ([`Style::cull`](crate::renderer::Style::cull)), so that the
-    /// picture is the same; or, if it leaves out none, those whose inside is seen, which are hidden if the surface is closed. Of more
-    /// of them that can be told where patches are cut finely. Not done where the surface is displaced, nor in parallel
+    /// Patches all of whose triangles face away: as the style culls triangles ([`Style::cull`](crate::renderer::Style::cull)), so that the
+    /// picture is the same; or, if it culls none, patches whose inside is seen, which are hidden if the surface is closed. More are found where
+    /// patches have many segments. Not done where the surface is displaced, nor in parallel
     /// projections. Views that mirror say so ([`View::mirrored`](crate::renderer::View::mirrored)).
     pub back: bool,
-    /// Those between the centres of pixels. For one sample a pixel, and filled triangles. Needs
+    /// Patches between the centres of pixels. For one sample a pixel, and filled triangles. Needs
     /// [`View::viewport`](crate::renderer::View::viewport). Not done where the surface is displaced.
     pub small: bool,
 }
