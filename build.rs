@@ -128,7 +128,7 @@ impl ShaderId {{
     /// All shaders, in order.
     pub const ALL: &'static [Self] = &[{all}];
     /// The SPIR-V.
-    pub const fn code(self) -> &'static [u32] {{ match self {{\n{codes}}} }}
+    pub fn code(self) -> &'static [u32] {{ match self {{\n{codes}}} }}
     /// The name in messages.
     pub const fn name(self) -> &'static str {{ match self {{\n{names}}} }}
     /// The source, in the crate's folder.
@@ -182,7 +182,7 @@ fn words_of(spirv: Option<&Path>, name: &str) -> Result<String, String> {
     // By value, so the alignment of the bytes does not matter.
     let words = bytes / 4;
     Ok(format!(
-        "{{ static CODE: &[u32] = &unsafe {{ core::mem::transmute::<[u8; {bytes}], [u32; {words}]>(*include_bytes!({path:?})) }}; CODE }}"
+        "{{ static CODE: [u32; {words}] = unsafe {{ core::mem::transmute::<[u8; {bytes}], [u32; {words}]>(*include_bytes!({path:?})) }}; &CODE }}"
     ))
 }
 

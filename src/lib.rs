@@ -68,6 +68,9 @@
 //! * **Parameters**: a quad has its corners at (u, v) = (0, 0), (1, 0), (1, 1), (0, 1); a triangle has barycentric
 //!   (u, v, w), one at its corners 0, 1, 2. `gl_TessCoord` is the same.
 //! * **Order of control points**: in [`patch::bicubic`], [`patch::gregory`], [`patch::acc`] and [`patch::pm`].
+//! * **Vectors**: data are arrays (meshes, views, items, positions of a frame), so any version of any maths crate serves. Points that
+//!   are computed on the CPU are `DVec3` of the re-exported [`glam`], which `into` and `to_array` turn into arrays and back.
+//! * **Options** are structs with a default, written with `..Default::default()`: new fields and new choices are minor changes.
 //! * **Matrices** are given by columns, as `glam::Mat4::to_cols_array_2d` gives them, and act on column vectors. World
 //!   space is right-handed.
 //! * **Clip space** is Vulkan's: y down, depth from 0 (near) to 1. [`View`]'s constructors make it so.

@@ -79,7 +79,7 @@ void write_words(uint at, uvec4 words) {
     }
 }
 
-// The draws of so many patches, which are on the list from `start` on.
+// Draws of the patches that are on the visible list from `start` on.
 void write_commands(uint start, uint count) {
     if (draw.patches_per_instance == 0u) {
         // VkDrawIndexedIndirectCommand: an instance for each patch.

@@ -5,6 +5,7 @@ use super::plan::{LeafKind, Plan};
 
 /// The leaves and the refined cells of one level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct LevelCounts {
     /// Regular leaves.
     pub regular: usize,

@@ -9,6 +9,7 @@ use crate::topology::{RingKind, Topology};
 named! {
     /// Why a cell is refined.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    #[non_exhaustive]
     pub enum Reason {
         /// A face with other than four corners, or a quad that touches one.
         NonQuad = "non-quad",

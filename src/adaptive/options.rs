@@ -9,6 +9,7 @@ pub const MAX_DEPTH: u32 = crate::constants::MAX_DEPTH;
 named! {
     /// What refined vertices are sums of, each frame in which the control vertices moved. The surface is the same.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Sums {
         /// Of those one level above: short sums, which take a step for each level.
         #[default]

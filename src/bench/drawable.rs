@@ -12,6 +12,7 @@ use std::time::Instant;
 /// Times before the first frame, in milliseconds; of tables and upload of the renderer's own paths the median
 /// of several times.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Setup {
     /// Everything that the GPU reads, out of the mesh: topology, plan and tables; for a vertex buffer its vertices.
     pub tables: f64,
@@ -39,6 +40,7 @@ impl Setup {
 /// Bytes that a frame moves, by count: what a device without caches would move at least. A device may keep much of it
 /// on the chip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct Traffic {
     /// Tables, positions, control points that are kept, vertices and indices: each byte once an instance and pass that reads
     /// it, and what is made once a frame as often as making it reads and writes it.

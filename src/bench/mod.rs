@@ -52,6 +52,7 @@ use crate::renderer::{Construction, Cull, Evaluation};
 named! {
     /// A way to get the surface drawn.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum Path {
         /// The tessellation stages, as [`Renderer`](crate::Renderer) draws.
         Tessellation = Evaluation::Tessellation.name(),
@@ -135,6 +136,7 @@ impl Path {
 named! {
     /// Where normals along edges and at corners come from.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Normals {
         /// Each patch has its own.
         #[default]
@@ -148,6 +150,7 @@ named! {
 named! {
     /// Stage that culls patches.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum CullBy {
         /// The control shader, in each draw ([`Renderer::cmd_draw`](crate::Renderer::cmd_draw)).
         Control = "control",
@@ -169,6 +172,7 @@ impl CullBy {
 named! {
     /// How an adaptive surface follows creases of finite sharpness.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Creases {
         /// Leaves follow them directly; around their ends and corners end caps are at the depth of all others.
         #[default]

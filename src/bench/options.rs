@@ -6,6 +6,7 @@ use crate::named::named;
 named! {
     /// Position of the eye.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Camera {
         /// Far enough to have all in the picture.
         #[default]
@@ -18,6 +19,7 @@ named! {
 named! {
     /// Whether the control vertices move.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Motion {
         /// In every frame: what depends on them is made anew.
         #[default]

@@ -4,11 +4,12 @@ use super::drawable::timed;
 use super::scene::Scene;
 use super::{Bench, BenchError, Camera, Contestant, Subject};
 use crate::named::named;
-use crate::renderer::{DrawItem, ModelId, ModelTables, Options, Renderer, Style, Target};
+use crate::renderer::{DrawItem, Factor, ModelId, ModelTables, Options, Renderer, Style, Target};
 
 named! {
     /// Models of a frame.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum Crowd {
         /// One model, drawn many times.
         Instances = "instances",
@@ -23,6 +24,7 @@ impl Crowd {}
 
 /// Recording times of a crowd on the host's clock, frame by frame, in milliseconds.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Recording {
     /// Models that are recorded.
     pub crowd: Crowd,
@@ -77,7 +79,9 @@ impl Bench<'_> {
             }
             Ok(id)
         };
-        let item = |model| DrawItem { cull: contestant.cull, ..DrawItem::new(model, 1.0) };
+        let needs_segments = model_options.evaluation.needs_segments();
+        let factor = if needs_segments { Factor::Segments } else { Factor::Uniform(1.0) };
+        let item = |model| DrawItem { cull: contestant.cull, ..DrawItem::new(model, factor) };
         let first = add(&mut renderer)?;
         let mut items = vec![item(first); models as usize];
         let mut recordings = vec![self.record_frames(&mut renderer, subject, contestant, &items, Crowd::Instances)?];

@@ -15,6 +15,7 @@ pub struct Series {
 
 /// Result of one contestant at one factor.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Row {
     /// Who.
     pub contestant: Contestant,

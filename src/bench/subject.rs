@@ -10,6 +10,7 @@ use crate::topology::PatchKind;
 named! {
     /// Which patches of a mesh are drawn.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Subset {
         /// All of them.
         #[default]

@@ -124,7 +124,8 @@ impl Surface {
 
     fn items(&self, frame: &Frame) -> Vec<DrawItem> {
         let style = usize::from(frame.pass == Pass::Geometry);
-        let item = DrawItem { style, cull: self.cull, ..DrawItem::new(self.model, frame.factor) };
+        let factor = if self.evaluation.needs_segments() { Factor::Segments } else { frame.factor.into() };
+        let item = DrawItem { style, cull: self.cull, ..DrawItem::new(self.model, factor) };
         frame.instances.iter().map(|&transform| DrawItem { transform, ..item }).collect()
     }
 }

@@ -3,6 +3,7 @@
 use super::buffer::{HEAD_BYTES, Head};
 use super::watch::{Watcher, Watchers};
 use super::{CaptureDraw, Captured};
+use crate::adaptive::AdaptiveOptions;
 use crate::renderer::{Capture, DisplacementId, DrawItem, Error, Factor, ModelId, ModelOptions, Renderer};
 use crate::topology::PatchKind;
 use std::ops::Range;
@@ -39,11 +40,14 @@ impl Captured<'_> {
     ) -> Result<(), Error> {
         let headless = self.headless;
         let kept = headless.kept::<Watchers>();
-        let watched = (mode, self.options.clone());
+        let watched = (mode, self.pipelines());
         let new = || Watcher::new(headless, mode, self.options.evaluation, &self.shaders);
         let mut watcher = if self.shaders.is_empty() { kept.take(&watched, new)? } else { new()? };
         let (model, map) = self.add_to(&mut watcher.renderer, mode, draw)?;
-        let CaptureDraw { factor, cull, displacement, .. } = *draw;
+        let CaptureDraw { mut factor, cull, displacement, .. } = *draw;
+        if self.evaluation(mode).needs_segments() {
+            factor = Factor::Segments;
+        }
         let item = DrawItem { factor, cull, displacement, ..DrawItem::new(model, 1.0) };
         for kind in PatchKind::ALL {
             let per_patch = bytes(kind);
@@ -63,6 +67,12 @@ impl Captured<'_> {
         Ok(())
     }
 
+    /// The options without what pipelines do not depend on.
+    fn pipelines(&self) -> ModelOptions {
+        let adaptive = self.options.adaptive.map(|_| AdaptiveOptions::default());
+        ModelOptions { name: String::new(), refine: 0, adaptive, ..self.options.clone() }
+    }
+
     /// Adds the model to a renderer, ready for this draw, with its displacement map if it has one.
     fn add_to(
         &self,
@@ -73,7 +83,9 @@ impl Captured<'_> {
         // SAFETY: as the caller of `displaced` promises. Only models look at maps, and this one goes before the map does.
         let map = self.displacement.map(|map| unsafe { renderer.add_displacement(map) });
         let options = ModelOptions { evaluation: self.evaluation(mode), displacement: map, ..self.options.clone() };
-        let model = renderer.add_tables(self.tables.clone(), &self.positions, &options)?;
+        // Only the pipelines of this draw: making others would take longer than drawing.
+        let drawn = (draw.factor, draw.cull);
+        let model = renderer.add_drawn(self.tables.clone(), &self.positions, &options, drawn)?;
         if options.evaluation.needs_segments() {
             let most = match draw.factor {
                 Factor::Uniform(factor) => factor,

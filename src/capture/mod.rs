@@ -40,6 +40,7 @@ pub struct CapturedVertex {
 
 /// Which vertices of a draw are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Which {
     /// Every vertex.
     All,
@@ -89,7 +90,7 @@ impl CaptureDraw {
 /// A model whose stages before rasterization can be watched: those of tessellation, but for [`Captured::vertices`] also those
 /// of other evaluations ([`ModelOptions::evaluation`]) that have them.
 ///
-/// The device keeps some of the pipelines for the next capture with the same options, of this model or another.
+/// The device keeps some of the pipelines for the next capture with options that need the same ones, of this model or another.
 pub struct Captured<'h> {
     headless: &'h Headless,
     options: ModelOptions,

@@ -133,7 +133,7 @@ described! {
 
 impl LeafKinds {
     fn new(counts: &LevelCounts) -> Self {
-        let &LevelCounts { regular, single_crease, caps, refined } = counts;
+        let &LevelCounts { regular, single_crease, caps, refined, .. } = counts;
         let refined = Reason::ALL.into_iter().zip(refined).filter(|&(_, count)| count > 0);
         Self { regular, single_crease, caps, refined: refined.map(|(reason, count)| (reason.name(), count)).collect() }
     }

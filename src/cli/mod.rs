@@ -35,7 +35,6 @@ mod interrupt;
 mod leaves;
 mod local;
 mod memory;
-mod obj;
 mod output;
 mod paint;
 mod parse;

@@ -221,9 +221,10 @@ pub(super) fn label(scheme: Scheme, kind: PatchKind, number: usize) -> String {
         (k, Scheme::Pm | Scheme::CPatch) if k < n => format!("v{k}"),
         (k, Scheme::Pm | Scheme::CPatch) if k < 3 * n => format!("t{}{sign}", (k - n) / 2),
         (k, Scheme::Pm | Scheme::CPatch) => format!("{}_{}", ["b211", "b121", "b112"][k / n - 3], k % n),
-        (k, Scheme::Gregory | Scheme::GregoryFitted) if k < n => format!("p{k}"),
-        (k, Scheme::Gregory | Scheme::GregoryFitted) if k < 3 * n => format!("e{}{sign}", (k - n) / 2),
-        (k, Scheme::Gregory | Scheme::GregoryFitted) => format!("f{}{sign}", (k - 3 * n) / 2),
+        // Gregory patches.
+        (k, _) if k < n => format!("p{k}"),
+        (k, _) if k < 3 * n => format!("e{}{sign}", (k - n) / 2),
+        (k, _) => format!("f{}{sign}", (k - 3 * n) / 2),
     }
 }
 

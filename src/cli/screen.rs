@@ -130,9 +130,9 @@ impl Row {
         let metric = match factor {
             Factor::Pixels(_) => "pixels",
             Factor::Curvature(_) => "bend",
-            Factor::Uniform(_) | Factor::Edges(_) => "uniform",
+            _ => "uniform",
         };
-        let ScreenError { triangles, samples, shift, shape, facets } = error;
+        let ScreenError { triangles, samples, shift, shape, facets, .. } = error;
         Self {
             metric,
             value: factor.value(),

@@ -2,8 +2,8 @@
 
 use super::described::{described, help};
 use super::error::CliError;
-use super::obj;
 use super::output::{self, Table, write_file};
+use ash_subdiv::mesh::write::control::write_obj;
 use ash_subdiv::{shape, shapes};
 use clap::Args;
 use serde::Serialize;
@@ -53,7 +53,7 @@ pub(super) fn run(args: &ShapesArgs, json: bool) -> Result<(), CliError> {
         let mesh = shape(name)?;
         let write = |part: &Path| -> io::Result<()> {
             let mut out = BufWriter::new(std::fs::File::create(part)?);
-            obj::write(&mut out, &mesh)?;
+            write_obj(&mesh, &mut out)?;
             out.flush()
         };
         write_file(path, |part| write(part).map_err(|error| error.to_string()))?;

@@ -58,6 +58,7 @@ pub fn tessellated_vertices(domain: Domain, spacing: Spacing, level: f32, max_le
 /// the patch of a vertex is `gl_InstanceIndex * k + gl_VertexIndex / control_points`. Shaders never use
 /// `gl_PrimitiveID`, which lavapipe restarts within a draw (lavapipe bug B), so this form serves every device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PatchBatch {
     /// Any number of patches in one instance.
     Unlimited,

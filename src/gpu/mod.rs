@@ -1,11 +1,14 @@
-//! The thin layer over Vulkan: device facts, memory, buffers, images, shaders and pipelines. It knows nothing of
-//! meshes, and owns only what it creates.
+//! The thin layer over Vulkan: device facts, memory, and what an `ash` renderer hands over. It knows nothing of meshes.
 //!
-//! * [`DeviceContext`] is the device all objects are made from, with its [`DeviceProperties`], its allocator and its
+//! * [`DeviceContext`] is the device all objects are made from, with its [`DeviceProperties`], its [`Allocator`] and its
 //!   debug names. Its constructor is where the one safety contract of this layer is stated.
-//! * [`Buffer`], [`Image`] and [`Owned`] handles destroy themselves when dropped, and keep their context alive.
-//! * [`GraphicsPipelineDesc`] and [`ComputePipelineDesc`] make pipelines.
-//! * [`PatchBatch`] says how many patches one draw instance may hold, which some drivers limit.
+//! * [`Features`] names the device features that options need, [`GpuError`] the object that a Vulkan call failed for.
+//! * [`Blend`], [`DepthState`] and [`DepthBias`] are parts of a [`Style`](crate::Style).
+//!
+//! Buffers, images, descriptors and pipelines are the crate's own business; tools find them in `headless::objects` (feature
+//! `headless`).
+
+#![cfg_attr(not(feature = "headless"), allow(dead_code, reason = "tools use the rest"))]
 
 mod allocator;
 mod batch;
@@ -21,16 +24,28 @@ mod pipeline;
 mod stages;
 
 pub use allocator::{Allocation, AllocationRequest, Allocator, AllocatorError, Dedicated, MemoryLocation};
-pub use batch::{Domain, PatchBatch, PatchDraw, Spacing, tessellated_vertices};
-pub use buffer::{Buffer, BufferDesc};
-pub use descriptors::{DescriptorPool, DescriptorSet};
-pub use device::{ContextOptions, DeviceContext, DeviceProperties, MAX_OFFSET_ALIGNMENT, MAX_WORKGROUPS, version_text};
-pub use error::{GpuError, VkResultExt};
+pub use batch::{PatchBatch, PatchDraw, Spacing};
+pub use device::{ContextOptions, DeviceContext, DeviceProperties};
+pub use error::GpuError;
 pub use features::Features;
-pub use image::{Image, ImageDesc, aspects};
+pub use pipeline::{Blend, DepthBias, DepthState};
+
+pub(crate) use device::{MAX_OFFSET_ALIGNMENT, MAX_WORKGROUPS};
 #[cfg(all(test, feature = "headless"))]
 pub(crate) use layout::demand;
-pub use layout::{SetLayout, descriptor_set_layout, pipeline_layout};
-pub use owned::{DeviceHandle, Owned};
-pub use pipeline::{Blend, ComputePipelineDesc, DepthBias, DepthState, GraphicsPipelineDesc, RenderTarget};
-pub use stages::{Shader, Specialization};
+pub(crate) use objects::*;
+
+/// What the crate makes of a device; public in `headless`.
+pub(crate) mod objects {
+    pub use super::batch::{Domain, tessellated_vertices};
+    pub use super::buffer::{Buffer, BufferDesc};
+    pub use super::descriptors::{DescriptorPool, DescriptorSet};
+    #[cfg(feature = "headless")]
+    pub use super::device::version_text;
+    pub use super::error::VkResultExt;
+    pub use super::image::{Image, ImageDesc, aspects};
+    pub use super::layout::{SetLayout, descriptor_set_layout, pipeline_layout};
+    pub use super::owned::Owned;
+    pub use super::pipeline::{ComputePipelineDesc, GraphicsPipelineDesc, RenderTarget};
+    pub use super::stages::{Shader, Specialization};
+}

@@ -52,6 +52,7 @@ pub struct DepthBias {
 
 /// Blending of a fragment's colour with the colour that is there; the same for all colour attachments that are written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Blend {
     /// Replaces it.
     #[default]

@@ -125,13 +125,19 @@ impl Instance {
         drop(one_at_a_time);
         let mut instance = Self { raw, debug_utils, messages, messenger: None };
         if validation {
-            let debug = ash::ext::debug_utils::Instance::new(entry, &instance.raw);
-            // SAFETY: as above.
-            let messenger = unsafe { debug.create_debug_utils_messenger(&self::listener(&instance.messages), None) }
-                .of("vkCreateDebugUtilsMessengerEXT", "instance")?;
-            instance.messenger = Some((debug, messenger));
+            instance.listen(entry)?;
         }
         Ok(instance)
+    }
+
+    /// Collects what the validation layer reports from now on.
+    fn listen(&mut self, entry: &ash::Entry) -> Result<(), HeadlessError> {
+        let debug = ash::ext::debug_utils::Instance::new(entry, &self.raw);
+        // SAFETY: the description is valid; `messages` lives as long as the instance.
+        let messenger = unsafe { debug.create_debug_utils_messenger(&listener(&self.messages), None) }
+            .of("vkCreateDebugUtilsMessengerEXT", "instance")?;
+        self.messenger = Some((debug, messenger));
+        Ok(())
     }
 
     /// The physical devices, in the driver's order.

@@ -21,6 +21,12 @@ mod offscreen;
 mod query;
 mod texture;
 
+/// Vulkan objects of tools and tests, which may change with any version: buffers, images, descriptors and pipelines. Those that own
+/// a handle destroy it when dropped, and keep their context alive.
+pub mod objects {
+    pub use crate::gpu::objects::*;
+}
+
 pub use devices::{DeviceInfo, devices};
 pub use error::HeadlessError;
 pub use offscreen::{Offscreen, OffscreenDesc};

@@ -96,16 +96,11 @@ impl Offscreen {
         }
     }
 
-    /// Begins rendering to the whole image, cleared to `clear` and depth 1, with viewport and scissor set.
-    ///
-    /// # Safety
-    ///
-    /// `cmd` is a command buffer of this device that is being recorded, outside rendering.
-    pub unsafe fn cmd_begin(&self, cmd: vk::CommandBuffer, clear: [f32; 4]) {
+    /// Barriers after which the attachments are drawn into: what an earlier frame left is discarded, after its last use.
+    fn discarding_barriers(&self) -> Vec<vk::ImageMemoryBarrier2<'static>> {
         use vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stage};
         let color_stage = Stage::COLOR_ATTACHMENT_OUTPUT;
         let depth_stage = Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS;
-        // What an earlier frame left is discarded, after its last use.
         let color_barrier = |image: &Image, before: Stage| {
             image
                 .barrier(Layout::UNDEFINED, Layout::COLOR_ATTACHMENT_OPTIMAL)
@@ -124,7 +119,17 @@ impl Offscreen {
                 .dst_access_mask(Access::DEPTH_STENCIL_ATTACHMENT_WRITE | Access::DEPTH_STENCIL_ATTACHMENT_READ),
         ];
         barriers.extend(self.multisampled.as_ref().map(|image| color_barrier(image, color_stage)));
+        barriers
+    }
 
+    /// Begins rendering to the whole image, cleared to `clear` and depth 1, with viewport and scissor set.
+    ///
+    /// # Safety
+    ///
+    /// `cmd` is a command buffer of this device that is being recorded, outside rendering.
+    pub unsafe fn cmd_begin(&self, cmd: vk::CommandBuffer, clear: [f32; 4]) {
+        use vk::ImageLayout as Layout;
+        let barriers = self.discarding_barriers();
         let drawn = self.multisampled.as_ref().unwrap_or(&self.color);
         let mut color = vk::RenderingAttachmentInfo::default()
             .image_view(drawn.view())

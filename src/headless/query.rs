@@ -13,6 +13,7 @@ use crate::gpu::{DeviceContext, GpuError, Owned, VkResultExt};
 /// lavapipe counts tessellation evaluations exactly, and fragments too often.
 #[allow(missing_docs, reason = "named as in Vulkan")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct Statistics {
     pub input_vertices: u64,
     pub input_primitives: u64,
@@ -207,6 +208,7 @@ fn query_pool(
 
 /// Duration of commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Timing {
     /// On the device, from the first command to the last.
     pub device: Duration,

@@ -6,7 +6,7 @@ use crate::mesh::{Change, ControlMesh, Edit, MeshData, MeshError};
 use crate::topology::Topology;
 use glam::DVec3;
 
-/// What edits do to vertices, in order. Those of tangent frames are made for positions before any edit.
+/// Changes of vertices by edits, in order. Changes in tangent frames are for positions before any edit.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VertexEdits {
     edits: Vec<(u32, VertexChange)>,

@@ -90,7 +90,7 @@ pub(crate) fn value_mesh(topology: &Topology, coarse: &FaceVarying<[f32; 2]>) ->
     ControlMesh::new(MeshData { creases, corners, ..values.into_data() })
 }
 
-/// What is known of the values at one vertex of the mesh.
+/// Values at one vertex of the mesh.
 #[derive(Default)]
 struct Values {
     /// Each with the number of faces around the vertex that have it.

@@ -17,9 +17,9 @@ pub(crate) struct Fan {
     pub half_edges: Vec<u32>,
     /// Whether the first and the last edge differ.
     pub open: bool,
-    /// Of each edge; boundaries are infinitely sharp.
+    /// Sharpness of each edge; boundaries are infinitely sharp.
     pub sharpness: Vec<f32>,
-    /// Of the vertex.
+    /// Sharpness of the vertex.
     pub vertex_sharpness: f32,
     method: CreaseMethod,
 }

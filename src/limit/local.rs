@@ -75,7 +75,7 @@ fn neighbourhood(topology: &Topology, face: u32) -> Vec<u32> {
     with_rings(topology, vec![face], rings)
 }
 
-/// Some faces, each once, with so many rings of faces around them.
+/// Faces, each once, with `rings` rings of faces around them.
 pub(crate) fn with_rings(topology: &Topology, mut faces: Vec<u32>, rings: usize) -> Vec<u32> {
     let mut found: HashSet<u32> = faces.iter().copied().collect();
     let mut done = 0;

@@ -14,7 +14,7 @@ pub struct Refined {
     pub mesh: ControlMesh,
     /// The refined positions as sums of the coarse mesh's, before edits.
     pub stencils: Stencils,
-    /// What edits do to these.
+    /// Edits of the refined vertices.
     pub(crate) edits: VertexEdits,
     /// For each refined face, the coarse face corner it grew from: the child of corner h is
     /// `[vertex(h), edge(h), face, edge(prev(h))]`.

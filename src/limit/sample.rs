@@ -9,6 +9,6 @@ pub struct LimitSample {
     pub du: DVec3,
     /// Derivative by v.
     pub dv: DVec3,
-    /// Of length one along `du x dv`, or zero where there is none.
+    /// Unit vector along `du x dv`, or zero where there is none.
     pub normal: DVec3,
 }

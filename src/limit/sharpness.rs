@@ -16,7 +16,7 @@ pub(crate) fn is_semi_sharp(sharpness: f32) -> bool {
     sharpness > 0.0 && sharpness < SHARPNESS_INFINITE
 }
 
-/// What is left of the edges around a vertex in their children there.
+/// Sharpness that the edges around a vertex leave their children there.
 pub(super) fn children(method: CreaseMethod, edges: &[f32]) -> Vec<f32> {
     let semi: Vec<f32> = edges.iter().copied().filter(|&s| is_semi_sharp(s)).collect();
     if method == CreaseMethod::Uniform || semi.len() < 2 {
@@ -53,8 +53,7 @@ pub(super) fn parent_weight(method: CreaseMethod, edges: &[(f32, f32)], vertex: 
     mean.min(1.0)
 }
 
-/// What the sharpness of an edge does to the points along it at each level of refinement, from its first end to the other. At
-/// level l the edge is in 2^l pieces.
+/// Sharpness along an edge at each level of refinement, from its first end to the other. At level l the edge is in 2^l pieces.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EdgeProfile {
     /// [`edge_weight`] of each piece at levels 0 to 2.
@@ -66,7 +65,7 @@ pub(crate) struct EdgeProfile {
 }
 
 impl EdgeProfile {
-    /// Of an edge with this sharpness, whose outermost pieces have the sharpness `ends` at levels 1 to 3, at its first end
+    /// Profile of an edge with this sharpness. `ends` is the sharpness of its outermost pieces at levels 1 to 3, at the first end
     /// and at the other.
     pub(crate) fn new(method: CreaseMethod, sharpness: f32, ends: [[f32; LEVELS]; 2]) -> Self {
         let mut profile = Self { edges: [0.0; 7], vertices: [0.0; 4], creased: 0 };

@@ -29,7 +29,7 @@ pub(super) fn refine_vertices(topology: &Topology) -> (MeshData, Stencils) {
     (refined, stencils)
 }
 
-/// What a vertex of the refined mesh was made of: a vertex, an edge, a face of the coarse one.
+/// Origin of a vertex of the refined mesh: a vertex, an edge or a face of the coarse one.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
     Vertex,
@@ -53,7 +53,7 @@ struct SharpEnd {
     /// The vertex of the mesh at the other end.
     far: u32,
     sharpness: f32,
-    /// What is left of it in the child edge at this vertex.
+    /// Sharpness left in the child edge at this vertex.
     child: f32,
 }
 
@@ -132,7 +132,7 @@ impl<'t> Step<'t> {
         }
     }
 
-    /// What a vertex of the refined mesh was made of.
+    /// Origin of a vertex of the refined mesh.
     pub(super) fn kind(&self, vertex: u32) -> Kind {
         let first_edge = self.topology.vertex_count() as u32;
         let first_face = first_edge + self.edge_half_edges.len() as u32;

@@ -60,7 +60,7 @@ const MAX_COORDINATE: f64 = 1e38;
 /// # Ok::<(), ash_subdiv::MeshError>(())
 /// ```
 pub struct LimitSurface {
-    /// Of the mesh refined once, if there are edits.
+    /// Surface of the mesh refined once, if there are edits.
     finer: Option<Box<LimitSurface>>,
     topology: Arc<Topology>,
     drawn: Vec<bool>,
@@ -186,7 +186,7 @@ struct Irregular {
     /// The face is face 0.
     topology: Topology,
     refined: OnceLock<Topology>,
-    /// Of a quad: by quadrant, corner k of child k being corner k of the face.
+    /// Children of a quad by quadrant, corner k of child k being corner k of the face.
     children: Box<[OnceLock<Node>]>,
 }
 

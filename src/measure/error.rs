@@ -46,6 +46,7 @@ pub struct FaceErrors {
 
 /// Errors of the patches of a scheme against the limit surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SchemeError {
     /// Over all faces.
     pub all: FaceErrors,
@@ -57,6 +58,7 @@ pub struct SchemeError {
 
 /// Result of [`surface_errors`].
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ErrorReport {
     /// Length of the diagonal of the control mesh's bounding box: the unit of distances here, in the mesh's own.
     pub diagonal: f64,

@@ -37,6 +37,7 @@ pub struct PixelDeviation {
 
 /// Distances of the triangles of a draw from the limit surface on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ScreenError {
     /// Triangles that the tessellator made, seen or not.
     pub triangles: u64,

@@ -1,3 +1,4 @@
+use super::check::{check, check_sharpness, check_size, check_tags};
 use super::edits::{Edit, make_edits};
 use super::rules::{BoundaryRule, CreaseMethod, FaceVaryingRule, TriangleRule};
 use super::{MeshError, adjacency};
@@ -65,13 +66,13 @@ pub struct MeshData {
     pub corners: Vec<Corner>,
     /// Faces that shape the surface but are not drawn.
     pub holes: Vec<u32>,
-    /// What boundaries do to the surface.
+    /// Rule of the surface at boundaries.
     pub boundary: BoundaryRule,
-    /// How finite sharpness is subdivided.
+    /// Subdivision of finite sharpness.
     pub crease_method: CreaseMethod,
-    /// How triangles are subdivided.
+    /// Subdivision of triangles.
     pub triangle_rule: TriangleRule,
-    /// How texture coordinates are refined ([`crate::limit::refine`]). Within a patch they are interpolated linearly.
+    /// Refinement of texture coordinates ([`crate::limit::refine`]). Within a patch they are interpolated linearly.
     pub face_varying_rule: FaceVaryingRule,
     /// Changes at finer levels, in the order in which they are made.
     pub edits: Vec<Edit>,
@@ -275,100 +276,6 @@ impl ControlMesh {
     }
 }
 
-/// The most vertices, and face corners, of a mesh: ring tables have up to three entries a face corner, counted in u32, where
-/// the top bit of an index is a flag.
-pub(crate) const MAX_CORNERS: usize = 1 << 30;
-
-/// Everything that can be checked without neighbours. Gives the face offsets.
-fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
-    let count = data.positions.len();
-    if count == 0 {
-        return Err(MeshError::Empty { what: "vertices" });
-    }
-    if data.face_sizes.is_empty() {
-        return Err(MeshError::Empty { what: "faces" });
-    }
-    check_size(data)?;
-    let mut face_offsets = Vec::with_capacity(data.face_sizes.len() + 1);
-    let mut corners = 0usize;
-    face_offsets.push(0);
-    for (face, &size) in data.face_sizes.iter().enumerate() {
-        if size < 3 {
-            return Err(MeshError::FaceTooSmall { face: face as u32, size: size as usize });
-        }
-        corners += size as usize;
-        face_offsets.push(corners as u32);
-    }
-    if corners != data.face_vertices.len() {
-        return Err(MeshError::CornerCount { what: "vertices", given: data.face_vertices.len(), corners });
-    }
-    // As the GPU sees them.
-    if let Some(vertex) = data.positions.iter().position(|p| p.iter().any(|&x| !(x as f32).is_finite())) {
-        return Err(MeshError::NotFinite { vertex: vertex as u32, position: data.positions[vertex] });
-    }
-    // Which face used a vertex last: finds repeated vertices in linear time whatever the size of a face.
-    let mut last_face = vec![u32::MAX; count];
-    for (face, range) in face_offsets.windows(2).enumerate() {
-        let face = face as u32;
-        for &vertex in &data.face_vertices[range[0] as usize..range[1] as usize] {
-            let last = last_face.get_mut(vertex as usize).ok_or(MeshError::IndexOutOfRange { face, vertex, count })?;
-            if std::mem::replace(last, face) == face {
-                return Err(MeshError::RepeatedVertex { face, vertex });
-            }
-        }
-    }
-    if let Some(vertex) = last_face.iter().position(|&face| face == u32::MAX) {
-        return Err(MeshError::IsolatedVertex { vertex: vertex as u32 });
-    }
-    check_face_varying("texture coordinate", data.texcoords.as_ref(), corners)?;
-    check_face_varying("normal", data.normals.as_ref(), corners)?;
-    Ok(face_offsets)
-}
-
-fn check_size(data: &MeshData) -> Result<(), MeshError> {
-    let max = MAX_CORNERS;
-    for (what, count) in [("vertices", data.positions.len()), ("face corners", data.face_vertices.len())] {
-        if count > max {
-            return Err(MeshError::TooLarge { what, count, max });
-        }
-    }
-    Ok(())
-}
-
-fn check_face_varying<const N: usize>(
-    what: &'static str,
-    data: Option<&FaceVarying<[f32; N]>>,
-    corners: usize,
-) -> Result<(), MeshError> {
-    let Some(FaceVarying { values, indices }) = data else { return Ok(()) };
-    if indices.len() != corners {
-        return Err(MeshError::CornerCount { what, given: indices.len(), corners });
-    }
-    if let Some(corner) = indices.iter().position(|&i| i as usize >= values.len()) {
-        return Err(MeshError::CornerIndex { what, corner, index: indices[corner], count: values.len() });
-    }
-    if let Some(index) = values.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
-        return Err(MeshError::AttributeNotFinite { what, index });
-    }
-    Ok(())
-}
-
-fn check_tags(data: &MeshData) -> Result<(), MeshError> {
-    for (index, corner) in data.corners.iter().enumerate() {
-        if corner.vertex as usize >= data.positions.len() {
-            let count = data.positions.len();
-            return Err(MeshError::NoSuchVertex { corner: index, vertex: corner.vertex, count });
-        }
-        check_sharpness("corner", index, corner.sharpness)?;
-    }
-    for &face in &data.holes {
-        if face as usize >= data.face_sizes.len() {
-            return Err(MeshError::NoSuchFace { face, count: data.face_sizes.len() });
-        }
-    }
-    Ok(())
-}
-
 /// Crease sharpness by half-edge. Of several creases for one edge the last counts.
 fn edge_sharpness(data: &MeshData, face_offsets: &[u32], twins: &[u32]) -> Result<Vec<f32>, MeshError> {
     let mut sharpness = vec![0.0; if data.creases.is_empty() { 0 } else { twins.len() }];
@@ -394,9 +301,4 @@ fn vertex_sharpness(data: &MeshData) -> Vec<f32> {
         sharpness[corner.vertex as usize] = corner.sharpness;
     }
     sharpness
-}
-
-fn check_sharpness(what: &'static str, index: usize, sharpness: f32) -> Result<(), MeshError> {
-    // Not `sharpness < 0.0`: NaN is bad too.
-    if sharpness >= 0.0 { Ok(()) } else { Err(MeshError::BadSharpness { what, index, sharpness }) }
 }

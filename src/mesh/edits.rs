@@ -30,8 +30,9 @@ pub struct Edit {
     pub change: Change,
 }
 
-/// What an edit does.
+/// Change that an edit makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Change {
     /// Moves a corner of the face by an offset, in object space.
     Offset {

@@ -1,6 +1,7 @@
 //! Control meshes: what they are, how they are checked, and how files and built-in shapes become one; repair of what is not.
 
 mod adjacency;
+mod check;
 mod control_mesh;
 mod edits;
 mod error;
@@ -14,7 +15,7 @@ mod rules;
 mod shapes;
 pub mod write;
 
-pub(crate) use control_mesh::MAX_CORNERS;
+pub(crate) use check::MAX_CORNERS;
 pub use control_mesh::{ControlMesh, Corner, Crease, FaceVarying, MeshData, SHARPNESS_INFINITE};
 pub use edits::{Change, Edit, MAX_EDIT_LEVEL};
 pub use error::MeshError;

@@ -3,7 +3,7 @@
 use crate::named::named;
 
 named! {
-    /// What a boundary of the mesh does to the surface.
+    /// Rule of the surface at boundaries.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub enum BoundaryRule {
         /// Faces that touch the boundary shape the surface but are not drawn.
@@ -61,6 +61,7 @@ named! {
 named! {
     /// A package, by the rules that a mesh has there if nobody chooses others.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    #[non_exhaustive]
     pub enum Package {
         /// The Subdivision Surface modifier: smooth boundaries with their corners, texture coordinates that keep boundaries.
         ///
@@ -93,7 +94,7 @@ named! {
 }
 
 impl Package {
-    /// What boundaries do to the surface; `None` where it is not documented.
+    /// Rule of the surface at boundaries; `None` where it is not documented.
     pub fn boundary(self) -> Option<BoundaryRule> {
         match self {
             Self::Blender => Some(BoundaryRule::EdgeOnly),

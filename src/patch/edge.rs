@@ -1,4 +1,4 @@
-//! What the two patches at an edge share: its curve and one normal along it, from data of the edge alone
+//! Shared data of the two patches at an edge: its curve and one normal along it, from data of the edge alone
 //! (patch_maths B, "One normal an edge").
 //!
 //! From either end the sums are the same to the bit, but for the sign of those that point along the edge or across it.

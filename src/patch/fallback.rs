@@ -2,8 +2,9 @@
 
 use super::scheme::Scheme;
 
-/// What becomes of faces that a scheme has no patches for.
+/// Replacement for patches that a scheme does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum Fallback {
     /// The mesh is refused, and the first such face named ([`Undefined`](super::Undefined)).
     #[default]

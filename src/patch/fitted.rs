@@ -50,7 +50,7 @@ use crate::topology::RingKind;
 /// The numbers that [`fitted`](self) patches are made with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fit {
-    /// Of the length of tangents: by c, by c^2, by the share of triangles.
+    /// Factors of the length of tangents: by c, by c^2, by the share of triangles.
     pub tangent: [f64; 3],
     /// How far the transversal is lifted off the tangent plane: by c, by c^2.
     pub lift: [f64; 2],

@@ -153,39 +153,42 @@ pub fn pm_points<T: Blend>(corners: &[PatchCorner<T>]) -> Vec<T> {
         centre.add_scaled(3.0 / all, &e[k][1]);
         centre.add_scaled(9.0 / all, &f[k]);
     }
-    let b112 = |i: usize| {
-        let (next, before) = ((i + 1) % m, (i + m - 1) % m);
-        if m == 3 {
-            // `before` is the corner opposite the sector.
-            return T::sum([
-                (1.5, &centre),
-                (-1.0 / 12.0, v[before]),
-                (-1.0 / 24.0, &t[before][0]),
-                (-1.0 / 24.0, &t[before][1]),
-                (-1.0 / 6.0, &b211[before]),
-                (-1.0 / 6.0, &b121[next]),
-            ]);
-        }
-        let opposite = (i + 2) % m;
-        T::sum([
-            (1.0, &centre),
-            (3.0 / 16.0, &b211[i]),
-            (3.0 / 16.0, &b121[i]),
-            (-3.0 / 16.0, &b121[next]),
-            (-3.0 / 16.0, &b211[before]),
-            (1.0 / 16.0, &b211[next]),
-            (1.0 / 16.0, &b121[before]),
-            (-1.0 / 16.0, &b121[opposite]),
-            (-1.0 / 16.0, &b211[opposite]),
-        ])
-    };
     let b112: Vec<T> = if m == 5 {
         let b202 = |k: usize| pm_b202(m, v[k], &t[k], &b211[k], &b121[(k + m - 1) % m]);
         pm_centre_of_pentagon(&centre, &(0..m).map(b202).collect::<Vec<_>>(), &b211, &b121)
     } else {
-        (0..m).map(b112).collect()
+        (0..m).map(|i| pm_inner(i, &centre, &v, &t, &b211, &b121)).collect()
     };
     v.into_iter().cloned().chain(t.into_iter().flatten()).chain(b211).chain(b121).chain(b112).collect()
+}
+
+/// The point b112 of sector `i` of a triangle or a quad, from the centre, the corners `v`, their tangent points `t`, and b211 and b121.
+fn pm_inner<T: Blend>(i: usize, centre: &T, v: &[&T], t: &[[T; 2]], b211: &[T], b121: &[T]) -> T {
+    let m = v.len();
+    let (next, before) = ((i + 1) % m, (i + m - 1) % m);
+    if m == 3 {
+        // `before` is the corner opposite the sector.
+        return T::sum([
+            (1.5, centre),
+            (-1.0 / 12.0, v[before]),
+            (-1.0 / 24.0, &t[before][0]),
+            (-1.0 / 24.0, &t[before][1]),
+            (-1.0 / 6.0, &b211[before]),
+            (-1.0 / 6.0, &b121[next]),
+        ]);
+    }
+    let opposite = (i + 2) % m;
+    T::sum([
+        (1.0, centre),
+        (3.0 / 16.0, &b211[i]),
+        (3.0 / 16.0, &b121[i]),
+        (-3.0 / 16.0, &b121[next]),
+        (-3.0 / 16.0, &b211[before]),
+        (1.0 / 16.0, &b211[next]),
+        (1.0 / 16.0, &b121[before]),
+        (-1.0 / 16.0, &b121[opposite]),
+        (-1.0 / 16.0, &b211[opposite]),
+    ])
 }
 
 /// A quad at (u, v).

@@ -13,6 +13,7 @@ use crate::topology::{PatchKind, RingKind, Topology};
 named! {
     /// A way to approximate the Catmull-Clark surface by patches, one a face.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+    #[non_exhaustive]
     pub enum Scheme {
         /// Gregory patches for irregular faces ([`gregory`]): quads and triangles, boundaries, G1 everywhere.
         #[default]
@@ -39,12 +40,12 @@ pub struct Undefined {
     pub scheme: Scheme,
     /// The face, of the mesh that patches are made of.
     pub face: u32,
-    /// What the face is, in the plural.
+    /// Kind of the face, in the plural.
     pub what: &'static str,
 }
 
 impl Scheme {
-    /// Tells whether the scheme has a patch for a face, and of which kind.
+    /// Kind of the patch that the scheme has for a face.
     ///
     /// # Errors
     /// [`Undefined`] says why it has none.
@@ -77,7 +78,7 @@ impl Scheme {
         matches!(self, Self::Gregory | Self::GregoryFitted)
     }
 
-    /// How many control points each corner of a patch owns.
+    /// Control points that each corner of a patch owns.
     pub fn owned(self, kind: PatchKind) -> usize {
         match (kind, self) {
             (PatchKind::Regular, _) => 4,
@@ -87,7 +88,7 @@ impl Scheme {
         }
     }
 
-    /// How many control points a patch has. Each is owned by one corner.
+    /// Control points of a patch. One corner owns each.
     pub fn points(self, kind: PatchKind) -> usize {
         kind.corners() * self.owned(kind)
     }
@@ -106,7 +107,7 @@ impl Scheme {
         }
     }
 
-    /// What the shaders keep of the control points that a corner of a patch owns ([`Scheme::corner_slots`]). Where the scheme
+    /// Values that the shaders keep of the control points that a corner of a patch owns ([`Scheme::corner_slots`]). Where the scheme
     /// [shares the frame](Scheme::shares_frame), after the limit point: the edge points as seen from there; of quads, the inner
     /// point as seen from where these two lead to one after the other, of triangles as seen from the limit point; of Gregory
     /// patches, the way from that inner point to the other.
@@ -126,8 +127,8 @@ impl Scheme {
         [p.clone(), seen(plus), seen(minus), first].into_iter().chain(last).collect()
     }
 
-    /// What the first stage of the two-stage construction makes of a one-ring. For regular rings it is the same in all
-    /// schemes, and so it is where some of the faces fall back ([`RingShape::fallback`](super::RingShape::fallback)).
+    /// Tangent frame that the first stage of the two-stage construction makes of a one-ring. Regular rings have the same in all
+    /// schemes, and so have all where some of the faces fall back ([`RingShape::fallback`](super::RingShape::fallback)).
     pub fn frame<T: Blend>(self, ring: &RingValues<T>) -> Frame<T> {
         match self {
             _ if ring.shape.fallback => ring.frame(),

@@ -1,15 +1,16 @@
 //! What tables are built for.
 
 use super::Sharing;
+#[cfg(doc)]
+use crate::Spacing;
 use crate::adaptive::{AdaptiveOptions, DrawnBy};
 use crate::named::named;
 use crate::patch::{Fallback, Scheme};
-#[cfg(doc)]
-use crate::{Spacing, renderer::ModelOptions};
 
 named! {
     /// How the control points are made on the GPU. All give the same points but for rounding.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Construction {
         /// The vertex shader turns each control vertex and its one-ring into limit point and tangents, the control shader
         /// assembles the patch. The smaller tables.
@@ -28,20 +29,21 @@ named! {
     /// What evaluates the patches.
     ///
     /// All but the tessellation stages and subdivision evaluate on a lattice with the same number of segments along every edge,
-    /// from 1 to 1024: they are for [`Spacing::Equal`] and [`Factor::Uniform`](crate::renderer::Factor::Uniform), or for factors of edges
-    /// ([`ModelOptions::edge_factors`]) of which the largest holds inside patches. Where patches share positions to the last bit, they
-    /// do so here; for normals and displacement see [`Evaluation::shares`], for patches that are left out [`Evaluation::culls`].
+    /// from 1 to 1024, or with factors of edges ([`TableOptions::edge_factors`]) of which the largest holds inside patches: they are for
+    /// [`Spacing::Equal`], and for [`Factor::Segments`](crate::tessellate::Factor::Segments) where [`Evaluation::needs_segments`]. Where patches share positions to the last bit, they
+    /// do so here; for normals and displacement see [`Evaluation::shares`], for culling [`Evaluation::culls`].
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
     pub enum Evaluation {
         /// The tessellation stages, in each draw anew.
         #[default]
         Tessellation = "tessellation",
         /// A compute shader, once a frame in which the vertices or the segments changed
-        /// ([`Renderer::set_segments`](crate::renderer::Renderer::set_segments)). Draws are of indexed triangles. Takes memory for the vertices,
+        /// (`Renderer::set_segments`). Draws are of indexed triangles. Takes memory for the vertices,
         /// and pays where a model is drawn in several passes or stands still.
         Compute = "compute",
         /// The vertex shader, in each draw anew: one lattice of indexed triangles is instanced over the patches (the Direct3D 10
-        /// path of Loop et al. 2009). Its segments are those of [`Renderer::set_segments`](crate::renderer::Renderer::set_segments).
+        /// path of Loop et al. 2009). Its segments are those of `Renderer::set_segments`.
         Instanced = "instanced",
         /// The geometry shader, in each draw anew: it makes the control points and emits the patch as strips of triangles.
         Geometry = "geometry",
@@ -49,7 +51,7 @@ named! {
         /// they are evaluated as by [`Evaluation::Instanced`]. Needs no queue that computes.
         GeometryTwoPass = "geometry-two-pass",
         /// No patches: a geometry shader subdivides each face by the Catmull-Clark rules, straight from the control vertices, in each
-        /// draw anew (Antal et al. 2007). The [`Factor`](crate::renderer::Factor) is `Uniform`: 1, 2, 4 or 8 segments along every edge, for 0
+        /// draw anew (Antal et al. 2007). The [`Factor`](crate::tessellate::Factor) is `Uniform`: 1, 2, 4 or 8 segments along every edge, for 0
         /// to 3 levels. Vertices are those of the refined mesh, not limit points, with the normals of limit points; creases and
         /// corners of finite sharpness are followed as far as the levels go. Neighbouring faces share positions to the bit.
         ///
@@ -77,13 +79,13 @@ impl Evaluation {
         }
     }
 
-    /// Whether draws can leave out patches ([`Cull`](crate::renderer::Cull)): by
-    /// [`Renderer::cmd_cull`](crate::renderer::Renderer::cmd_cull), the tessellation stages by themselves, too.
+    /// Whether draws can cull patches ([`Cull`](crate::tessellate::Cull)): by `Renderer::cmd_cull`, the tessellation stages by themselves,
+    /// too.
     pub fn culls(self) -> bool {
         matches!(self, Self::Tessellation | Self::Instanced)
     }
 
-    /// Whether [`Renderer::set_segments`](crate::renderer::Renderer::set_segments) has to say how many segments edges have.
+    /// Whether the segments of edges have to be set before the draw, by `Renderer::set_segments`.
     pub fn needs_segments(self) -> bool {
         matches!(self, Self::Compute | Self::Instanced | Self::GeometryTwoPass)
     }

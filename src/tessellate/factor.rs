@@ -7,6 +7,7 @@ use crate::constants::{METRIC_CURVATURE, METRIC_EDGES, METRIC_PIXELS, METRIC_UNI
 /// of those of opposite edges. Factors are kept from 1 to what the device has (64 at least). With
 /// [`Spacing::FractionalOdd`](crate::Spacing::FractionalOdd) or `FractionalEven` nothing pops when they change.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Factor {
     /// This for every edge and inside.
     Uniform(f32),
@@ -18,6 +19,9 @@ pub enum Factor {
     Curvature(f32),
     /// Those of [`Renderer::set_edge_factors`](crate::renderer::Renderer::set_edge_factors), times this.
     Edges(f32),
+    /// The model's own segments ([`Renderer::set_segments`](crate::renderer::Renderer::set_segments)), where
+    /// [`Evaluation::needs_segments`](crate::renderer::Evaluation::needs_segments).
+    Segments,
 }
 
 impl From<f32> for Factor {
@@ -27,10 +31,11 @@ impl From<f32> for Factor {
 }
 
 impl Factor {
-    /// The number in it.
+    /// Number in it; 1 in [`Factor::Segments`].
     pub fn value(self) -> f32 {
         match self {
             Self::Uniform(x) | Self::Pixels(x) | Self::Curvature(x) | Self::Edges(x) => x,
+            Self::Segments => 1.0,
         }
     }
 
@@ -50,7 +55,7 @@ impl Factor {
     /// Its number in a draw's flags.
     pub(crate) fn metric(self) -> u32 {
         match self {
-            Self::Uniform(_) => METRIC_UNIFORM,
+            Self::Uniform(_) | Self::Segments => METRIC_UNIFORM,
             Self::Pixels(_) => METRIC_PIXELS,
             Self::Curvature(_) => METRIC_CURVATURE,
             Self::Edges(_) => METRIC_EDGES,
@@ -58,20 +63,20 @@ impl Factor {
     }
 }
 
-/// Which patches are left out: by the control shader, or before by compute ([`Renderer::cmd_cull`](crate::renderer::Renderer::cmd_cull)). No
+/// Patches that are culled: by the control shader, or before by compute ([`Renderer::cmd_cull`](crate::renderer::Renderer::cmd_cull)). No
 /// choice changes the factors of the patches that stay.
 ///
-/// Pm- and c-patches are never left out, triangles only by the frustum and as small.
+/// Pm- and c-patches are never culled, triangles only by the frustum and as small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Cull {
-    /// Those beyond a plane of the view frustum; their hull grows by what displacement can move them.
+    /// Patches beyond a plane of the view frustum; their hull grows by what displacement can move them.
     pub frustum: bool,
-    /// Those all of whose triangles face away: those that the style leaves out ([`Style::cull`](crate::renderer::Style::cull)), so that the
-    /// picture is the same; or, if it leaves out none, those whose inside is seen, which are hidden if the surface is closed. Of more
-    /// of them that can be told where patches are cut finely. Not done where the surface is displaced, nor in parallel
+    /// Patches all of whose triangles face away: as the style culls triangles ([`Style::cull`](crate::renderer::Style::cull)), so that the
+    /// picture is the same; or, if it culls none, patches whose inside is seen, which are hidden if the surface is closed. More are found where
+    /// patches have many segments. Not done where the surface is displaced, nor in parallel
     /// projections. Views that mirror say so ([`View::mirrored`](crate::renderer::View::mirrored)).
     pub back: bool,
-    /// Those between the centres of pixels. For one sample a pixel, and filled triangles. Needs
+    /// Patches between the centres of pixels. For one sample a pixel, and filled triangles. Needs
     /// [`View::viewport`](crate::renderer::View::viewport). Not done where the surface is displaced.
     pub small: bool,
 }

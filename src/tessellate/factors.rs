@@ -108,6 +108,7 @@ impl MeasuredDraw {
         match self.factor {
             Factor::Uniform(factor) => factor,
             Factor::Edges(factor) => factor * of_corners[k],
+            Factor::Segments => 1.0,
             Factor::Pixels(_) | Factor::Curvature(_) => {
                 self.edge_factor(owned[k][0], owned[k][1], owned[next][2], owned[next][0])
             }

@@ -29,7 +29,7 @@ impl PatchKind {
         }
     }
 
-    /// How many patches of the kind make a face.
+    /// Patches of the kind per face.
     pub fn pieces(self) -> u32 {
         if self == Self::Pentagon { 5 } else { 1 }
     }
@@ -55,7 +55,7 @@ impl Topology {
     }
 }
 
-/// Tells for every face whether it is drawn: it is no hole and, under [`BoundaryRule::None`], touches no boundary but edges that
+/// Whether each face is drawn: a drawn face is no hole and, under [`BoundaryRule::None`], touches no boundary but edges that
 /// are tagged infinitely sharp.
 pub fn draws_face(topology: &Topology) -> Vec<bool> {
     let mesh = topology.mesh();

@@ -48,7 +48,7 @@ impl Topology {
         self.mesh.vertex_count() + self.split_sources.len()
     }
 
-    /// How many vertices splitting added.
+    /// Vertices that splitting added.
     pub fn split_count(&self) -> usize {
         self.split_sources.len()
     }

@@ -28,10 +28,10 @@ impl Topology {
     }
 }
 
-/// What the walk finds, beside the topology it reads.
+/// Walk around vertices: the topology that is read, and the rings found.
 struct RingBuilder<'t> {
     topology: &'t Topology,
-    /// How many faces there are at each mesh vertex.
+    /// Faces per mesh vertex.
     faces_at: Vec<u32>,
     found: Found,
 }

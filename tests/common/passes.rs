@@ -2,8 +2,9 @@
 //! without one.
 
 use ash::vk;
-use ash_subdiv::gpu::{Buffer, BufferDesc, Image, ImageDesc, MemoryLocation};
+use ash_subdiv::gpu::MemoryLocation;
 use ash_subdiv::headless::Headless;
+use ash_subdiv::headless::objects::{Buffer, BufferDesc, Image, ImageDesc};
 use ash_subdiv::renderer::Target;
 
 const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;

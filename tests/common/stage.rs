@@ -1,8 +1,10 @@
 //! A small picture with renderers for it, and the vertices that compute evaluates.
 
 use ash::vk;
-use ash_subdiv::gpu::{Buffer, BufferDesc, MemoryLocation};
+use ash_subdiv::gpu::MemoryLocation;
+use ash_subdiv::headless::objects::{Buffer, BufferDesc};
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
+use ash_subdiv::renderer::{Evaluation, Factor};
 use ash_subdiv::{DrawItem, Error, Frame, ModelId, Options, Renderer, Target, View};
 
 /// A picture, and a renderer for it.
@@ -75,4 +77,13 @@ pub fn read_vertices(headless: &Headless, renderer: &Renderer, model: ModelId) -
     let copy = |cmd| unsafe { device.cmd_copy_buffer(cmd, vertices.buffer, buffer.raw(), &[region]) };
     headless.submit(copy).expect("a copy");
     buffer.read(0, size as usize / 4).expect("as many words")
+}
+
+/// The factor of draws of a model with `n` segments along every edge, which are set where they have to be.
+pub fn with_segments(renderer: &mut Renderer, model: ModelId, evaluation: Evaluation, n: u32) -> Factor {
+    if !evaluation.needs_segments() {
+        return Factor::Uniform(n as f32);
+    }
+    renderer.set_segments(model, n).expect("segments");
+    Factor::Segments
 }

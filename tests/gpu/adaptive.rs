@@ -4,25 +4,24 @@
 use crate::common;
 use crate::common::edges::edge_points;
 use crate::common::stage::Stage;
-use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors, CapturedVertex, Which};
-use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
+use ash_subdiv::headless::{Headless, OffscreenDesc, Texels, Texture};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, ModelTables};
 use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Error, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style,
-    Target, View, shape,
+    Construction, ControlMesh, DrawItem, Error, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Target,
+    View, shape,
 };
 use glam::{DVec3, Mat4, Vec3};
 use std::collections::HashMap;
 
-const SIDE: u32 = 256;
+pub const SIDE: u32 = 256;
 
-fn view(mesh: &ControlMesh, towards: [f32; 3]) -> View {
+pub fn view(mesh: &ControlMesh, towards: [f32; 3]) -> View {
     View::framing(mesh.bounds(), towards, 1.0).sized(SIDE, SIDE)
 }
 
 /// From near by, with much of the mesh out of the picture.
-fn close_view(mesh: &ControlMesh) -> View {
+pub fn close_view(mesh: &ControlMesh) -> View {
     let [low, high] = mesh.bounds().map(|corner| corner.as_vec3());
     let (middle, radius) = ((low + high) / 2.0, (high - low).length() / 2.0);
     let eye = middle + Vec3::new(0.4, 0.3, 1.0) * (2.0 * radius);
@@ -139,146 +138,6 @@ fn have_one_factor(headless: &Headless, mesh: &ControlMesh, scheme: Scheme, cons
             assert_eq!(culled > enough, cull != Cull::NONE, "{scheme:?}: {culled} of {}", factors.len());
         }
     }
-}
-
-fn back_style() -> Style {
-    Style { cull: vk::CullModeFlags::BACK, ..Style::default() }
-}
-
-/// How many pixels change in each view when patches are left out of a model with this transform, and how much of all vertices is
-/// left out.
-fn missed(
-    headless: &Headless,
-    mesh: &ControlMesh,
-    views: &[View],
-    cull: Cull,
-    transform: Mat4,
-    style: Style,
-    displaced: Option<&Texture>,
-) -> (Vec<usize>, f64) {
-    let desc = OffscreenDesc::new(SIDE, SIDE);
-    let target = Offscreen::new(headless, &desc).expect("a target");
-    let options = Options { styles: vec![style], ..Options::default() };
-    let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
-    // SAFETY: the texture outlives the renderer, and every submission is waited for.
-    let mut renderer = unsafe { Renderer::new(headless.context(), &render_target, &options) }.expect("a renderer");
-    // SAFETY: likewise.
-    let displacement = displaced.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
-    let model_options = ModelOptions { displacement, ..ModelOptions::default() };
-    let model = renderer.add_model(mesh, &model_options).expect("a model");
-    let transform = transform.to_cols_array_2d();
-    let all = DrawItem { transform, displacement: [0.1, 0.0], ..DrawItem::new(model, 6.0) };
-    let mut picture = |view: &View, cull: Cull| {
-        let item = DrawItem { cull, ..all };
-        // SAFETY: outside rendering, then inside; every submission is waited for.
-        let frame = unsafe { renderer.begin_frame() };
-        // SAFETY: likewise.
-        let counted = headless.counted(|cmd| unsafe {
-            renderer.cmd_prepare(cmd, frame)?;
-            target.cmd_begin(cmd, [0.0; 4]);
-            renderer.cmd_draw(cmd, frame, view, &[item])?;
-            target.cmd_end(cmd);
-            Ok::<_, Error>(())
-        });
-        let vertices = counted.expect("counts").evaluation_invocations;
-        // SAFETY: inside.
-        let draw = target.draw(headless, [0.0; 4], |cmd| unsafe { renderer.cmd_draw(cmd, frame, view, &[item]) });
-        (draw.expect("a picture"), vertices as f64)
-    };
-    let (mut drawn, mut whole) = (0.0, 0.0);
-    let pixels = |view: &View| {
-        let [(all, of_all), (culled, of_culled)] = [Cull::NONE, cull].map(|cull| picture(view, cull));
-        (drawn, whole) = (drawn + of_culled, whole + of_all);
-        all.chunks(4).zip(culled.chunks(4)).filter(|(a, b)| a != b).count()
-    };
-    let pixels = views.iter().map(pixels).collect();
-    (pixels, 1.0 - drawn / whole)
-}
-
-#[test]
-fn what_is_left_out_is_not_missed() {
-    let headless = common::headless();
-    let texels = Texels::open("assets/scales.png", false).expect("the built-in height map");
-    let texture = Texture::new(&headless, "scales", &texels).expect("a texture");
-    for name in ["creature", "machine-part", "valences"] {
-        let mesh = shape(name).expect("built in");
-        let views = [view(&mesh, [-0.6, 0.5, 1.0]), view(&mesh, [0.2, -1.0, 0.1]), close_view(&mesh)];
-        for displaced in [None, Some(&texture)] {
-            let (missed, _) = missed(&headless, &mesh, &views, Cull::ALL, Mat4::IDENTITY, back_style(), displaced);
-            assert_eq!(missed, [0; 3], "{name} displaced {}", displaced.is_some());
-        }
-        let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
-        let count = |view, cull| {
-            let factors = captured.factors(&CaptureDraw { view, cull, ..CaptureDraw::new(6.0) }).expect("a capture");
-            (factors.iter().filter(|f| f.culled).count(), factors.len())
-        };
-        // Not all that could be left out is, but much.
-        let (back, all) = count(view(&mesh, [-0.6, 0.5, 1.0]), Cull { back: true, ..Cull::NONE });
-        assert!(10 * back > all, "{name}: {back} of {all}");
-        let (outside, all) = count(close_view(&mesh), Cull { frustum: true, ..Cull::NONE });
-        assert!(5 * outside > all, "{name}: {outside} of {all}");
-    }
-    drop(texture);
-    headless.finish_silent();
-}
-
-/// All around, evenly and in no line with any axis: of the n-th of `n` on a spiral from pole to pole.
-fn around(n: usize) -> impl Iterator<Item = [f32; 3]> {
-    (0..n).map(move |i| {
-        let height = 1.0 - (2.0 * i as f32 + 1.0) / n as f32;
-        let (sine, cosine) = (2.4 * i as f32 + 0.3).sin_cos();
-        let across = (1.0 - height * height).sqrt();
-        [across * cosine, height, across * sine]
-    })
-}
-
-#[test]
-fn what_faces_away_is_left_out() {
-    let back = Cull { back: true, ..Cull::NONE };
-    let turned = Mat4::from_scale_rotation_translation(
-        Vec3::new(-0.7, 1.2, 0.9),
-        glam::Quat::from_rotation_y(0.5),
-        Vec3::new(0.1, -0.05, 0.0),
-    );
-    let headless = common::headless();
-    // At most a third of the creature's patches face away as a whole. Half of the mixed one's are triangles, which stay.
-    for (name, least) in [("creature", 0.25), ("creature-mixed", 0.1), ("torus", 0.25), ("cube", 0.0)] {
-        let mesh = shape(name).expect("built in");
-        let views: Vec<View> = around(12).map(|towards| view(&mesh, towards)).collect();
-        // What a style leaves out, in a mirror, too; and what is hidden, if it leaves out nothing.
-        let (clockwise, both) = (vk::FrontFace::CLOCKWISE, Style::default());
-        let front = Style { cull: vk::CullModeFlags::FRONT, ..both.clone() };
-        let mirrored = |view: &View| {
-            let mirror = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * Mat4::from_cols_array_2d(&view.view_projection);
-            View { view_projection: mirror.to_cols_array_2d(), mirrored: true, ..*view }
-        };
-        let views_of_both = [views.clone(), views[..3].iter().map(mirrored).collect()];
-        for style in [back_style(), Style { front_face: clockwise, ..back_style() }, front, both] {
-            for transform in [Mat4::IDENTITY, turned] {
-                for views in &views_of_both {
-                    let (missed, share) = missed(&headless, &mesh, views, back, transform, style.clone(), None);
-                    let what = format!("{name}, {transform}, {style:?}, mirrored {}", views[0].mirrored);
-                    assert_eq!(missed, vec![0; views.len()], "{what}");
-                    assert!(share >= 0.8 * least, "{what}: {share}");
-                }
-            }
-        }
-        let captured = Captured::new(&headless, &mesh, &ModelOptions::default()).expect("a model");
-        let vertices = captured.vertices(6.0).expect("a capture");
-        let (mut left_out, mut all) = (0, 0);
-        for view in views {
-            let draw = CaptureDraw { view, cull: back, ..CaptureDraw::new(6.0) };
-            let culled: Vec<bool> = captured.factors(&draw).expect("a capture").iter().map(|f| f.culled).collect();
-            left_out += culled.iter().filter(|&&culled| culled).count();
-            all += culled.len();
-            for v in vertices.iter().filter(|v| culled[v.patch as usize]) {
-                let to_eye = (Vec3::from(view.eye) - Vec3::from(v.position)).normalize();
-                assert!(Vec3::from(v.normal).dot(to_eye) < 1e-4, "{name}: {v:?} faces the eye");
-            }
-        }
-        assert!(left_out as f64 >= least * all as f64, "{name}: {left_out} of {all}");
-    }
-    headless.finish_silent();
 }
 
 /// By patch and parameters.

@@ -1,23 +1,17 @@
 //! Evaluation by compute: when it happens, and what evaluations say when they are used wrongly.
 
-use crate::common::stage::{Stage, begin, read_vertices};
+use crate::common::stage::{Stage, begin, read_vertices, with_segments};
 use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError};
 use ash_subdiv::renderer::{Evaluation, Factor, MemoryUsage, ModelTables};
 use ash_subdiv::topology::Topology;
 use ash_subdiv::{
-    Construction, DeviceContext, DrawItem, Error, Fallback, ModelOptions, Options, Renderer, Scheme, Spacing, Style,
-    Target, View, requirements, shape,
+    Construction, DeviceContext, DrawItem, Error, Fallback, ModelId, ModelOptions, Options, Renderer, Scheme, Spacing,
+    Style, Target, View, requirements, shape,
 };
 use std::sync::Arc;
 
 fn compute(scheme: Scheme) -> ModelOptions {
-    ModelOptions {
-        scheme,
-        fallback: Fallback::Gregory,
-        construction: Construction::Cached,
-        evaluation: Evaluation::Compute,
-        ..ModelOptions::default()
-    }
+    ModelOptions { scheme, fallback: Fallback::Gregory, ..ModelOptions::evaluated(Evaluation::Compute) }
 }
 
 #[test]
@@ -30,8 +24,8 @@ fn vertices_follow_positions_and_segments() {
     let model = renderer.add_model(&mesh, &compute(Scheme::Gregory)).expect("a model");
     let tessellated = ModelOptions { construction: Construction::Cached, ..ModelOptions::default() };
     let tessellated = renderer.add_model(&mesh, &tessellated).expect("a model");
-    let picture = |renderer: &mut Renderer, frame, model, n: f32| {
-        stage.draw(renderer, frame, &[DrawItem::new(model, n)]).expect("a picture")
+    let picture = |renderer: &mut Renderer, frame, (model, factor): (ModelId, Factor)| {
+        stage.draw(renderer, frame, &[DrawItem::new(model, factor)]).expect("a picture")
     };
     let small: Vec<_> = mesh.positions_f32().iter().map(|p| p.map(|x| 0.5 * x)).collect();
     renderer.set_segments(model, 4).unwrap();
@@ -47,7 +41,8 @@ fn vertices_follow_positions_and_segments() {
         let vertices = renderer.evaluated_vertices(model).unwrap().unwrap();
         assert_eq!((vertices.segments, vertices.stride), (n, 32));
         assert_eq!(vertices.size, u64::from(patches * 32 * (n + 1) * (n + 1)));
-        let [a, b] = [model, tessellated].map(|model| picture(&mut renderer, frame, model, n as f32));
+        let both = [(model, Factor::Segments), (tessellated, Factor::Uniform(n as f32))];
+        let [a, b] = both.map(|drawn| picture(&mut renderer, frame, drawn));
         let differ = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
         assert!(a.iter().any(|&x| x > 0) && differ == 0, "{n} in {frame:?}: {differ}");
     }
@@ -100,7 +95,7 @@ fn counts<const FRAMES: usize>(options: &ModelOptions, changes: [Change; FRAMES]
             renderer.cmd_prepare(cmd, frame)?;
             for _ in 0..3 {
                 stage.target.cmd_begin(cmd, [0.0; 4]);
-                renderer.cmd_draw(cmd, frame, &view, &[DrawItem::new(model, segments as f32)])?;
+                renderer.cmd_draw(cmd, frame, &view, &[DrawItem::new(model, Factor::Segments)])?;
                 stage.target.cmd_end(cmd);
             }
             Ok::<_, Error>(())
@@ -141,10 +136,7 @@ fn two_passes_can_be_counted_after_other_geometry_shaders() {
     for evaluation in evaluations {
         let model =
             renderer.add_model(&mesh, &ModelOptions { evaluation, ..compute(Scheme::Gregory) }).expect("a model");
-        if evaluation.needs_segments() {
-            renderer.set_segments(model, 2).unwrap();
-        }
-        let item = DrawItem::new(model, 2.0);
+        let item = DrawItem::new(model, with_segments(&mut renderer, model, evaluation, 2));
         let frame = begin(&mut renderer);
         // SAFETY: outside rendering, then inside; the submission is waited for.
         let counted = stage.headless.counted(|cmd| unsafe {
@@ -227,7 +219,7 @@ fn wrong_use_is_told() {
     let other = renderer.add_model(&mesh, &ModelOptions::default()).unwrap();
     assert_eq!(
         text(renderer.set_segments(other, 4).unwrap_err()),
-        "model 1: Evaluation::Tessellation takes its segments from DrawItem::factor: set_segments is for others"
+        "model 1: Evaluation::Tessellation takes its segments from DrawItem::factor: set_segments and Factor::Segments are for others"
     );
     assert_eq!(
         text(renderer.evaluated_vertices(other).unwrap_err()),
@@ -237,7 +229,7 @@ fn wrong_use_is_told() {
     let geometry = renderer.add_model(&mesh, &geometry).unwrap();
     assert_eq!(
         text(renderer.set_segments(geometry, 4).unwrap_err()),
-        "model 2: Evaluation::Geometry takes its segments from DrawItem::factor: set_segments is for others"
+        "model 2: Evaluation::Geometry takes its segments from DrawItem::factor: set_segments and Factor::Segments are for others"
     );
     for segments in [0, 1025] {
         let error = text(renderer.set_segments(model, segments).unwrap_err());
@@ -265,35 +257,47 @@ fn wrong_use_is_told() {
         "model 2: Pixels(2.0): Evaluation::Geometry has one factor for all edges: draw with a uniform one"
     );
     let draw = |renderer: &mut Renderer, frame, factor: Factor| draw_in(renderer, frame, model, factor);
-    let told = |factor: &str, n: u32| {
+    let own = |factor: &str, n: u32| {
         Err(format!(
-            "model 0: {factor}: its edges have {n} segments: call set_segments before cmd_prepare, and draw with that \
-             number as uniform factor (with Factor::Edges(1.0) if edges have factors of their own)"
+            "model {n}: {factor}: Evaluation::Compute has the segments of set_segments: draw with Factor::Segments"
         ))
     };
-    assert_eq!(draw(&mut renderer, frame, Factor::Uniform(4.0)), told("Uniform(4.0)", 0));
+    assert_eq!(draw(&mut renderer, frame, Factor::Uniform(4.0)), own("Uniform(4.0)", 0));
+    assert_eq!(
+        draw(&mut renderer, frame, Factor::Segments),
+        Err("model 0: no segments are set: call set_segments before cmd_prepare".into())
+    );
+    assert_eq!(
+        draw_in(&mut renderer, frame, geometry, Factor::Segments),
+        Err("model 2: Evaluation::Geometry takes its segments from DrawItem::factor: set_segments and Factor::Segments are for others".into())
+    );
     renderer.set_segments(model, 4).unwrap();
     assert_eq!(
-        draw(&mut renderer, frame, Factor::Uniform(4.0)),
+        draw(&mut renderer, frame, Factor::Segments),
         Err("model 0: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw".into())
     );
     // Never copied, and gone.
     renderer.set_segments(model, 3).unwrap();
     renderer.set_segments(model, 4).unwrap();
     let frame = stage.frame(&mut renderer);
-    assert!(draw(&mut renderer, frame, Factor::Uniform(3.5)).is_ok());
-    assert_eq!(draw(&mut renderer, frame, Factor::Uniform(5.0)), told("Uniform(5.0)", 4));
+    assert!(draw(&mut renderer, frame, Factor::Segments).is_ok());
+    assert_eq!(draw(&mut renderer, frame, Factor::Uniform(5.0)), own("Uniform(5.0)", 0));
     let of_edges = ModelOptions { edge_factors: true, ..compute(Scheme::Gregory) };
     let of_edges = renderer.add_model(&mesh, &of_edges).unwrap();
     renderer.set_segments(of_edges, 4).unwrap();
     let frame = stage.frame(&mut renderer);
-    assert!(draw_in(&mut renderer, frame, of_edges, Factor::Edges(1.0)).is_ok());
+    assert!(draw_in(&mut renderer, frame, of_edges, Factor::Segments).is_ok());
+    assert_eq!(draw_in(&mut renderer, frame, of_edges, Factor::Edges(1.0)), own("Edges(1.0)", 3));
+    let tiles = ModelOptions { edge_factors: true, evaluation: Evaluation::Geometry, ..compute(Scheme::Gregory) };
+    let tiles = renderer.add_model(&mesh, &tiles).unwrap();
+    let frame = stage.frame(&mut renderer);
+    assert!(draw_in(&mut renderer, frame, tiles, Factor::Edges(1.0)).is_ok());
     for factor in [Factor::Uniform(4.0), Factor::Edges(0.5)] {
         let told = format!(
-            "model 3: {factor:?}: Evaluation::Compute with edges that have factors of their own takes these as they are: \
+            "model 4: {factor:?}: Evaluation::Geometry with edges that have factors of their own takes these as they are: \
              draw with Factor::Edges(1.0)"
         );
-        assert_eq!(draw_in(&mut renderer, frame, of_edges, factor), Err(told));
+        assert_eq!(draw_in(&mut renderer, frame, tiles, factor), Err(told));
     }
     drop(renderer);
     stage.finish();

@@ -1,7 +1,7 @@
 //! Frames as an engine records them: some twice, some that are thrown away.
 
 use crate::common::random::Random;
-use crate::common::stage::{Stage, begin};
+use crate::common::stage::{Stage, begin, with_segments};
 use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::mesh::Crease;
 use ash_subdiv::renderer::{Evaluation, Factor};
@@ -42,10 +42,7 @@ fn preparing_a_frame_twice_does_no_harm() {
     let mut renderer = stage.renderer(&Options { frames_in_flight: 1, ..Options::default() });
     for options in ways() {
         let model = renderer.add_model(&mesh, &options).expect("a model");
-        if options.evaluation.needs_segments() {
-            renderer.set_segments(model, SEGMENTS).expect("segments");
-        }
-        let item = DrawItem::new(model, SEGMENTS as f32);
+        let item = DrawItem::new(model, with_segments(&mut renderer, model, options.evaluation, SEGMENTS));
         let view = Stage::view();
         let mut picture = |scale: Option<f32>| {
             let frame = begin(&mut renderer);
@@ -177,7 +174,11 @@ fn set_factors(renderer: &mut Renderer, of: &Expected, frame: Frame) {
 
 fn draw(stage: &Stage, renderer: &mut Renderer, frame: Frame, all: &[Expected]) -> Vec<u8> {
     let item = |(i, of): (usize, &Expected)| {
-        let factor = if of.way == 0 { Factor::Edges(1.0) } else { Factor::Uniform(SEGMENTS as f32) };
+        let factor = match ways()[of.way].evaluation {
+            _ if of.way == 0 => Factor::Edges(1.0),
+            evaluation if evaluation.needs_segments() => Factor::Segments,
+            _ => Factor::Uniform(SEGMENTS as f32),
+        };
         let at = glam::Vec3::new(0.8 * (i as f32 - 2.0), 0.0, 0.0);
         let transform = glam::Mat4::from_translation(at) * glam::Mat4::from_scale(glam::Vec3::splat(0.35));
         DrawItem { transform: transform.to_cols_array_2d(), ..DrawItem::new(of.model, factor) }
@@ -206,7 +207,7 @@ fn what_models_share_is_sent_after_all() {
     lose(&stage, &mut renderer, frame);
     renderer.remove_model(first).expect("a model");
     let frame = stage.frame(&mut renderer);
-    let pixels = stage.draw(&mut renderer, frame, &[DrawItem::new(second, SEGMENTS as f32)]).expect("a picture");
+    let pixels = stage.draw(&mut renderer, frame, &[DrawItem::new(second, Factor::Segments)]).expect("a picture");
     assert!(pixels.chunks(4).filter(|pixel| pixel[3] > 0).count() > 1000);
     drop(renderer);
     stage.finish();
@@ -241,7 +242,11 @@ fn a_model_takes_another_mesh() {
             let model = add(&soft);
             let meshes = [&soft, &half, &sharp, &other, &soft];
             let news: Vec<ModelId> = meshes.iter().map(|mesh| add(mesh)).collect();
-            let factor = if options.edge_factors { Factor::Edges(1.0) } else { Factor::Uniform(SEGMENTS as f32) };
+            let factor = match options.evaluation {
+                evaluation if evaluation.needs_segments() => Factor::Segments,
+                _ if options.edge_factors => Factor::Edges(1.0),
+                _ => Factor::Uniform(SEGMENTS as f32),
+            };
             for (i, (&mesh, &new)) in meshes.iter().zip(&news).enumerate() {
                 let frame = begin(&mut renderer);
                 // What a lost frame was to send is of tables that are gone.

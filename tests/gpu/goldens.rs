@@ -335,7 +335,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     });
     // SAFETY: the texture outlives the renderer.
     let displacement = texture.as_ref().map(|texture| unsafe { renderer.add_displacement(texture.into()) });
-    let Picture { scheme, spacing, factor, evaluation, .. } = *picture;
+    let Picture { scheme, spacing, mut factor, evaluation, .. } = *picture;
     let adaptive = picture.adaptive;
     let model_options = ModelOptions {
         construction,
@@ -350,6 +350,7 @@ fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_r
     let model = renderer.add_model(&mesh, &model_options).expect("a model");
     if evaluation.needs_segments() {
         renderer.set_segments(model, factor.value() as u32).expect("segments");
+        factor = Factor::Segments;
     }
     let [low, high] = mesh.bounds();
     let scale = picture.displacement.unwrap_or(0.0) * (high - low).length() as f32;

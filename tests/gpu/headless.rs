@@ -1,10 +1,10 @@
 //! The Vulkan base on a real device, with the validation layer listening: every test ends in `finish_silent`.
 
 use ash::vk;
-use ash_subdiv::gpu::{
-    Buffer, BufferDesc, ComputePipelineDesc, Domain, Features, GpuError, GraphicsPipelineDesc, Image, ImageDesc,
-    MemoryLocation, Owned, PatchDraw, Shader, Spacing, Specialization, VkResultExt, descriptor_set_layout,
-    pipeline_layout, tessellated_vertices,
+use ash_subdiv::gpu::{Features, GpuError, MemoryLocation, PatchDraw, Spacing};
+use ash_subdiv::headless::objects::{
+    Buffer, BufferDesc, ComputePipelineDesc, Domain, GraphicsPipelineDesc, Image, ImageDesc, Owned, Shader,
+    Specialization, VkResultExt, descriptor_set_layout, pipeline_layout, tessellated_vertices,
 };
 use ash_subdiv::headless::{Headless, HeadlessError, HeadlessOptions, Offscreen, OffscreenDesc, Statistics, devices};
 

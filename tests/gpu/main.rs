@@ -8,12 +8,14 @@ mod checks;
 #[path = "../common/mod.rs"]
 mod common;
 mod compute;
+mod culled_pictures;
 mod device_limits;
 mod example;
 mod frames;
 mod golden_files;
 mod goldens;
 mod headless;
+mod lattice_pictures;
 mod lattices;
 mod leaves;
 mod module;

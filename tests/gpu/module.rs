@@ -1,6 +1,7 @@
 //! The drop-in module as a caller uses it: frames in flight, moving and removed models, the caller's own shaders, and
 //! what it says when it is used wrongly.
 
+use crate::common::stage::with_segments;
 use ash::vk;
 use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::headless::{Headless, HeadlessOptions, Offscreen, OffscreenDesc};
@@ -191,18 +192,14 @@ fn adaptive_models_move_too() {
     for (evaluation, construction) in ways.into_iter().chain([(Evaluation::Compute, Construction::Cached)]) {
         let options = ModelOptions { adaptive, construction, evaluation, ..ModelOptions::default() };
         let [model, other] = [&mesh, &moved].map(|mesh| renderer.add_model(mesh, &options).unwrap());
-        if evaluation.needs_segments() {
-            for model in [model, other] {
-                renderer.set_segments(model, 6).unwrap();
-            }
-        }
+        let [factor, _] = [model, other].map(|model| with_segments(&mut renderer, model, evaluation, 6));
         let draw = |renderer: &mut Renderer, model, moved: Option<&ControlMesh>| {
             let frame = begin(renderer);
             if let Some(moved) = moved {
                 renderer.set_positions(model, frame, &moved.positions_f32()).unwrap();
             }
             stage.prepare(renderer, frame);
-            stage.draw(renderer, frame, &[DrawItem::new(model, 6.0)]).unwrap().0
+            stage.draw(renderer, frame, &[DrawItem::new(model, factor)]).unwrap().0
         };
         let before = draw(&mut renderer, model, None);
         let after = draw(&mut renderer, model, Some(&moved));

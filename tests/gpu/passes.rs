@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::common::passes::{Moment, PassTarget};
+use crate::common::stage::with_segments;
 use ash::vk;
 use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
@@ -71,9 +72,10 @@ fn depth_alone_is_drawn_as_with_colours() {
         ] {
             let options = ModelOptions { evaluation, construction, ..ModelOptions::default() };
             let model = renderer.add_model(&mesh, &options).expect("a model");
-            if evaluation.needs_segments() {
-                renderer.set_segments(model, 6).expect("segments");
-            }
+            let factor = match factor {
+                Factor::Uniform(n) => with_segments(&mut renderer, model, evaluation, n as u32),
+                _ => factor,
+            };
             let frame = prepare(&headless, &mut renderer);
             let item = DrawItem { cull: Cull { small: false, ..Cull::ALL }, ..DrawItem::new(model, factor) };
             let of_style = |style| DrawItem { style, cull: Cull::NONE, ..item };

@@ -8,7 +8,7 @@ use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy};
 use ash_subdiv::capture::{CaptureDraw, Captured, Which};
 use ash_subdiv::headless::{Headless, Texels, Texture};
 use ash_subdiv::measure::watertight::{Seams, Tally, compare, leaked_pixels, random_factors, with_seams_everywhere};
-use ash_subdiv::mesh::{FaceVarying, ShapeInfo};
+use ash_subdiv::mesh::FaceVarying;
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, ShaderId};
 use ash_subdiv::{Construction, ControlMesh, MeshData, ModelOptions, ReadOptions, Spacing, View, read, shape, shapes};
 use glam::Vec3;
@@ -71,41 +71,66 @@ const SPACINGS: [Spacing; 3] = [Spacing::FractionalOdd, Spacing::FractionalEven,
 /// A mesh, its name, and the seed of its factors.
 type Case = (String, ControlMesh, u64);
 
-/// Every mesh with every construction, displaced or not; with one spacing or another. Gives how many pairs were compared.
-fn assert_watertight(headless: &Headless, cases: &[Case], texture: &Texture) -> u64 {
-    let mut samples = 0;
+/// Meshes of three kinds: built-in shapes and random ones; shapes with their faces in another order; models, where they are.
+fn cases() -> [Vec<Case>; 3] {
+    let built_in = |name: &str| with_texcoords(shape(name).expect("built in"));
+    let shapes = shapes().iter().zip(0..).map(|(info, seed)| (info.name.to_owned(), built_in(info.name), seed));
+    let random = (0..3).flat_map(|seed| [random_mesh(seed), random_creased_mesh(seed)].map(|mesh| (mesh, seed)));
+    let random = random.map(|(mesh, seed)| ("random".to_owned(), with_texcoords(mesh), seed));
+    let order = [("creature-mixed", 7), ("machine-part", 8), ("valences", 9)];
+    let order = order.map(|(name, seed)| (format!("{name}, in another order"), shuffled(&built_in(name), seed), seed));
+    let mut files = if cfg!(shared) { common::files(&common::shared().join("meshes"), "obj") } else { Vec::new() };
+    files.retain(|file| file.file_stem() != Some("catmark_fan".as_ref()));
+    let options = ReadOptions { drop_isolated: true, ..ReadOptions::default() };
+    let models = files
+        .iter()
+        .zip(0..)
+        .map(|(file, seed)| (file.display().to_string(), with_texcoords(read(file, &options).expect("a mesh")), seed));
+    [shapes.chain(random).collect(), order.into(), models.collect()]
+}
+
+/// Every mesh with a construction, displaced or not; with one spacing or another.
+fn assert_watertight(construction: Construction) {
+    let headless = common::headless();
+    let texture = scales(&headless);
+    let cases = cases();
+    let mut samples = [0; 3];
     // Mesh by mesh last, so that all can use the same pipelines.
-    for (i, construction) in Construction::ALL.into_iter().enumerate() {
-        for (k, spacing) in SPACINGS.into_iter().enumerate() {
-            for displaced in [false, true] {
-                let options = ModelOptions { construction, spacing, ..ModelOptions::default() };
-                for (name, mesh, seed) in cases.iter().filter(|(_, _, seed)| (*seed as usize + i) % 3 == k) {
-                    let tally = tally(headless, mesh, &options, displaced.then_some(texture), *seed);
+    for (k, spacing) in SPACINGS.into_iter().enumerate() {
+        for displaced in [false, true] {
+            let options = ModelOptions { construction, spacing, ..ModelOptions::default() };
+            for (cases, samples) in cases.iter().zip(&mut samples) {
+                let has_spacing = |seed: u64| (seed as usize + construction as usize) % 3 == k;
+                for (name, mesh, seed) in cases.iter().filter(|(_, _, seed)| has_spacing(*seed)) {
+                    let tally = tally(&headless, mesh, &options, displaced.then_some(&texture), *seed);
                     assert!(
                         tally.is_watertight(),
                         "{name} {construction:?} {spacing:?} displaced {displaced}: {tally:?}"
                     );
-                    samples += tally.samples;
+                    *samples += tally.samples;
                 }
             }
         }
     }
-    samples
+    let [shapes, order, models] = samples;
+    assert!(shapes > 330_000 && order > 10_000 && (models > 0) == cfg!(shared), "{samples:?} pairs");
+    drop(texture);
+    headless.finish_silent();
 }
 
 #[test]
-fn shapes_are_watertight() {
-    let headless = common::headless();
-    let texture = scales(&headless);
-    let built_in = |info: &ShapeInfo| shape(info.name).expect("built in");
-    let shapes = shapes().iter().zip(0..).map(|(info, seed)| (info.name.to_owned(), built_in(info), seed));
-    let random =
-        (0..3).flat_map(|seed| [random_mesh(seed), random_creased_mesh(seed)].map(|m| ("random".into(), m, seed)));
-    let cases = shapes.chain(random).map(|(name, mesh, seed)| (name, with_texcoords(mesh), seed));
-    let samples = assert_watertight(&headless, &cases.collect::<Vec<_>>(), &texture);
-    assert!(samples > 1_000_000, "{samples} pairs");
-    drop(texture);
-    headless.finish_silent();
+fn meshes_are_watertight_in_two_stages() {
+    assert_watertight(Construction::TwoStage);
+}
+
+#[test]
+fn meshes_are_watertight_by_stencils() {
+    assert_watertight(Construction::Stencil);
+}
+
+#[test]
+fn meshes_are_watertight_when_cached() {
+    assert_watertight(Construction::Cached);
 }
 
 /// Faces that are refined have their leaves evaluated: what two of them share by one of them.
@@ -185,27 +210,6 @@ fn lattices_are_watertight() {
     headless.finish_silent();
 }
 
-#[test]
-#[cfg_attr(not(shared), ignore = "needs ../shared/meshes")]
-fn models_are_watertight() {
-    let headless = common::headless();
-    let texture = scales(&headless);
-    let files = std::fs::read_dir(common::shared().join("meshes")).expect("../shared/meshes");
-    let mut files: Vec<_> = files.map(|file| file.expect("readable").path()).collect();
-    files.retain(|file| {
-        file.extension().is_some_and(|e| e == "obj") && file.file_stem() != Some("catmark_fan".as_ref())
-    });
-    files.sort();
-    let options = ReadOptions { drop_isolated: true, ..ReadOptions::default() };
-    let cases = files
-        .iter()
-        .zip(0..)
-        .map(|(file, seed)| (file.display().to_string(), with_texcoords(read(file, &options).expect("a mesh")), seed));
-    assert_watertight(&headless, &cases.collect::<Vec<_>>(), &texture);
-    drop(texture);
-    headless.finish_silent();
-}
-
 /// The same surface with faces in another order, and every face from another of its corners on.
 fn shuffled(mesh: &ControlMesh, seed: u64) -> ControlMesh {
     let keys = random_factors(mesh.face_count(), 5.0, seed);
@@ -225,17 +229,6 @@ fn shuffled(mesh: &ControlMesh, seed: u64) -> ControlMesh {
     }
     let texcoords = texcoords.map(|t| FaceVarying { values: t.values.clone(), indices });
     ControlMesh::new(MeshData { face_sizes, face_vertices, texcoords, ..data.clone() }).expect("the same mesh")
-}
-
-#[test]
-fn order_of_faces_and_corners_does_not_matter() {
-    let headless = common::headless();
-    let texture = scales(&headless);
-    let cases = [("creature-mixed", 7), ("machine-part", 8), ("valences", 9)]
-        .map(|(name, seed)| (name.to_owned(), shuffled(&with_texcoords(shape(name).expect("built in")), seed), seed));
-    assert_watertight(&headless, &cases, &texture);
-    drop(texture);
-    headless.finish_silent();
 }
 
 #[test]

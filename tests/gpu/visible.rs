@@ -1,7 +1,7 @@
 //! Patches that compute leaves out before the draws.
 
 use crate::common;
-use crate::common::stage::{Stage, begin};
+use crate::common::stage::{Stage, begin, with_segments};
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::headless::{Statistics, Texels, Texture};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
@@ -177,12 +177,10 @@ fn pictures_stay_the_same() {
             let ModelOptions { construction, evaluation, .. } = options;
             let options = ModelOptions { shared_normals, ..options };
             let model = renderer.add_model(&mesh, &options).expect("a model");
-            if evaluation.needs_segments() {
-                renderer.set_segments(model, 6).expect("segments");
-            }
+            let factor = with_segments(&mut renderer, model, evaluation, 6);
             for (view, style) in views(&mesh).into_iter().flat_map(|view| [(view, 0), (view, 1)]) {
                 let frame = stage.frame(&mut renderer);
-                let item = DrawItem { cull: Cull::ALL, style, ..moved(model, 6.0.into()) };
+                let item = DrawItem { cull: Cull::ALL, style, ..moved(model, factor) };
                 let all = draw_all(&stage, &mut renderer, frame, &view, &[DrawItem { cull: Cull::NONE, ..item }]);
                 let visible = cull(&stage, &mut renderer, frame, &view, &[item]);
                 let drawn = draw(&stage, &mut renderer, frame, &visible).unwrap();
@@ -202,12 +200,10 @@ fn pictures_stay_the_same() {
     for options in [instanced].into_iter().chain(others) {
         let options = ModelOptions { displacement, ..options };
         let model = renderer.add_model(&mesh, &options).expect("a model");
-        if options.evaluation.needs_segments() {
-            renderer.set_segments(model, 6).expect("segments");
-        }
+        let factor = with_segments(&mut renderer, model, options.evaluation, 6);
         for view in views(&mesh) {
             let frame = stage.frame(&mut renderer);
-            let item = DrawItem { cull: Cull::ALL, displacement: [0.2, 0.0], ..moved(model, 6.0.into()) };
+            let item = DrawItem { cull: Cull::ALL, displacement: [0.2, 0.0], ..moved(model, factor) };
             let not_culled = DrawItem { cull: Cull::NONE, ..item };
             let all = draw_all(&stage, &mut renderer, frame, &view, &[not_culled]);
             let visible = cull(&stage, &mut renderer, frame, &view, &[item]);
@@ -244,10 +240,10 @@ fn instances_are_of_the_patches_that_are_left() {
             let factors = captured.factors(&CaptureDraw { view, cull, ..CaptureDraw::new(8.0) }).expect("a capture");
             let patches = captured.tables().plan().patches().iter().zip(factors).filter(|(_, f)| !f.culled);
             let triangles: u64 = patches.map(|(patch, _)| if patch.kind.corners() == 4 { 2 * 64 } else { 64 }).sum();
-            for (model, factor) in [(plain, Factor::Uniform(8.0)), (uneven, Factor::Edges(1.0))] {
-                let item = DrawItem { cull, ..DrawItem::new(model, factor) };
+            for model in [plain, uneven] {
+                let item = DrawItem { cull, ..DrawItem::new(model, Factor::Segments) };
                 let counted = count(&stage, &mut renderer, frame, &view, item, true);
-                assert_eq!(counted.clipping_invocations, triangles, "{factor:?}, {cull:?}");
+                assert_eq!(counted.clipping_invocations, triangles, "{model:?}, {cull:?}");
             }
         }
     }
@@ -257,7 +253,7 @@ fn instances_are_of_the_patches_that_are_left() {
     let frame = begin(&mut renderer);
     renderer.set_edge_factors(uneven, frame, &factors).expect("factors");
     stage.prepare(&mut renderer, frame);
-    let item = DrawItem { cull: BACK, ..DrawItem::new(uneven, Factor::Edges(1.0)) };
+    let item = DrawItem { cull: BACK, ..DrawItem::new(uneven, Factor::Segments) };
     let all = draw_all(&stage, &mut renderer, frame, &view, &[item]);
     let visible = cull(&stage, &mut renderer, frame, &view, &[item]);
     assert!(draw(&stage, &mut renderer, frame, &visible).unwrap() == all);
@@ -287,20 +283,20 @@ fn lists_grow_with_what_is_drawn() {
     // Instances have 192 bytes of each; a list takes a mebibyte at most.
     assert!(192 * renderer.tables(large).unwrap().plan().patches().len() > 2 << 20);
     let away = |x: f32| Mat4::from_translation(Vec3::new(x, 0.3, -0.4)).to_cols_array_2d();
-    let item = |model, factor: f32, x: f32| DrawItem {
+    let item = |model, factor: Factor, x: f32| DrawItem {
         cull: Cull { small: false, ..Cull::ALL },
         transform: away(x),
         ..DrawItem::new(model, factor)
     };
     let scenes = [
-        vec![item(small, 5.0, 0.0)],
+        vec![item(small, 5.0.into(), 0.0)],
         vec![
-            item(large, 1.0, 0.0),
-            item(two_stage, 3.0, 0.4),
-            item(computed, 3.0, -0.6),
-            item(small, 2.0, -0.3),
-            item(instanced, 1.0, 0.2),
-            item(stencil, 1.0, -0.2),
+            item(large, 1.0.into(), 0.0),
+            item(two_stage, 3.0.into(), 0.4),
+            item(computed, Factor::Segments, -0.6),
+            item(small, 2.0.into(), -0.3),
+            item(instanced, Factor::Segments, 0.2),
+            item(stencil, 1.0.into(), -0.2),
         ],
     ];
     let mut before = 0;
@@ -327,7 +323,7 @@ fn lists_grow_with_what_is_drawn() {
     }
     // More than offsets of 32 bits reach, which takes no memory to find out.
     let frame = stage.frame(&mut renderer);
-    let many = vec![item(instanced, 1.0, 0.2); 400];
+    let many = vec![item(instanced, Factor::Segments, 0.2); 400];
     let error = find(&stage, &mut renderer, frame, &views(&creature)[0], &many).unwrap_err().to_string();
     let told = error.strip_suffix(" bytes in a frame, 2147483648 at most: draw fewer items").expect(&error);
     let bytes = told.strip_prefix("lists of patches that can be seen take ").expect(&error);
@@ -402,7 +398,7 @@ fn wrong_use_is_told() {
     let lattice = renderer.add_model(&mesh, &options).expect("a model");
     renderer.set_segments(lattice, 8).expect("segments");
     let frame = stage.frame(&mut renderer);
-    let of_lattice = DrawItem { cull: BACK, ..DrawItem::new(lattice, Factor::Edges(1.0)) };
+    let of_lattice = DrawItem { cull: BACK, ..DrawItem::new(lattice, Factor::Segments) };
     let visible = cull(&stage, &mut renderer, frame, &view, &[item, of_lattice]);
     renderer.set_segments(lattice, 2).expect("segments");
     stage.prepare(&mut renderer, frame);

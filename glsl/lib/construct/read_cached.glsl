@@ -9,7 +9,7 @@
 #include "edges/shared_texcoords.glsl"
 #endif
 
-// Of a patch with this number among all and this first corner, for a lattice of so many segments.
+// Reads the patch with this number among all and this first corner, for a uniform grid of `segments` segments.
 void read_cached(uint patch_number, uint first_corner, uint segments) {
 #ifdef MAY_BE_ADAPTIVE
     evaluated_patch = patch_number;

@@ -8,7 +8,7 @@
 
 const uint ENTRY_WORDS = 1u + OWNED;
 
-// The control points that a corner of a patch with so many corners owns. Those that faces around the corner share come out with the same bits
+// Control points that a corner of a patch with `corners` corners owns. Points that faces around the corner share have the same bits
 // for all of them: the sums go around the corner's ring from where it starts.
 void stencil_points(uint patch_index, uint corner, uint corners, out vec3 points[OWNED]) {
     // Where the vertices of the patch and the weights of its type start.

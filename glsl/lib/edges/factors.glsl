@@ -1,7 +1,7 @@
 // Tessellation factors and patches that need not be drawn.
 //
 // The factor of an edge comes from the edge alone (its Bezier points, which both its patches have to the bit), by sums that
-// are the same from either end; so it is the same for both, whether one of them is left out or not. Rust twins:
+// are the same from either end; so it is the same for both, whether one of them is culled or not. Rust twins:
 // src/tessellate/factors.rs, src/tessellate/draw.rs.
 #ifndef FACTORS_GLSL
 #define FACTORS_GLSL
@@ -14,7 +14,7 @@ layout(constant_id = ID_MAX_FACTOR) const float MAX_FACTOR = 64.0;
 
 layout(set = 1, binding = BINDING_EDGE_FACTORS, std430) readonly buffer CornerFactors { float corner_factors[]; };
 
-// How factors are found and which patches are left out: what a draw does not ask for is not in its pipeline. Rust twin:
+// Metric of the factors, and which patches are culled: what a draw does not ask for is not in its pipeline. Rust twin:
 // `Cut` in src/renderer/shader/cut.rs.
 layout(constant_id = ID_DRAW_FLAGS) const uint DRAW_FLAGS = 0u;
 

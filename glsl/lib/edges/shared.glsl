@@ -7,7 +7,7 @@
 #include "construct/framed_ring.glsl"
 #include "edges/shared_bits.glsl"
 
-// Whether any corner has another ring than its own speak for what it shares, as at creases.
+// Whether another ring than its own owns what a corner shares, as at creases.
 layout(constant_id = ID_HAS_SPEAKERS) const bool HAS_SPEAKERS = true;
 
 // An edge as the vertex of a ring sees it.
@@ -40,7 +40,7 @@ SharedEdge shared_edge(FramedRing at, uint j) {
     return SharedEdge(across(ring, j, e0, e, e1), scheme_transversal(ring, j, beside, at.a, at.b));
 }
 
-// The ring that speaks for a corner, whose own ring this is; `corner` is its number among all corners.
+// The ring that owns what a corner shares, whose own ring this is; `corner` is its number among all corners.
 FramedRing corner_speaker(uint corner, FramedRing own) {
     FramedRing speaker = own;
     if (HAS_SPEAKERS) {

@@ -24,7 +24,7 @@ described! {
 impl Recorded {
     /// `None` if no frame counts.
     pub(super) fn new(subject: &Subject, contestant: Contestant, models: u32, recording: &Recording) -> Option<Self> {
-        let Recording { crowd, prepare, draw } = recording;
+        let Recording { crowd, prepare, draw, .. } = recording;
         let frame: Vec<f64> = prepare.iter().zip(draw).map(|(prepare, draw)| prepare + draw).collect();
         Some(Self {
             mesh: subject.name.clone(),

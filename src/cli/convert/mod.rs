@@ -1,16 +1,11 @@
 //! `subdiv convert`: a control mesh from one file to another.
 
-mod glb;
-mod ply;
-mod split;
-
 use super::described::{described, help};
 use super::error::CliError;
-use super::obj;
 use super::output::{self, Progress, write_file};
 use super::source::{ReadingArgs, report_repairs};
-use ash_subdiv::ControlMesh;
 use ash_subdiv::mesh::MeshData;
+use ash_subdiv::mesh::write::control::{write_glb, write_obj, write_ply};
 use clap::Args;
 use serde::Serialize;
 use std::fs::File;
@@ -66,9 +61,9 @@ pub(super) fn run(args: &ConvertArgs, json: bool) -> Result<(), CliError> {
     let write = |part: &Path| -> io::Result<()> {
         let mut out = BufWriter::new(File::create(part)?);
         match format {
-            Format::Obj => obj::write(&mut out, &mesh)?,
-            Format::Glb => glb::write(&mut out, &mesh)?,
-            Format::Ply => ply::write(&mut out, &mesh)?,
+            Format::Obj => write_obj(&mesh, &mut out)?,
+            Format::Glb => write_glb(&mesh, &mut out)?,
+            Format::Ply => write_ply(&mesh, &mut out)?,
         }
         out.flush()
     };
@@ -123,11 +118,6 @@ fn lost(data: &MeshData, format: Format) -> Vec<&'static str> {
         (!edits.is_empty(), "edits"),
     ];
     kinds.into_iter().filter_map(|(has, kind)| has.then_some(kind)).collect()
-}
-
-/// The vertex that each face corner names.
-fn corners_of(mesh: &ControlMesh) -> impl Iterator<Item = &[u32]> {
-    (0..mesh.face_count() as u32).map(|face| mesh.face(face))
 }
 
 #[cfg(test)]

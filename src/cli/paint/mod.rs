@@ -7,10 +7,11 @@ mod tiles;
 
 use super::error::CliError;
 use ash::vk;
-use ash_subdiv::gpu::{
-    Buffer, BufferDesc, DescriptorPool, DescriptorSet, DeviceContext, MemoryLocation, SetLayout, descriptor_set_layout,
-};
+use ash_subdiv::gpu::{DeviceContext, MemoryLocation};
 use ash_subdiv::headless::Headless;
+use ash_subdiv::headless::objects::{
+    Buffer, BufferDesc, DescriptorPool, DescriptorSet, SetLayout, descriptor_set_layout,
+};
 use ash_subdiv::{ControlMesh, Renderer};
 pub(super) use errors::ErrorMap;
 pub(super) use legend::Legend;

@@ -95,14 +95,16 @@ impl RenderArgs {
             unsafe { renderer.add_displacement(texture.into()) };
         }
         let model = renderer.add_tables(tables, &mesh.positions_f32(), model_options)?;
+        let mut factor = self.factor.factor();
         if model_options.evaluation.needs_segments() {
-            renderer.set_segments(model, self.factor.factor.ceil() as u32)?;
+            renderer.set_segments(model, factor.value().ceil() as u32)?;
+            factor = Factor::Segments;
         }
         let item = DrawItem {
             cull: self.factor.cull.cull(),
             displacement: self.displacement.amount(mesh),
             words: [self.stripes.unwrap_or(STRIPES), 0, 0, 0],
-            ..DrawItem::new(model, self.factor.factor())
+            ..DrawItem::new(model, factor)
         };
         let draws = self.shading.draws(item);
         // SAFETY: there was no frame before.

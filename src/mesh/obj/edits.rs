@@ -4,7 +4,7 @@ use super::statements::number;
 use super::tags::{Tag, sharpness};
 use crate::mesh::{Change, Edit};
 
-/// What the strings of a tag say.
+/// Operation that the strings of a tag name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Operation {
     Add,
@@ -27,7 +27,9 @@ pub(super) fn read(tag: &Tag) -> Result<Vec<Edit>, String> {
     if tag.floats.len() < needed {
         let (name, count, given) = (tag.name, paths.len(), tag.floats.len());
         return Err(format!(
-            "the tag \"{name}\" names {count} paths, which need {needed} numbers ({stride} each), but has {given}"
+            "the tag \"{name}\" names {}, needing {} ({stride} each), but has {given}",
+            counted(count, "path"),
+            counted(needed, "number")
         ));
     }
     let of_path = |(index, path): (usize, Vec<u32>)| edit(tag, operation, path, &tag.floats[stride * index..]);
@@ -52,6 +54,11 @@ fn operation(tag: &Tag) -> Result<Operation, String> {
     }
 }
 
+/// A count with its noun.
+fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// The integers of each path.
 fn paths(tag: &Tag) -> Result<Vec<Vec<u32>>, String> {
     let integers = tag.integers.iter().map(|word| {
@@ -65,11 +72,15 @@ fn paths(tag: &Tag) -> Result<Vec<Vec<u32>>, String> {
     while let Some((&length, numbers)) = rest.split_first() {
         let number = paths.len();
         if (length as usize) < least {
-            return Err(format!("path {number} has {length} numbers: a path of \"{}\" is {what} at least", tag.name));
+            return Err(format!(
+                "path {number} has {}: a path of \"{}\" is {what} at least",
+                counted(length as usize, "number"),
+                tag.name
+            ));
         }
         let Some((path, others)) = numbers.split_at_checked(length as usize) else {
             let left = numbers.len();
-            return Err(format!("path {number} announces {length} numbers, but {left} follow"));
+            return Err(format!("path {number} announces {}, but {left} follow", counted(length as usize, "number")));
         };
         paths.push(path.to_vec());
         rest = others;

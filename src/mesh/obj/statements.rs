@@ -55,9 +55,9 @@ pub(super) fn number_f32(word: &str) -> Result<f32, String> {
     if number.is_finite() { Ok(number) } else { Err(format!("\"{word}\" is too large: at most {:e}", f32::MAX)) }
 }
 
-/// What the part of a face corner that is not written counts as.
+/// Index of a part of a face corner that is not written.
 pub(super) const ABSENT: u32 = u32::MAX;
-/// What an index counts as that names nothing, where that is mended.
+/// Index in the place of one that names nothing, where that is mended.
 pub(super) const NOTHING: u32 = ABSENT - 1;
 
 /// The vertex, texture coordinate and normal of a face corner, counted from zero, [`ABSENT`] where not given.

@@ -185,9 +185,9 @@ fn edits() {
 
 #[test]
 fn errors_of_edits() {
-    let few = "line 6: the tag \"vertexedit\" names 2 paths, which need 6 numbers (3 each), but has 5";
+    let few = "line 6: the tag \"vertexedit\" names 2 paths, needing 6 numbers (3 each), but has 5";
     assert_error_after_quad("t vertexedit 8/5/3 3 0 1 2 3 0 1 3 1 2 3 4 5 add P value", few);
-    let none = "line 6: the tag \"edgeedit\" names 1 paths, which need 1 numbers (1 each), but has 0";
+    let none = "line 6: the tag \"edgeedit\" names 1 path, needing 1 number (1 each), but has 0";
     assert_error_after_quad("t edgeedit 4/0/3 3 0 1 2 set P sharpness", none);
     let choices = "add P value, subtract P value, set P value or set P sharpness";
     let value = format!("line 6: \"add P sharpness\" is no value of the tag \"vertexedit\": use {choices}");
@@ -198,7 +198,7 @@ fn errors_of_edits() {
     assert_error_after_quad("t faceedit 3/0/0 2 0 1", value);
     let announces = "line 6: path 1 announces 3 numbers, but 2 follow";
     assert_error_after_quad("t faceedit 6/0/1 2 0 1 3 0 1 hole", announces);
-    let least = "line 6: path 0 has 1 numbers: a path of \"vertexedit\" is a face and its corner or edge at least";
+    let least = "line 6: path 0 has 1 number: a path of \"vertexedit\" is a face and its corner or edge at least";
     assert_error_after_quad("t vertexedit 2/3/3 1 0 1 2 3 add P value", least);
     let least = "line 6: path 0 has 0 numbers: a path of \"faceedit\" is a face at least";
     assert_error_after_quad("t faceedit 1/0/1 0 hole", least);

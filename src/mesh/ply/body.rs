@@ -4,7 +4,7 @@ use super::format_error;
 use super::header::{Element, Encoding, Number};
 use crate::mesh::MeshError;
 
-/// What is still to be read.
+/// Unread part of a file.
 pub(super) struct Body<'b> {
     encoding: Encoding,
     rest: &'b [u8],
@@ -13,7 +13,7 @@ pub(super) struct Body<'b> {
 /// A row of an element: its numbers, and the lists.
 #[derive(Default)]
 pub(super) struct Row {
-    /// Those that are no lists.
+    /// Values of properties that are no lists.
     pub numbers: Vec<f64>,
     lists: Vec<f64>,
     /// Where each list ends.

@@ -1,4 +1,4 @@
-//! What a PLY file says it has.
+//! Header of a PLY file: elements and properties.
 
 use super::format_error;
 use crate::mesh::MeshError;

@@ -41,7 +41,7 @@ fn format_error(message: impl Into<String>) -> MeshError {
     MeshError::Format { message: message.into() }
 }
 
-/// What a file has, unchecked.
+/// Parts of the mesh in a file, unchecked.
 fn read(bytes: &[u8]) -> Result<MeshData, MeshError> {
     let (header, rest) = header::read(bytes)?;
     let mut body = Body::new(header.encoding, rest);

@@ -31,7 +31,7 @@ use super::adjacency::{Edges, NO_TWIN};
 use super::{ControlMesh, MAX_CORNERS, MeshData, MeshError};
 pub use report::{Place, Repair, RepairKind, Repairs};
 
-/// What [`repair`] does beyond what a mesh needs.
+/// Repairs beyond those that a mesh needs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RepairOptions {
     /// Join edges on boundaries that lie on others: their ends differ in no coordinate by more than this part of the bounding box's
@@ -106,7 +106,7 @@ impl ControlMesh {
     /// Repairs `data` ([`repair`]) and makes it a mesh.
     ///
     /// # Errors
-    /// Those of [`ControlMesh::new`] for what can't be mended, with the numbers that vertices and faces were given with.
+    /// Errors of [`ControlMesh::new`] for what can't be mended, with the numbers that vertices and faces were given with.
     pub fn repaired(data: MeshData, options: &RepairOptions) -> Result<(Self, Repairs), MeshError> {
         let (data, repairs) = repair(data, options);
         match Self::new(data) {
@@ -152,7 +152,7 @@ fn join_faces(work: &mut Work) -> Joints {
     joints
 }
 
-/// What is joined along which edge.
+/// Edges along which faces are joined.
 struct Joints {
     face_offsets: Vec<u32>,
     /// The face of each half-edge.

@@ -1,4 +1,4 @@
-//! What was mended, in words.
+//! Repairs in words.
 
 use crate::mesh::Edit;
 use crate::named::named;
@@ -67,7 +67,7 @@ pub struct Repair {
     pub line: Option<usize>,
 }
 
-/// What [`repair`](super::repair) did.
+/// Repairs made by [`repair`](super::repair).
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Repairs {

@@ -26,6 +26,7 @@ use super::{ControlMesh, MeshData, MeshError};
 
 /// A built-in shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ShapeInfo {
     /// What [`shape`] calls it.
     pub name: &'static str,

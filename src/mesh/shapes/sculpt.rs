@@ -82,7 +82,7 @@ impl Ring {
     }
 }
 
-/// What a tube leaves behind.
+/// Patches of a tube: its end and its sides.
 pub(super) struct Tube {
     /// The end.
     pub cap: Patch,

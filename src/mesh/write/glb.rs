@@ -1,18 +1,59 @@
 //! GLB: glTF 2.0 in one file. It has triangles only.
 
 use super::Pieces;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::{self, Write};
 
-const FLOAT: u32 = 5126;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+pub(super) const FLOAT: u32 = 5126;
+pub(super) const UNSIGNED_INT: u32 = 5125;
+pub(super) const ARRAY_BUFFER: u32 = 34962;
+pub(super) const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// Head of a GLB file with one mesh: everything before the numbers.
+pub(super) struct Head<'h> {
+    pub primitive: Value,
+    pub extensions: &'h [&'h str],
+    pub views: Vec<Value>,
+    pub accessors: Vec<Value>,
+    /// Bytes of the numbers.
+    pub length: usize,
+}
+
+impl Head<'_> {
+    /// Writes everything that stands before the numbers.
+    pub(super) fn write(self, out: &mut dyn Write) -> io::Result<()> {
+        let Self { primitive, extensions, views, accessors, length } = self;
+        let mut root = json!({
+            "asset": { "version": "2.0", "generator": concat!("ash-subdiv ", env!("CARGO_PKG_VERSION")) },
+            "scene": 0,
+            "scenes": [{ "nodes": [0] }],
+            "nodes": [{ "mesh": 0 }],
+            "meshes": [{ "primitives": [primitive] }],
+            "buffers": [{ "byteLength": length }],
+            "bufferViews": views,
+            "accessors": accessors,
+        });
+        if !extensions.is_empty() {
+            root["extensionsUsed"] = json!(extensions);
+        }
+        let mut text = serde_json::to_vec(&root)?;
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let too_large =
+            |_| io::Error::new(io::ErrorKind::FileTooLarge, "a GLB file has less than 4 GiB: choose PLY or OBJ");
+        let whole = u32::try_from(12 + 8 + text.len() + 8 + length).map_err(too_large)?;
+        out.write_all(b"glTF")?;
+        [2, whole, text.len() as u32].iter().try_for_each(|word: &u32| out.write_all(&word.to_le_bytes()))?;
+        out.write_all(b"JSON")?;
+        out.write_all(&text)?;
+        out.write_all(&(length as u32).to_le_bytes())?;
+        out.write_all(b"BIN\0")
+    }
+}
 
 /// Writes the vertices and triangles of a mesh as GLB. Quads are not looked at: glTF has none.
 ///
 /// # Errors
-/// Those of `out`, and [`io::ErrorKind::FileTooLarge`] where the file would have 4 GiB or more.
+/// Errors of `out`, and [`io::ErrorKind::FileTooLarge`] where the file would have 4 GiB or more.
 pub fn write_glb(mesh: &dyn Pieces, out: &mut dyn Write) -> io::Result<()> {
     let ([vertices, _], [_, triangles]) = (mesh.vertex_counts(), mesh.face_counts());
     let texcoords = if mesh.has_texcoords() { vertices } else { 0 };
@@ -42,27 +83,7 @@ pub fn write_glb(mesh: &dyn Pieces, out: &mut dyn Write) -> io::Result<()> {
         length += bytes;
     }
     let primitive = json!({ "attributes": attributes, "indices": accessors.len() - 1, "mode": 4 });
-    let root = json!({
-        "asset": { "version": "2.0", "generator": concat!("ash-subdiv ", env!("CARGO_PKG_VERSION")) },
-        "scene": 0,
-        "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "mesh": 0 }],
-        "meshes": [{ "primitives": [primitive] }],
-        "buffers": [{ "byteLength": length }],
-        "bufferViews": views,
-        "accessors": accessors,
-    });
-    let mut text = serde_json::to_vec(&root)?;
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let too_large =
-        |_| io::Error::new(io::ErrorKind::FileTooLarge, "a GLB file has less than 4 GiB: choose PLY or OBJ");
-    let whole = u32::try_from(12 + 8 + text.len() + 8 + length).map_err(too_large)?;
-    out.write_all(b"glTF")?;
-    [2, whole, text.len() as u32].iter().try_for_each(|word: &u32| out.write_all(&word.to_le_bytes()))?;
-    out.write_all(b"JSON")?;
-    out.write_all(&text)?;
-    out.write_all(&(length as u32).to_le_bytes())?;
-    out.write_all(b"BIN\0")?;
+    Head { primitive, extensions: &[], views, accessors, length }.write(out)?;
     let mut write = |numbers: &[f32]| numbers.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()));
     mesh.vertices(&mut |piece| write(piece.positions.as_flattened()))?;
     mesh.vertices(&mut |piece| write(piece.normals.as_flattened()))?;

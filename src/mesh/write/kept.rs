@@ -2,7 +2,7 @@
 
 use super::Polygons;
 
-/// What is left of a mesh without some vertices.
+/// Rest of a mesh without some vertices.
 #[derive(Debug)]
 pub struct Kept {
     positions: Vec<[f32; 3]>,

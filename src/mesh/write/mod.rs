@@ -1,5 +1,6 @@
-//! Meshes with normals, written to files: OBJ, PLY, GLB.
+//! Meshes with normals, written to files: OBJ, PLY, GLB. Control meshes: see [`control`].
 
+pub mod control;
 #[cfg(feature = "gltf")]
 mod glb;
 mod kept;
@@ -27,17 +28,17 @@ pub trait Pieces {
     /// Hands out all vertices.
     ///
     /// # Errors
-    /// Those of `visit`.
+    /// Errors of `visit`.
     fn vertices(&self, visit: &mut dyn FnMut(Vertices) -> io::Result<()>) -> io::Result<()>;
     /// Hands out all quads, counter-clockwise.
     ///
     /// # Errors
-    /// Those of `visit`.
+    /// Errors of `visit`.
     fn quads(&self, visit: &mut dyn FnMut(&[[u32; 4]]) -> io::Result<()>) -> io::Result<()>;
     /// Hands out all triangles, counter-clockwise.
     ///
     /// # Errors
-    /// Those of `visit`.
+    /// Errors of `visit`.
     fn triangles(&self, visit: &mut dyn FnMut(&[[u32; 3]]) -> io::Result<()>) -> io::Result<()>;
 }
 

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 /// Writes a mesh as OBJ.
 ///
 /// # Errors
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write_obj(mesh: &dyn Pieces, out: &mut dyn Write) -> io::Result<()> {
     let [_, mut left] = mesh.vertex_counts();
     mesh.vertices(&mut |piece| {

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 /// Writes a mesh as binary PLY (little endian).
 ///
 /// # Errors
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write_ply(mesh: &dyn Pieces, out: &mut dyn Write) -> io::Result<()> {
     let [vertices, _] = mesh.vertex_counts();
     writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {vertices}")?;

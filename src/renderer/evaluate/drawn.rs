@@ -53,24 +53,19 @@ impl<'m> Drawn<'m> {
 impl<'m> Asked<'m> {
     /// Segments along every edge.
     fn segments(&self) -> Result<u32, Error> {
-        let &Self { id, evaluation, factor, largest, lattice } = self;
+        let &Self { id, evaluation, factor, largest, .. } = self;
         match (factor, largest) {
             (Factor::Uniform(factor), None) => Ok(factor.ceil() as u32),
             (_, None) => Err(Error::NotUniform { id, evaluation, factor }),
-            // Vertices may have been evaluated before the draw, too late to scale factors.
-            (Factor::Edges(1.0), Some(largest)) => {
-                Ok(lattice.map_or(largest.ceil() as u32, |lattice| lattice.segments))
-            }
+            (Factor::Edges(1.0), Some(largest)) => Ok(largest.ceil() as u32),
             (_, Some(_)) => Err(Error::NotOfEdges { id, evaluation, factor }),
         }
     }
 
-    /// The uniform grid that is kept, if it has the segments that are asked for.
+    /// The uniform grid that is kept.
     pub(crate) fn lattice(&self) -> Result<Drawn<'m>, Error> {
-        let (id, factor, segments) = (self.id, self.factor, self.segments()?);
-        let kept = self.lattice.map_or(0, |lattice| lattice.segments);
-        let lattice = self.lattice.filter(|lattice| lattice.segments == segments);
-        let lattice = lattice.ok_or(Error::OtherSegments { id, factor, segments: kept })?;
+        let id = self.id;
+        let lattice = self.lattice.ok_or(Error::SegmentsNotSet { id })?;
         if lattice.prepared { Ok(Drawn::Lattice(lattice)) } else { Err(Error::NotPrepared { id }) }
     }
 

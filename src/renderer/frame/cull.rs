@@ -46,8 +46,9 @@ impl Renderer {
             return Err(Error::NoVisibleLists);
         }
         let view_offset = self.take_view(frame_index, view)?;
+        let items = items.iter().map(|item| self.with_segments(item)).collect::<Result<Vec<_>, Error>>()?;
         let mut bytes = 0;
-        for item in items {
+        for item in &items {
             self.resolve(view, item)?;
             let lists = self.listed_groups(item)?.next().is_some();
             self.make_cuts(item.model, item.factor, item.cull, lists)?;
@@ -58,7 +59,7 @@ impl Renderer {
         }
         self.make_room(frame_index, bytes, items.len())?;
         let mut listed = Vec::with_capacity(items.len());
-        for item in items {
+        for item in &items {
             let lists = self.take_lists(frame_index, view, item)?;
             let ResolvedItem { record, drawn, .. } = self.resolve(view, item)?;
             let lattice = drawn.and_then(Drawn::lattice).filter(|_| !lists.is_empty());

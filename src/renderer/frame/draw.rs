@@ -38,8 +38,9 @@ impl Renderer {
         let (set, mut records) = (lists.set.raw(), std::mem::take(&mut lists.records));
         let mut bound = Bound::default();
         let drawn = items.iter().try_for_each(|item| {
+            let item = self.with_segments(item)?;
             self.make_cuts(item.model, item.factor, item.cull, false)?;
-            let resolved = self.resolve(view, item)?;
+            let resolved = self.resolve(view, &item)?;
             let place = Place { set, view: view_offset, record: records.push(&resolved.record)? };
             // SAFETY: as the caller promises.
             unsafe { self.cmd_draw_item(cmd, place, &resolved, None, &mut bound) }
@@ -68,6 +69,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::NoSuchModel`]; failed Vulkan calls.
     pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
+        let factor = if factor == Factor::Segments { self.model(id)?.own_factor() } else { factor };
         if self.options.visible_lists && cull != Cull::NONE && self.model(id)?.options.evaluation.culls() {
             self.make_cuts(id, factor, cull, true)?;
         }

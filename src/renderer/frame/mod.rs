@@ -155,13 +155,24 @@ impl Renderer {
         positions: &[[f32; 3]],
         options: &ModelOptions,
     ) -> Result<ModelId, Error> {
+        self.add_drawn(tables, positions, options, (Factor::Uniform(1.0), Cull::NONE))
+    }
+
+    /// As [`Renderer::add_tables`], with the pipelines of one kind of draw.
+    pub(crate) fn add_drawn(
+        &mut self,
+        tables: ModelTables,
+        positions: &[[f32; 3]],
+        options: &ModelOptions,
+        (factor, cull): (Factor, Cull),
+    ) -> Result<ModelId, Error> {
         let id = self.next_id;
         let options = ModelOptions { construction: tables.options().construction, ..options.clone() };
         let map = self.displacements.get(options.displacement)?;
         let model = self.new_model(id, tables, positions, &options, map)?;
         self.next_id.number += 1;
         self.models.insert(id, model);
-        let made = self.make_pipelines(id, Factor::Uniform(1.0), Cull::NONE);
+        let made = self.make_pipelines(id, factor, cull);
         made.inspect_err(|_| drop(self.models.remove(&id)))?;
         Ok(id)
     }

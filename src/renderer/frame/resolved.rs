@@ -23,7 +23,24 @@ pub(crate) struct ResolvedItem<'r> {
 }
 
 impl Renderer {
-    /// Checks and resolves a draw item.
+    /// A draw item with the number behind [`Factor::Segments`] in its place.
+    ///
+    /// # Errors
+    /// Unknown styles and models; [`Error::NoSegments`], [`Error::OwnSegments`], [`Error::SegmentsNotSet`].
+    pub(crate) fn with_segments(&self, item: &DrawItem) -> Result<DrawItem, Error> {
+        let (id, surface) = (item.model, self.style(item)?.geometry == Geometry::Surface);
+        let model = self.model(id)?;
+        let evaluation = model.options.evaluation;
+        match (item.factor, evaluation.needs_segments()) {
+            (Factor::Segments, true) if surface && model.lattice.is_none() => Err(Error::SegmentsNotSet { id }),
+            (Factor::Segments, true) => Ok(DrawItem { factor: model.own_factor(), ..*item }),
+            (Factor::Segments, false) => Err(Error::NoSegments { id, evaluation }),
+            (factor, true) if surface => Err(Error::OwnSegments { id, evaluation, factor }),
+            _ => Ok(*item),
+        }
+    }
+
+    /// Checks and resolves a draw item, which [`Renderer::with_segments`] made.
     ///
     /// # Errors
     /// Unknown styles and models, models that were not prepared, factors and displacements that are none.
@@ -52,6 +69,7 @@ impl Renderer {
                 let largest = model.largest_edge_factor().ok_or(Error::NoEdgeFactors { id })?;
                 (scale, (scale * largest).clamp(1.0, max))
             }
+            Factor::Segments => (1.0, 1.0),
         };
         let drawn = (style.geometry == Geometry::Surface).then(|| model.drawn(factor)).transpose()?;
         let segments = drawn.and_then(Drawn::segments).unwrap_or(0);

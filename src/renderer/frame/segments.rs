@@ -18,6 +18,7 @@ use ash::vk;
 /// copies, and lives until the model is removed or its segments change, and [`Options::frames_in_flight`](crate::renderer::Options::frames_in_flight)
 /// frames began since.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct EvaluatedVertices {
     /// Patch by patch in the order of [`ModelTables::plan`], in each in the order of
     /// [`grid_parameters`](crate::table::grid_parameters): position and normal in object space, three `f32` each; two more for the texture
@@ -35,11 +36,11 @@ pub struct EvaluatedVertices {
 
 impl Renderer {
     /// Sets how many segments every edge of a model has, where [`Evaluation::needs_segments`], until others are set. The
-    /// model cannot be drawn from now on before the next [`Renderer::cmd_prepare`], also not in a frame that was prepared. Draws
-    /// name the same number as their [`Factor::Uniform`].
+    /// model cannot be drawn from now on before the next [`Renderer::cmd_prepare`], also not in a frame that was prepared. Draws have
+    /// [`Factor::Segments`].
     ///
     /// With [`ModelOptions::edge_factors`] it is the most that an edge has, and what every patch has inside: edges with
-    /// smaller factors have fewer segments, their factors rounded up. Draws have [`Factor::Edges`]`(1.0)`.
+    /// smaller factors have fewer segments, their factors rounded up.
     ///
     /// Takes memory for the indices of a patch, unless another model has the same, and for the vertices that compute evaluates, (n + 1)² a quad; lets that of the
     /// segments before go when [`Options::frames_in_flight`](crate::renderer::Options::frames_in_flight) frames have begun since. The number that is set already costs nothing.

@@ -59,10 +59,10 @@ impl ItemLists<'_> {
 
     /// Tells whether the lists are of what is drawn now.
     pub(crate) fn check(self, drawn: Drawn) -> Result<(), Error> {
-        let &VisibleItem { item: DrawItem { model: id, factor, .. }, segments, .. } = self.own;
+        let &VisibleItem { item: DrawItem { model: id, .. }, segments, .. } = self.own;
         match (drawn.lattice().map(|lattice| lattice.segments), segments) {
             (now, then) if now == then => Ok(()),
-            (now, _) => Err(Error::OtherSegments { id, factor, segments: now.unwrap_or(0) }),
+            (now, _) => Err(Error::OtherSegments { id, segments: now.unwrap_or(0) }),
         }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) use sent::Sent;
 
 use crate::gpu::{Buffer, DeviceContext, DeviceProperties, GpuError};
 use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, path};
-use crate::renderer::options::{DisplacementMap, Error, Geometry, MemoryUsage, ModelId, ModelOptions, Options};
+use crate::renderer::options::{DisplacementMap, Error, Factor, Geometry, MemoryUsage, ModelId, ModelOptions, Options};
 use crate::renderer::shader::{PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
 use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
@@ -240,6 +240,12 @@ impl Model {
     /// The largest factor of an edge, if they have any: of the frame that was last prepared.
     pub(crate) fn largest_edge_factor(&self) -> Option<f32> {
         self.edge_factors.as_ref().map(EdgeFactors::largest)
+    }
+
+    /// Factor that stands for [`Factor::Segments`]: of segments that are not set, 1.
+    pub(crate) fn own_factor(&self) -> Factor {
+        let segments = self.lattice.as_ref().map_or(1, |lattice| lattice.segments);
+        if self.options.edge_factors { Factor::Edges(1.0) } else { Factor::Uniform(segments as f32) }
     }
 
     pub(crate) fn needs_copies(&self) -> bool {

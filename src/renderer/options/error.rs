@@ -88,14 +88,18 @@ pub enum Error {
     NotOfEdges { id: ModelId, evaluation: Evaluation, factor: Factor },
     #[error("model {}: {factor:?}: subdivision has uniform factors of 1, 2, 4 and 8, for levels 0 to 3", id.number)]
     NoSuchLevel { id: ModelId, factor: Factor },
-    #[error("model {}: Evaluation::{evaluation:?} takes its segments from DrawItem::factor: set_segments is for others", id.number)]
+    #[error("model {}: Evaluation::{evaluation:?} takes its segments from DrawItem::factor: set_segments and Factor::Segments are for others", id.number)]
     NoSegments { id: ModelId, evaluation: Evaluation },
     #[error("model {}: no vertices of it are kept: set ModelOptions::evaluation to Compute", id.number)]
     NotComputed { id: ModelId },
     #[error("model {}: {given} segments: from 1 to {max} are possible along an edge", id.number)]
     BadSegments { id: ModelId, given: u32, max: u32 },
-    #[error("model {}: {factor:?}: its edges have {segments} segments: call set_segments before cmd_prepare, and draw with that number as uniform factor (with Factor::Edges(1.0) if edges have factors of their own)", id.number)]
-    OtherSegments { id: ModelId, factor: Factor, segments: u32 },
+    #[error("model {}: {factor:?}: Evaluation::{evaluation:?} has the segments of set_segments: draw with Factor::Segments", id.number)]
+    OwnSegments { id: ModelId, evaluation: Evaluation, factor: Factor },
+    #[error("model {}: no segments are set: call set_segments before cmd_prepare", id.number)]
+    SegmentsNotSet { id: ModelId },
+    #[error("model {}: its edges have {segments} segments now, unlike when it was culled: call set_segments before cmd_prepare and cmd_cull", id.number)]
+    OtherSegments { id: ModelId, segments: u32 },
     #[error("grid {given}: the tessellator of this device makes from 2 to {max} samples along a side")]
     BadGrid { given: u32, max: u32 },
     #[error("Options::shaders: {name}: fragment shaders are those of styles: set Style::fragment to Fragment::Spirv")]

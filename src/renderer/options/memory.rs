@@ -2,6 +2,7 @@
 
 /// Bytes by what they are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct MemoryUsage {
     /// Connectivity or stencils, and texture coordinates, on the device.
     pub tables: u64,

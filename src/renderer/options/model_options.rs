@@ -43,6 +43,14 @@ pub struct ModelOptions {
     pub adaptive: Option<AdaptiveOptions>,
 }
 
+impl ModelOptions {
+    /// Default options with an evaluation and its usual construction ([`Evaluation::constructions`]).
+    pub fn evaluated(evaluation: Evaluation) -> Self {
+        let construction = evaluation.constructions().first().copied().unwrap_or_default();
+        Self { construction, evaluation, ..Self::default() }
+    }
+}
+
 impl From<&ModelOptions> for TableOptions {
     fn from(options: &ModelOptions) -> Self {
         let &ModelOptions {

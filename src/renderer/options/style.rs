@@ -10,6 +10,7 @@ use glam::Mat4;
 
 /// What of a model a [`Style`] draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum Geometry {
     /// The smooth surface, through the tessellation stages.
     #[default]
@@ -29,6 +30,7 @@ pub enum Geometry {
 /// (`draw_colour()`, and [`DrawItem::words`](crate::renderer::DrawItem::words) as `item.words`) and the push constants; your own
 /// descriptor sets start at set 2 ([`Options::set_layouts`]).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum Fragment {
     /// One light and the sky; for [`Geometry::ControlFaces`] with the normal of each face.
     #[default]

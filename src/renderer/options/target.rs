@@ -18,6 +18,7 @@ pub struct Target {
 
 /// What the values that our fragment shaders write mean. Your own shaders write what they like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum ColorEncoding {
     /// Linear light: for sRGB formats, which encode by themselves, and for high dynamic range.
     #[default]
@@ -34,6 +35,7 @@ pub enum ColorEncoding {
 /// ([`Features::independent_blend`](crate::gpu::Features::independent_blend)); yours ([`Fragment::Spirv`](crate::renderer::Fragment::Spirv))
 /// write to all.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Pass {
     /// `vkCmdBeginRendering` with these formats; `UNDEFINED` where there is no such attachment.
     Dynamic {

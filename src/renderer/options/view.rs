@@ -82,10 +82,10 @@ impl View {
 
     /// A camera that sees all of a box. `towards` leads from the box to the eye; `aspect` is width by height, and taken as 1 if it
     /// is not a finite number above 0, as of a window without pixels.
-    pub fn framing(bounds: [DVec3; 2], towards: [f32; 3], aspect: f32) -> Self {
+    pub fn framing(bounds: [impl Into<DVec3>; 2], towards: [f32; 3], aspect: f32) -> Self {
         const FOV_Y: f32 = 0.6;
         let aspect = if aspect > 0.0 && aspect.is_finite() { aspect } else { 1.0 };
-        let [low, high] = bounds.map(|b| b.as_vec3());
+        let [low, high] = bounds.map(|corner| corner.into().as_vec3());
         let centre = (low + high) / 2.0;
         let radius = ((high - low).length() / 2.0).max(f32::MIN_POSITIVE.sqrt());
         let towards = Vec3::from(towards).normalize_or(Vec3::Z);

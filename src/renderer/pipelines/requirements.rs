@@ -11,6 +11,7 @@ pub(crate) const LIST_FEATURES: Features =
 
 /// What a device must be made with for [`Options`].
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Requirements {
     /// The lowest version of Vulkan, for the instance and the device.
     pub api_version: u32,

@@ -1,17 +1,17 @@
-//! A control mesh as GLB, polygons as fans of triangles that FB_ngon_encoding tells apart.
+//! GLB: polygons as fans of triangles that FB_ngon_encoding tells apart.
 
 use super::corners_of;
 use super::split::Split;
-use ash_subdiv::ControlMesh;
+use crate::mesh::ControlMesh;
+use crate::mesh::write::glb::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, Head, UNSIGNED_INT};
 use serde_json::json;
 use std::io::{self, Write};
 
-const FLOAT: u32 = 5126;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-
-pub(super) fn write(out: &mut impl Write, mesh: &ControlMesh) -> io::Result<()> {
+/// Writes positions, texture coordinates, normals and faces. Tags have no place.
+///
+/// # Errors
+/// Errors of `out`, and [`io::ErrorKind::FileTooLarge`] where the file would have 4 GiB or more.
+pub fn write_glb(mesh: &ControlMesh, out: &mut dyn Write) -> io::Result<()> {
     let split = Split::new(mesh);
     let positions: Vec<[f32; 3]> = split.positions.iter().map(|position| position.map(|x| x as f32)).collect();
     let indices = triangles(mesh, &split.vertices);
@@ -41,39 +41,9 @@ pub(super) fn write(out: &mut impl Write, mesh: &ControlMesh) -> io::Result<()> 
         .push(json!({ "bufferView": number, "componentType": UNSIGNED_INT, "count": indices.len(), "type": "SCALAR" }));
     let primitive =
         json!({ "attributes": attributes, "indices": number, "mode": 4, "extensions": { "FB_ngon_encoding": {} } });
-    let root = json!({
-        "asset": { "version": "2.0", "generator": concat!("ash-subdiv ", env!("CARGO_PKG_VERSION")) },
-        "extensionsUsed": ["FB_ngon_encoding"],
-        "scene": 0,
-        "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "mesh": 0 }],
-        "meshes": [{ "primitives": [primitive] }],
-        "buffers": [{ "byteLength": length }],
-        "bufferViews": views,
-        "accessors": accessors,
-    });
-    write_chunks(out, &root, length, &parts.map(|(.., numbers)| numbers), &indices)
-}
-
-fn write_chunks(
-    out: &mut impl Write,
-    root: &serde_json::Value,
-    length: usize,
-    numbers: &[&[f32]],
-    indices: &[u32],
-) -> io::Result<()> {
-    let mut text = serde_json::to_vec(root)?;
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let too_large =
-        |_| io::Error::new(io::ErrorKind::FileTooLarge, "a GLB file has less than 4 GiB: choose PLY or OBJ");
-    let whole = u32::try_from(12 + 8 + text.len() + 8 + length).map_err(too_large)?;
-    out.write_all(b"glTF")?;
-    [2, whole, text.len() as u32].iter().try_for_each(|word: &u32| out.write_all(&word.to_le_bytes()))?;
-    out.write_all(b"JSON")?;
-    out.write_all(&text)?;
-    out.write_all(&(length as u32).to_le_bytes())?;
-    out.write_all(b"BIN\0")?;
-    numbers.iter().copied().flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+    Head { primitive, extensions: &["FB_ngon_encoding"], views, accessors, length }.write(out)?;
+    let numbers = parts.iter().flat_map(|(.., numbers)| numbers.iter());
+    numbers.into_iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
     indices.iter().try_for_each(|vertex| out.write_all(&vertex.to_le_bytes()))
 }
 

@@ -1,11 +1,15 @@
-//! A control mesh as binary PLY, positions in double precision.
+//! PLY: binary, positions in double precision.
 
 use super::corners_of;
 use super::split::Split;
-use ash_subdiv::ControlMesh;
+use crate::mesh::ControlMesh;
 use std::io::{self, Write};
 
-pub(super) fn write(out: &mut impl Write, mesh: &ControlMesh) -> io::Result<()> {
+/// Writes positions, texture coordinates, normals and faces. Tags have no place.
+///
+/// # Errors
+/// Errors of `out`.
+pub fn write_ply(mesh: &ControlMesh, out: &mut dyn Write) -> io::Result<()> {
     let split = Split::new(mesh);
     writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", split.positions.len())?;
     ["x", "y", "z"].iter().try_for_each(|name| writeln!(out, "property double {name}"))?;

@@ -1,6 +1,6 @@
 //! Vertices of a file in which each has one texture coordinate and one normal.
 
-use ash_subdiv::ControlMesh;
+use crate::mesh::ControlMesh;
 use std::collections::HashMap;
 
 /// A vertex for each texture coordinate and normal that a vertex of the mesh has.

@@ -1,11 +1,13 @@
-//! A control mesh as OBJ, with OpenSubdiv's tags: what the reader reads back as the same mesh.
+//! OBJ, with OpenSubdiv's tags.
 
-use ash_subdiv::ControlMesh;
-use ash_subdiv::mesh::{BoundaryRule, CreaseMethod, FaceVaryingRule, MeshData, TriangleRule};
+use crate::mesh::{BoundaryRule, ControlMesh, CreaseMethod, FaceVaryingRule, MeshData, TriangleRule};
 use std::io::{self, Write};
 
-/// Writes positions, texture coordinates, normals, faces and tags.
-pub(super) fn write(out: &mut impl Write, mesh: &ControlMesh) -> io::Result<()> {
+/// Writes positions, texture coordinates, normals, faces and tags. Edits have no place.
+///
+/// # Errors
+/// Errors of `out`.
+pub fn write_obj(mesh: &ControlMesh, out: &mut dyn Write) -> io::Result<()> {
     let data = mesh.data();
     for [x, y, z] in &data.positions {
         writeln!(out, "v {x} {y} {z}")?;
@@ -35,7 +37,7 @@ pub(super) fn write(out: &mut impl Write, mesh: &ControlMesh) -> io::Result<()> 
     write_tags(out, data)
 }
 
-fn write_tags(out: &mut impl Write, data: &MeshData) -> io::Result<()> {
+fn write_tags(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     for crease in &data.creases {
         let [a, b] = crease.vertices;
         writeln!(out, "t crease 2/1/0 {a} {b} {}", crease.sharpness)?;
@@ -72,14 +74,14 @@ fn write_tags(out: &mut impl Write, data: &MeshData) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ash_subdiv::{ObjOptions, shape, shapes};
+    use crate::mesh::{ObjOptions, shape, shapes};
 
     #[test]
     fn shapes_are_read_back_as_they_were() {
         for info in shapes() {
             let mesh = shape(info.name).unwrap();
             let mut text = Vec::new();
-            write(&mut text, &mesh).unwrap();
+            write_obj(&mesh, &mut text).unwrap();
             let read = ControlMesh::from_obj_bytes(&text, &ObjOptions::default()).unwrap();
             assert!(read == mesh, "{}", info.name);
         }
