@@ -4,6 +4,7 @@ use super::keys::{Keys, unit};
 use glam::{DMat4, DQuat, DVec3};
 
 /// A node's transform into the space of its parent.
+#[cfg_attr(not(feature = "gltf"), allow(dead_code, reason = "only files have matrices"))]
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Placement {
     Matrix(DMat4),
@@ -51,6 +52,7 @@ pub(crate) struct Skin {
 }
 
 /// What a track moves.
+#[cfg_attr(not(feature = "gltf"), allow(dead_code, reason = "only files move all of them"))]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Path {
     Translation,
