@@ -80,6 +80,25 @@ pub(super) fn count(text: &str) -> Result<u64, String> {
     number.ok_or_else(|| "it must be a whole number, such as 1000000 or 1e6".into())
 }
 
+/// A time.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
+    time.ok_or_else(|| "it must be a number of seconds".into())
+}
+
+/// Frames a second.
+pub(super) fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
+    rate.ok_or_else(|| "it must be a number above 0".into())
+}
+
+/// Frames from the first to the one before the end.
+pub(super) fn frames(text: &str) -> Result<std::ops::Range<u32>, String> {
+    let ends = text.split_once("..").and_then(|(first, end)| Some(first.parse().ok()?..end.parse().ok()?));
+    ends.filter(|frames| !frames.is_empty())
+        .ok_or_else(|| "it must be FIRST..END, such as 0..60 for frames 0 to 59".into())
+}
+
 /// Something above zero.
 pub(super) fn positive(text: &str) -> Result<f32, String> {
     number(text).filter(|&f| f > 0.0).ok_or_else(|| "it must be a number above 0".into())

@@ -59,9 +59,9 @@ pub fn read_animated(
 
 type Read = Result<Animated, MeshError>;
 
-impl Animated {
-    /// A mesh that nothing moves.
-    fn still((mesh, repairs): (ControlMesh, Repairs)) -> Self {
+/// A mesh that nothing moves.
+impl From<(ControlMesh, Repairs)> for Animated {
+    fn from((mesh, repairs): (ControlMesh, Repairs)) -> Self {
         Self { mesh, repairs, animations: Animations::default() }
     }
 }
@@ -92,7 +92,7 @@ fn read_any(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>, 
 
 fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>, _: bool) -> Read {
     whole(options, "an OBJ file")?;
-    Ok(Animated::still(match repair {
+    Ok(Animated::from(match repair {
         Some(repair) => ControlMesh::from_obj_bytes_repaired(bytes, repair)?,
         None => {
             let options = ObjOptions { drop_isolated: options.drop_isolated };
@@ -103,7 +103,7 @@ fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&Repai
 
 fn read_ply(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>, _: bool) -> Read {
     whole(options, "a PLY file")?;
-    Ok(Animated::still(match repair {
+    Ok(Animated::from(match repair {
         Some(repair) => ControlMesh::from_ply_bytes_repaired(bytes, repair)?,
         None => (ControlMesh::from_ply_bytes(bytes)?, Repairs::default()),
     }))
@@ -124,7 +124,7 @@ fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&R
     if moving {
         return ControlMesh::from_gltf_bytes_animated(bytes, &options, repair);
     }
-    Ok(Animated::still(match repair {
+    Ok(Animated::from(match repair {
         Some(repair) => ControlMesh::from_gltf_bytes_repaired(bytes, &options, repair)?,
         None => {
             let (data, rebuilt_quads) = super::gltf::read(bytes, &options)?;

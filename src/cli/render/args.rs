@@ -6,6 +6,7 @@ use super::super::described::help;
 use super::super::displacement::DisplacementArgs;
 use super::super::error::CliError;
 use super::super::evaluation::EvaluationArgs;
+use super::super::motion::FramesArgs;
 use super::super::parse::{self, Colour};
 use super::super::shading::Shading;
 use super::super::source::{DeviceArgs, MeshArgs};
@@ -67,6 +68,11 @@ pub(in super::super) struct RenderArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: PathBuf,
     #[command(flatten)]
+    pub(super) frames: FramesArgs,
+    /// Fit the camera to each frame anew, instead of once to all.
+    #[arg(long, requires = "frames", help_heading = "Animation")]
+    pub(super) refit: bool,
+    #[command(flatten)]
     pub(super) evaluation: EvaluationArgs,
     #[command(flatten)]
     pub(super) factor: FactorArgs,
@@ -115,6 +121,8 @@ Examples:
   subdiv render model.obj --adaptive 4 --factor 32 --shading reflection-lines -o stripes.png
   subdiv render model.obj --level 2 --shading wireframe -o subdivided.png
   subdiv render --shape creature --displacement scales --displacement-scale 0.01 --pixels 4 -o scales.png
+  subdiv render model.glb --animation Walk --time 0.5 -o walk.png
+  subdiv render --shape tentacle --frames 0..60 -o frames/frame_%04d.png
   subdiv render --shape cloth --eye 3,4,5 --target 0,0,0 --fov 25 --size 1920x1080 -o cloth.png";
 
 impl RenderArgs {

@@ -43,7 +43,7 @@ fn channels_and_samplers() {
         sampler("interpolation", json!("CUBICSPLINE")),
         "animation 0, channel 0: 2 values do not go with 2 times and 3 values a key",
     );
-    assert_broken(sampler("output", json!(99)), "accessor 99 does not exist, but a mesh names it");
+    assert_broken(sampler("output", json!(99)), "accessor 99 does not exist, but something names it");
     let times = |times: &'static [f32]| {
         move |file: &mut File| {
             let input = file.floats(&times.iter().map(|&time| [time]).collect::<Vec<_>>());
