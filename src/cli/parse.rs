@@ -41,11 +41,30 @@ pub(super) enum Surface {
 /// Name of the limit surface in [`scheme_or_limit`].
 pub(super) const LIMIT: &str = "limit";
 
-/// An evaluation of patches by its name.
-pub(super) fn evaluation() -> impl TypedValueParser<Value = Evaluation> {
+/// Maker of the vertices that are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Maker {
+    /// The device, out of patches.
+    Device(Evaluation),
+    /// The CPU, as points of the limit surface.
+    Cpu,
+}
+
+impl Maker {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Device(evaluation) => evaluation.name(),
+            Self::Cpu => "cpu",
+        }
+    }
+}
+
+/// A maker of vertices by its name.
+pub(super) fn maker() -> impl TypedValueParser<Value = Maker> {
     // Subdivision has --level.
     use Evaluation::{Compute, Geometry, GeometryTwoPass, Instanced, Tessellation};
-    one_of([Tessellation, Compute, Instanced, Geometry, GeometryTwoPass], Evaluation::name)
+    let [a, b, c, d, e] = [Tessellation, Compute, Instanced, Geometry, GeometryTwoPass].map(Maker::Device);
+    one_of([a, b, c, d, e, Maker::Cpu], Maker::name)
 }
 
 /// The largest tessellation factor that every device has.

@@ -58,7 +58,7 @@ fn one_camera_sees_all_frames() {
     let folder = folder("fitted");
     let pattern = folder.join("%d.png");
     // Culling by the view, where nothing may be missing: control points have moved far.
-    for cull in ["", "--cull", "--cull --construction cached"] {
+    for cull in ["", "--cull frustum", "--cull frustum --construction cached"] {
         let arguments = format!("render --shape tentacle --animation curl --frames 0..4 --fps 4 {VIEW} {cull}");
         json(&format!("{arguments} -o {}", pattern.display()));
         let pictures: Vec<_> = (0..4).map(|frame| picture(&folder.join(format!("{frame}.png")))).collect();
@@ -240,4 +240,72 @@ fn broken_animations_do_not_stand_in_the_way_of_the_mesh() {
     let why = format!("{mesh}: accessor 7 does not exist, but something names it");
     assert!(output.status.success() && stderr == format!("note: the animations can't be read: {why}\n"), "{stderr}");
     fails(&format!("info {mesh} --time 1"), 1, &why);
+}
+
+#[test]
+fn vertices_of_the_cpu_make_the_same_picture() {
+    let folder = folder("cpu");
+    let draw = |name: &str, arguments: &str| {
+        let path = folder.join(name);
+        let told = json(&format!("render --size 160x160 --validation {arguments} -o {}", path.display()));
+        (told, picture(&path))
+    };
+    // The limit surface, and its adaptive patches: triangles are cut along other diagonals, normals of end caps differ a little.
+    for shape in ["creature", "torus", "machine-part", "cloth", "polygons"] {
+        for shading in ["lit", "normals"] {
+            let view = format!("--shape {shape} --shading {shading} --factor 8");
+            let (told, cpu) = draw("cpu.png", &format!("{view} --evaluation cpu"));
+            assert_eq!(told["evaluation"], "cpu");
+            let (_, device) = draw("device.png", &format!("{view} --adaptive 5"));
+            let differences: Vec<u8> = cpu
+                .pixels()
+                .zip(device.pixels())
+                .map(|(a, b)| a.0.iter().zip(b.0).map(|(a, b)| a.abs_diff(b)).max().unwrap())
+                .collect();
+            let most = differences.iter().max().unwrap();
+            let above = differences.iter().filter(|&&difference| difference > 4).count();
+            assert!(*most <= 64 && above <= cpu.pixels().len() / 100, "{shape} {shading}: {most}, {above}");
+        }
+    }
+    let (_, lit) = draw("lit.png", "--shape cube --evaluation cpu");
+    for shading in ["wireframe", "reflection-lines"] {
+        let (_, other) = draw("other.png", &format!("--shape cube --evaluation cpu --shading {shading}"));
+        assert!(difference(&lit, &other) > 50, "{shading}");
+    }
+    // Frames move, and are those of the device.
+    let frames = |evaluation: &str| {
+        let pattern = folder.join("frame_%d.png");
+        let arguments = "render --shape tentacle --frames 0..3 --fps 2 --size 96x96";
+        json(&format!("{arguments} {evaluation} -o {}", pattern.display()));
+        (0..3).map(|frame| picture(&folder.join(format!("frame_{frame}.png")))).collect::<Vec<_>>()
+    };
+    for (cpu, device) in frames("--evaluation cpu").iter().zip(frames("--adaptive 4")) {
+        assert!(difference(cpu, &device) <= 40);
+    }
+}
+
+#[test]
+fn what_vertices_of_the_cpu_do_not_go_with() {
+    let folder = folder("cpu-errors");
+    let out = folder.join("x.png").display().to_string();
+    for (given, named) in [
+        ("--pixels 4", "--pixels"),
+        ("--cull back", "--cull"),
+        ("--adaptive 3", "--adaptive"),
+        ("--refine 1", "--refine"),
+        ("--spacing odd", "--spacing"),
+        ("--construction stencil", "--construction"),
+        ("--displacement scales", "--displacement"),
+    ] {
+        let message = format!("--evaluation cpu: it does not go with {named}: leave one of both out");
+        fails(&format!("render --shape torus --evaluation cpu {given} -o {out}"), 2, &message);
+    }
+    fails(
+        &format!("render --shape torus --evaluation cpu --shading cage -o {out}"),
+        2,
+        "--evaluation cpu: --shading cage is drawn out of patches: choose lit, normals, wireframe or reflection-lines",
+    );
+    let output = run(&format!("render --shape torus --evaluation cpu --factor 5 --size 32x32 -o {out}"));
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(stderr, "note: --evaluation cpu: edges have 8 segments, the next power of two from 2 up\n");
 }

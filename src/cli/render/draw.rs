@@ -4,6 +4,7 @@ use super::super::displacement::texture;
 use super::super::error::CliError;
 use super::super::paint::{Painting, PaintingSet};
 use super::args::STRIPES;
+use super::diced::Diced;
 use super::{RenderArgs, StatisticsOut};
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors};
@@ -70,8 +71,36 @@ impl RenderArgs {
     }
 }
 
+impl RenderArgs {
+    /// The background, as the picture's format has it.
+    pub(super) fn clear_colour(&self) -> [f32; 4] {
+        match self.shading.format() {
+            vk::Format::R8G8B8A8_SRGB => self.background.linear(),
+            _ => self.background.0.map(|byte| f32::from(byte) / 255.0),
+        }
+    }
+}
+
 /// What draws a mesh, frame by frame.
-pub(super) struct Drawing<'h> {
+pub(super) enum Drawing<'h> {
+    /// The renderer.
+    Patches(Patched<'h>),
+    /// The device, but with vertices of the CPU.
+    Triangles(Diced<'h>),
+}
+
+impl Drawing<'_> {
+    /// Draws a picture, with the control vertices at these positions if they moved: rows from the top, four bytes RGBA a pixel.
+    pub(super) fn draw(&mut self, view: &View, positions: Option<&[[f32; 3]]>) -> Result<Vec<u8>, CliError> {
+        match self {
+            Self::Patches(patches) => patches.draw(view, positions),
+            Self::Triangles(triangles) => triangles.draw(view, positions),
+        }
+    }
+}
+
+/// What draws a mesh as patches.
+pub(super) struct Patched<'h> {
     headless: &'h Headless,
     target: Offscreen,
     renderer: Renderer,
@@ -85,7 +114,7 @@ pub(super) struct Drawing<'h> {
     _texture: Option<Texture>,
 }
 
-impl<'h> Drawing<'h> {
+impl<'h> Patched<'h> {
     pub(super) fn new(
         args: &RenderArgs,
         headless: &'h Headless,
@@ -120,16 +149,12 @@ impl<'h> Drawing<'h> {
             words: [args.stripes.unwrap_or(STRIPES), 0, 0, 0],
             ..DrawItem::new(model, args.factor.factor())
         };
-        let background = match desc.color {
-            vk::Format::R8G8B8A8_SRGB => args.background.linear(),
-            _ => args.background.0.map(|byte| f32::from(byte) / 255.0),
-        };
+        let background = args.clear_colour();
         let draws = args.shading.draws(item);
         Ok(Self { headless, target, renderer, model, draws, culls, background, painting, _texture: texture })
     }
 
-    /// Draws a picture, with the control vertices at these positions if they moved: rows from the top, four bytes RGBA a pixel.
-    pub(super) fn draw(&mut self, view: &View, positions: Option<&[[f32; 3]]>) -> Result<Vec<u8>, CliError> {
+    fn draw(&mut self, view: &View, positions: Option<&[[f32; 3]]>) -> Result<Vec<u8>, CliError> {
         let Self { headless, target, renderer, draws, painting, .. } = self;
         // SAFETY: every submission before was waited for.
         let frame = unsafe { renderer.begin_frame() };

@@ -1,6 +1,8 @@
-//! `subdiv render`: a picture of a mesh. What is asked for is in `args`, what the device does for it in `draw`.
+//! `subdiv render`: a picture of a mesh. What is asked for is in `args`, what the device does for it in `draw`, and with vertices of
+//! the CPU in `diced`.
 
 mod args;
+mod diced;
 mod draw;
 
 use super::described::described;
@@ -11,6 +13,7 @@ use super::local::Local;
 use super::motion::{FramesOut, Moving, moved};
 use super::output::{self, Progress, write_file};
 use super::paint::{ErrorMap, Legend, LevelMap, Painting};
+use super::parse::Maker;
 use super::picture::unpremultiply;
 use super::shading::Shading;
 use super::source::report_notices;
@@ -20,7 +23,8 @@ use ash_subdiv::gpu::DeviceProperties;
 use ash_subdiv::headless::{HeadlessError, Texels, save_png};
 use ash_subdiv::renderer::{DisplacementId, Evaluation, Factor, ModelTables};
 use ash_subdiv::{ControlMesh, ModelOptions, View};
-use draw::{Drawing, Picture};
+use diced::Diced;
+use draw::{Drawing, Patched, Picture};
 use glam::DVec3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -99,7 +103,11 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
     let moving = moving.map(|moving| moving.in_space(local));
     let painting = args.painting(&mesh, &progress)?;
     progress.now("building tables");
-    let evaluation = args.factor.level.map_or(args.evaluation.evaluation, |_| Evaluation::Subdivision);
+    let evaluation = match args.evaluation.evaluation {
+        _ if args.factor.level.is_some() => Evaluation::Subdivision,
+        Maker::Device(evaluation) => evaluation,
+        Maker::Cpu => Evaluation::default(),
+    };
     let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(construction) };
     let texels = args.displacement.texels()?;
     options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
@@ -119,7 +127,10 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         let samples = args.check_limits(headless.properties())?;
         let picture = Picture { size, samples, view: views[0], painting: painting.as_ref(), texels: texels.as_ref() };
         let statistics = if moving.is_some() { None } else { args.statistics(headless, &picture, drawn, &options)? };
-        let drawing = Drawing::new(args, headless, &picture, tables, drawn, &options)?;
+        let drawing = match args.is_cpu() {
+            true => Drawing::Triangles(Diced::new(args, headless, &picture, &mesh, &progress)?),
+            false => Drawing::Patches(Patched::new(args, headless, &picture, tables, drawn, &options)?),
+        };
         let pixels = args.draw_all(drawing, &shown, painting.as_ref(), &progress)?;
         Ok((samples, headless.properties().name.clone(), pixels, statistics))
     })?;
@@ -136,7 +147,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         file: &file,
         size: args.size,
         patches,
-        evaluation: options.evaluation.name(),
+        evaluation: if args.is_cpu() { args.evaluation.evaluation.name() } else { options.evaluation.name() },
         construction: options.construction.name(),
         factor: Some(args.factor.factor()).filter(|f| matches!(f, Factor::Uniform(_))).map(Factor::value),
         level: args.factor.level,
@@ -277,6 +288,10 @@ impl RenderArgs {
         if self.shading.is_painted() && self.factor.level.is_some() {
             let what = if self.shading == Shading::Levels { "levels are those" } else { "the error is that" };
             return usage(format!("--level: {what} of patches: leave one of both out"));
+        }
+        if self.is_cpu() && !self.shading.is_of_vertices() {
+            let known = "choose lit, normals, wireframe or reflection-lines";
+            return usage(format!("--evaluation cpu: --shading {shading} is drawn out of patches: {known}"));
         }
         if self.shading.is_painted() && self.frames.is_given() {
             return usage(format!(

@@ -308,7 +308,7 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths magic",
         2,
-        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, acc-published, acc-published-instanced, compute, instanced, geometry, geometry-two-pass, subdivision, bilinear, vertex-buffer]",
+        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, acc-published, acc-published-instanced, compute, instanced, geometry, geometry-two-pass, subdivision, cpu, bilinear, vertex-buffer]",
     );
     fails(
         "bench --results x.json --factors 1",
