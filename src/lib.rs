@@ -168,6 +168,8 @@ mod pages {
     pub struct Drawing;
     #[doc = include_str!("../docs/meshes.md")]
     pub struct Meshes;
+    #[doc = include_str!("../docs/animation.md")]
+    pub struct Animation;
     #[doc = include_str!("../docs/tessellate.md")]
     pub struct Tessellate;
 }

@@ -34,8 +34,8 @@ impl Drawable for Cpu<'_> {
     fn set_factor(&mut self, factor: f32) -> Result<(), BenchError> {
         self.drawn = None;
         let Lane { headless, target, subject, cull, .. } = self.lane;
-        let depth = (1..=MAX_DEPTH).find(|&depth| (1 << depth) as f32 == factor);
-        let depth = depth.ok_or_else(|| unsupported(format!("factor {factor} is no power of two from 2 up")))?;
+        let depth = (1..=MAX_DEPTH).find(|&depth| (1 << depth) as f32 >= factor);
+        let depth = depth.ok_or_else(|| unsupported(format!("factor {factor} is more than 2^{MAX_DEPTH}")))?;
         // As many segments as the refined faces have, from which the others make their patches.
         let options = DiceOptions::fixed(depth + subject.refine);
         let (tessellation, tables) = timed(|| Tessellation::<f32>::new(&self.topology, &options).map_err(unsupported))?;

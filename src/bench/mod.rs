@@ -73,7 +73,7 @@ named! {
         /// Faces subdivided in a geometry shader ([`Evaluation::Subdivision`]): at factors 1, 2, 4 and 8.
         Subdivision = Evaluation::Subdivision.name(),
         /// The limit surface out of the CPU's arrays ([`dice`](crate::dice)), filled anew and copied whenever the vertices move: in the
-        /// times by the host's clock, not in those of the device. At factors that are powers of two, from 2 up.
+        /// times by the host's clock, not in those of the device. Factors are rounded up to a power of two, from 2 up.
         Cpu = "cpu",
         /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
         Bilinear = "bilinear",
