@@ -309,3 +309,40 @@ fn what_vertices_of_the_cpu_do_not_go_with() {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(stderr, "note: --evaluation cpu: edges have 8 segments, the next power of two from 2 up\n");
 }
+
+#[test]
+fn frames_that_are_cut_off_are_whole() {
+    let folder = folder("cut-off");
+    let names = |folder: &Path| -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    for (command, ending) in [("render --size 300x300", "png"), ("tessellate --depth 5", "obj")] {
+        let out = folder.join(ending);
+        fs::create_dir_all(&out).unwrap();
+        let mut child = crate::subdiv()
+            .args(command.split(' '))
+            .args(["--shape", "tentacle", "--frames", "0..100000", "-o"])
+            .arg(out.join(format!("%05d.{ending}")))
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        while !names(&out).contains(&format!("00002.{ending}")) {
+            assert!(child.try_wait().unwrap().is_none(), "{command}: it ended");
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(kill.success() && !child.wait().unwrap().success(), "{command}");
+        let written = names(&out);
+        let expected: Vec<String> = (0..written.len()).map(|frame| format!("{frame:05}.{ending}")).collect();
+        assert_eq!(written, expected, "{command}");
+        let last = out.join(written.last().unwrap());
+        match ending {
+            "png" => assert_eq!(picture(&last).dimensions(), (300, 300)),
+            _ => assert_eq!(vertices(&last).len(), vertices(&out.join(&written[0])).len()),
+        }
+    }
+}

@@ -72,9 +72,9 @@ fn a_vertex_buffer_is_the_same_surface() {
 fn vertices_of_the_cpu_are_the_same_surface() {
     let headless = headless();
     let cpu = floor(Path::Cpu);
-    let bench = Bench::new(&headless, options()).unwrap();
     // All regular, so that patches have no error.
     for factor in [2.0, 8.0] {
+        let bench = Bench::new(&headless, options()).unwrap();
         let [drawn, other] = [GREGORY, cpu].map(|c| bench.picture(&subject("torus"), c, factor).unwrap());
         let (pixels, other) = (covered(&drawn), different(&drawn, &other));
         assert!(pixels > 1500 && other * 100 <= pixels, "{factor}: {other} of {pixels}");

@@ -64,10 +64,10 @@ impl<'h> Diced<'h> {
         }
         // SAFETY: likewise.
         unsafe { triangles.set_items(view, items)? };
-        Ok(target.draw(headless, *background, |cmd| {
+        target.draw(headless, *background, |cmd| {
             // SAFETY: inside rendering that fits the target.
             unsafe { triangles.cmd_draw(cmd) };
             Ok::<(), CliError>(())
-        })?)
+        })
     }
 }

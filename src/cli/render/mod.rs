@@ -22,7 +22,7 @@ use ash::vk;
 use ash_subdiv::gpu::DeviceProperties;
 use ash_subdiv::headless::{HeadlessError, Texels, save_png};
 use ash_subdiv::renderer::{DisplacementId, Evaluation, Factor, ModelTables};
-use ash_subdiv::{ControlMesh, ModelOptions, View};
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, View};
 use diced::Diced;
 use draw::{Drawing, Patched, Picture};
 use glam::DVec3;
@@ -82,44 +82,23 @@ impl ErrorOut {
 }
 
 pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
-    let file = args.output.display().to_string();
-    let ending = args.output.extension().map(|ending| ending.to_ascii_lowercase());
-    if ending.is_none_or(|ending| ending != "png") {
-        return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
-    }
-    let files = args.frames.files(&args.output)?;
+    let files = args.files()?;
     let construction = args.construction()?;
     args.check_shading()?;
     let legend = if args.shading.is_painted() { Legend::height(args.size)? } else { 0 };
     let progress = Progress::new("reading the mesh");
-    let moving = args.frames.load(&args.mesh.source, &progress)?;
-    let (mesh, local) = match &moving {
-        None => Local::of(args.mesh.load(&progress)?)?,
-        Some(moving) => {
-            let local = Local::around(moving.bounds()?);
-            (local.take(moving.first()?)?, local)
-        }
-    };
-    let moving = moving.map(|moving| moving.in_space(local));
+    let (mesh, local, moving) = args.load(&progress)?;
     let painting = args.painting(&mesh, &progress)?;
     progress.now("building tables");
-    let evaluation = match args.evaluation.evaluation {
-        _ if args.factor.level.is_some() => Evaluation::Subdivision,
-        Maker::Device(evaluation) => evaluation,
-        Maker::Cpu => Evaluation::default(),
-    };
-    let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(construction) };
     let texels = args.displacement.texels()?;
-    options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
+    let options = args.model_options(construction, texels.is_some(), painting.is_some());
     let drawn = painting.as_ref().map_or(&mesh, Painting::mesh);
-    options.refine = if painting.is_some() { 0 } else { options.refine };
     let tables = ModelTables::new(drawn, &options)?;
     if painting.is_none() {
         report_notices(tables.notices(), &progress);
     }
     let patches = Patches::of(&tables);
     let size = [args.size[0], args.size[1] - legend];
-    progress.now("placing the camera");
     let views = args.views(&mesh, moving.as_ref(), texels.as_ref(), local, size)?;
     progress.now("drawing");
     let shown = Shown { files: &files, views: &views, moving: moving.as_ref() };
@@ -135,7 +114,6 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         Ok((samples, headless.properties().name.clone(), pixels, statistics))
     })?;
     if let Some(mut pixels) = pixels {
-        progress.now("writing the picture");
         args.save(&args.output, &mut pixels, painting.as_ref())?;
     }
     drop(progress);
@@ -144,7 +122,7 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         return args.print(patches, samples, &device, error);
     }
     output::json_pretty(&RenderOut {
-        file: &file,
+        file: &args.output.display().to_string(),
         size: args.size,
         patches,
         evaluation: if args.is_cpu() { args.evaluation.evaluation.name() } else { options.evaluation.name() },
@@ -162,6 +140,46 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         time: args.mesh.source.time.time,
         frames: moving.as_ref().map(Moving::described),
     })
+}
+
+impl RenderArgs {
+    /// Names of the pictures.
+    fn files(&self) -> Result<Vec<PathBuf>, CliError> {
+        let ending = self.output.extension().map(|ending| ending.to_ascii_lowercase());
+        if ending.is_none_or(|ending| ending != "png") {
+            let file = self.output.display();
+            return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
+        }
+        self.frames.files(&self.output)
+    }
+
+    /// Options of the model that is drawn.
+    fn model_options(&self, construction: Construction, displaced: bool, painted: bool) -> ModelOptions {
+        let evaluation = match self.evaluation.evaluation {
+            _ if self.factor.level.is_some() => Evaluation::Subdivision,
+            Maker::Device(evaluation) => evaluation,
+            Maker::Cpu => Evaluation::default(),
+        };
+        let options = self.mesh.model_options(construction);
+        ModelOptions {
+            spacing: self.spacing,
+            evaluation,
+            displacement: displaced.then_some(DisplacementId::FIRST),
+            // What is painted is of the mesh that was refined for it.
+            refine: if painted { 0 } else { options.refine },
+            ..options
+        }
+    }
+
+    /// The mesh in its local space, in the first of the frames if there are any.
+    fn load(&self, progress: &Progress) -> Result<(ControlMesh, Local, Option<Moving>), CliError> {
+        let Some(moving) = self.frames.load(&self.mesh.source, progress)? else {
+            let (mesh, local) = Local::of(self.mesh.load(progress)?)?;
+            return Ok((mesh, local, None));
+        };
+        let local = Local::around(moving.bounds()?);
+        Ok((local.take(moving.first()?)?, local, Some(moving.in_space(local))))
+    }
 }
 
 /// What is drawn into which files.
