@@ -22,10 +22,12 @@ fn surfaces_are_written_closed() {
         "depth_histogram",
         "faces",
         "file",
+        "frames",
         "largest_error",
         "mesh",
         "quads",
         "seconds",
+        "time",
         "triangles",
         "vertices",
     ];

@@ -24,28 +24,27 @@ impl TessellateArgs {
         let options = self.options_of_frames(&first, moving)?;
         let plan = Plan::<f32>::new(&Topology::new(&first), &options)?;
         self.check_size(plan.sizes())?;
-        let mut largest_error = if texels.is_none() { Some(0.0) } else { None };
-        if let Some(error) = &mut largest_error {
-            for positions in moving.frames() {
-                let plan = Plan::<f32>::new(&Topology::new(&moved(&first, positions?)?), &options)?;
-                *error = plan.error_bound()?.max(*error);
-            }
-        }
-        self.note_error(largest_error, progress);
+        let mut largest_error = if texels.is_none() { Some(0.0f64) } else { None };
         let (depth_histogram, unused) = (plan.depth_histogram(), plan.unused());
         let mut tessellation = Tessellation::of(plan, &first.data().positions)?;
         let [scale, bias] = self.displacement.amount(&first);
         progress.fill("tessellating", files.len() as u64);
         let mut counts = [0; 3];
         for (file, positions) in files.iter().zip(moving.frames()) {
-            let positions: Vec<[f32; 3]> = positions?.into_iter().map(|p| p.map(|x| x as f32)).collect();
-            tessellation.update(&positions)?;
+            let positions = positions?;
+            let single: Vec<[f32; 3]> = positions.iter().map(|p| p.map(|x| x as f32)).collect();
+            tessellation.update(&single)?;
             if let Some(texels) = &texels {
                 tessellation.displace(|texcoord| scale * texels.sample(texcoord) + bias)?;
             }
             counts = self.write_arrays(file, kind, &tessellation, &unused)?;
+            if let Some(error) = &mut largest_error {
+                let plan = Plan::<f32>::new(&Topology::new(&moved(&first, positions)?), &options)?;
+                *error = plan.error_bound()?.max(*error);
+            }
             progress.advance(1);
         }
+        self.note_error(largest_error, progress);
         Ok(Made { counts, depth_histogram, largest_error, frames: Some(moving.described()) })
     }
 
