@@ -3,7 +3,7 @@
 use super::drawable::{Drawable, Frame, Lane, Pass, Setup, timed};
 use super::{BenchError, Motion};
 use crate::dice::{DiceOptions, MAX_DEPTH, Tessellation};
-use crate::gpu::GpuError;
+use crate::gpu::{GpuError, Spacing};
 use crate::renderer::{Style, TableBytes};
 use crate::topology::Topology;
 use crate::triangles::{Triangles, TrianglesItem};
@@ -18,10 +18,13 @@ pub(super) struct Cpu<'a> {
 }
 
 impl<'a> Cpu<'a> {
-    pub(super) fn new(lane: Lane<'a>) -> Self {
+    pub(super) fn new(lane: Lane<'a>) -> Result<Self, BenchError> {
+        if lane.spacing != Spacing::Equal {
+            return Err(unsupported(format!("{} spacing: theirs is equal", lane.spacing.name())));
+        }
         let mesh = &lane.subject.mesh;
         let (topology, control) = (Topology::new(mesh), mesh.positions_f32());
-        Self { lane, topology, control, drawn: None, setup: Setup::default() }
+        Ok(Self { lane, topology, control, drawn: None, setup: Setup::default() })
     }
 }
 
