@@ -29,6 +29,7 @@
 //! |---|---|---|---|
 //! | 10 | `bench` (features `measure` and `headless`) | how long each way to draw takes | files, printing |
 //! | 9 | `measure` (feature `measure`) | how far schemes, and triangles on the screen, are from the limit surface; whether patches meet; statistics | files, printing |
+//! | 8 | [`triangles`](mod@triangles) (feature `headless`) | triangles of the CPU, drawn as the renderer shades | files, windows |
 //! | 8 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
 //! | 7 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
 //! | 6 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
@@ -144,6 +145,8 @@ pub mod renderer;
 pub mod table;
 pub mod tessellate;
 pub mod topology;
+#[cfg(feature = "headless")]
+pub mod triangles;
 
 pub use glam;
 pub use gpu::{Allocator, ContextOptions, DeviceContext, Spacing};
@@ -168,6 +171,8 @@ mod pages {
     pub struct Drawing;
     #[doc = include_str!("../docs/meshes.md")]
     pub struct Meshes;
+    #[doc = include_str!("../docs/animation.md")]
+    pub struct Animation;
     #[doc = include_str!("../docs/tessellate.md")]
     pub struct Tessellate;
 }

@@ -20,6 +20,7 @@
 //!   they compiled on the disk: for a first use in truth, switch that off (Mesa: `MESA_SHADER_CACHE_DISABLE=1`).
 //! * **recording** ([`Bench::recording`]): what the host takes to record a frame of many models.
 
+mod cpu;
 mod drawable;
 mod error;
 mod floors;
@@ -72,6 +73,9 @@ named! {
         GeometryTwoPass = Evaluation::GeometryTwoPass.name(),
         /// Faces subdivided in a geometry shader ([`Evaluation::Subdivision`]): at factors 1, 2, 4 and 8.
         Subdivision = Evaluation::Subdivision.name(),
+        /// The limit surface out of the CPU's arrays ([`dice`](crate::dice)), filled anew and copied whenever the vertices move: in the
+        /// times by the host's clock, not in those of the device. Factors are rounded up to a power of two, from 2 up.
+        Cpu = "cpu",
         /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
         Bilinear = "bilinear",
         /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
@@ -81,7 +85,7 @@ named! {
 }
 
 impl Path {
-    /// Evaluation of the patches; `None` for a floor.
+    /// Evaluation of the patches; `None` for a floor, and for the CPU's vertices.
     pub fn evaluation(self) -> Option<Evaluation> {
         match self {
             Self::Tessellation | Self::AccPublished => Some(Evaluation::Tessellation),
@@ -90,7 +94,7 @@ impl Path {
             Self::Geometry => Some(Evaluation::Geometry),
             Self::GeometryTwoPass => Some(Evaluation::GeometryTwoPass),
             Self::Subdivision => Some(Evaluation::Subdivision),
-            Self::Bilinear | Self::VertexBuffer => None,
+            Self::Cpu | Self::Bilinear | Self::VertexBuffer => None,
         }
     }
 
@@ -98,7 +102,7 @@ impl Path {
     pub fn schemes(self) -> &'static [Scheme] {
         match self {
             _ if self.is_published_acc() => &[Scheme::Acc],
-            Self::Subdivision | Self::Bilinear | Self::VertexBuffer => &[],
+            Self::Subdivision | Self::Cpu | Self::Bilinear | Self::VertexBuffer => &[],
             _ => &Scheme::ALL,
         }
     }
@@ -114,7 +118,7 @@ impl Path {
 
     /// Whether [`Bench::recording`] knows it: what the renderer draws by itself.
     pub fn is_recorded(self) -> bool {
-        !self.is_floor() && !self.is_published_acc()
+        self.evaluation().is_some() && !self.is_published_acc()
     }
 
     /// Whether it is there to compare with only: ACC as published.
@@ -129,7 +133,7 @@ impl Path {
 
     /// Whether it does less than draw the surface from control vertices that move: what the others cannot get below.
     pub fn is_floor(self) -> bool {
-        self.evaluation().is_none()
+        matches!(self, Self::Bilinear | Self::VertexBuffer)
     }
 }
 
@@ -189,7 +193,7 @@ named! {
 pub struct Contestant {
     /// Way to draw the surface.
     pub path: Path,
-    /// Scheme and construction of the patches; `None` for floors and subdivision.
+    /// Scheme and construction of the patches; `None` for floors, subdivision and the CPU's vertices.
     pub patches: Option<(Scheme, Construction)>,
     /// Depth of adaptive subdivision; `None` where each face is one patch of the scheme.
     pub depth: Option<u32>,
@@ -225,9 +229,9 @@ impl Contestant {
 
     /// Variants with each of these normals and cullings that it can be combined with: patches are culled where
     /// [`Evaluation::culls`], by each of these that can (as it is if none are given), and normals shared where the scheme is
-    /// watertight and [`Evaluation::shares`]. Floors stay as they are.
+    /// watertight and [`Evaluation::shares`]. Floors, and the CPU's vertices, stay as they are.
     pub fn variants(self, normals: &[Normals], culls: &[Cull], cull_by: &[CullBy]) -> Vec<Self> {
-        if self.path.is_floor() {
+        if self.path.evaluation().is_none() {
             return vec![self];
         }
         let culls_any = !self.path.is_published_acc() && self.path.evaluation().is_some_and(Evaluation::culls);

@@ -1,5 +1,6 @@
 //! Everything that is raced on one mesh, drawn in turns.
 
+use super::cpu::Cpu;
 use super::drawable::{Drawable, Frame, Lane, Pass, VERTEX_BYTES};
 use super::floors::{Bilinear, VertexBuffer, device_buffer};
 use super::scene::Scene;
@@ -315,6 +316,7 @@ impl<'h> Bench<'h> {
 /// Makes everything of a contestant that does not depend on the factor.
 fn open(contestant: Contestant, lane: Lane<'_>) -> Result<Box<dyn Drawable + '_>, BenchError> {
     Ok(match contestant.path {
+        Path::Cpu => Box::new(Cpu::new(lane)?),
         Path::Bilinear => Box::new(Bilinear::new(lane)?),
         Path::VertexBuffer => Box::new(VertexBuffer::new(lane)?),
         _ => Box::new(Surface::new(lane, contestant)?),

@@ -49,8 +49,7 @@ impl CameraArgs {
         if self.up.length_squared() < 1e-12 {
             return Err(CliError::Usage("--up: it must have a length".into()));
         }
-        let tan_y = (f64::from(self.fov).to_radians() / 2.0).tan();
-        let tan = DVec2::new(tan_y * aspect, tan_y);
+        let tan = self.tan(aspect);
         let (eye, axes) = match self.eye {
             Some(eye) => (eye, self.axes_from(eye, points)?),
             None => {
@@ -71,6 +70,27 @@ impl CameraArgs {
             aspect as f32,
             [near as f32, far as f32],
         ))
+    }
+
+    /// Tangents of half the angles of view.
+    fn tan(&self, aspect: f64) -> DVec2 {
+        let tan_y = (f64::from(self.fov).to_radians() / 2.0).tan();
+        DVec2::new(tan_y * aspect, tan_y)
+    }
+
+    /// A few points that the view of many, and of others with them, depends on: of an animation's frames no more need be kept.
+    pub(super) fn deciding(&self, points: &[DVec3], aspect: f64) -> Vec<DVec3> {
+        if self.eye.is_some() {
+            let [low, high] = bounds(points);
+            let corner =
+                |bits: u32| DVec3::from_array([0, 1, 2].map(|k| if bits >> k & 1 == 0 { low[k] } else { high[k] }));
+            return (0..8).map(corner).collect();
+        }
+        let (axes, tan) = (self.axes_around(), self.tan(aspect) / ROOM * f64::from(self.zoom));
+        let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis];
+        let directions = [z * tan.x + x, z * tan.x - x, z * tan.y + y, z * tan.y - y, z, -z];
+        let farthest = |d: DVec3| points.iter().copied().max_by(|a, b| a.dot(d).total_cmp(&b.dot(d)));
+        directions.into_iter().filter_map(farthest).collect()
     }
 
     /// Right, up and backwards for the eye that was turned and lifted.
@@ -95,14 +115,20 @@ impl CameraArgs {
 }
 
 fn middle(points: &[DVec3]) -> DVec3 {
-    let low = points.iter().copied().fold(DVec3::MAX, DVec3::min);
-    let high = points.iter().copied().fold(DVec3::MIN, DVec3::max);
+    let [low, high] = bounds(points);
     (low + high) / 2.0
 }
 
+fn bounds(points: &[DVec3]) -> [DVec3; 2] {
+    let low = points.iter().copied().fold(DVec3::MAX, DVec3::min);
+    [low, points.iter().copied().fold(DVec3::MIN, DVec3::max)]
+}
+
+/// Room at the sides of a picture that is fitted.
+const ROOM: f64 = 1.08;
+
 /// The nearest eye that sees all points, with some room at the sides; `tan` of half the angles of view.
 fn frame(points: &[DVec3], axes: DMat3, tan: DVec2, zoom: f64) -> DVec3 {
-    const ROOM: f64 = 1.08;
     let tan = tan / ROOM * zoom;
     // In the eye's axes a point p is left of the right-hand plane if p.x + p.z tan <= eye.x + eye.z tan, and so on: the
     // farthest points in four directions decide.

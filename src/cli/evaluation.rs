@@ -1,7 +1,7 @@
 //! Evaluation and construction of the patches.
 
 use super::error::CliError;
-use super::parse;
+use super::parse::{self, Maker};
 use ash_subdiv::Construction;
 use ash_subdiv::renderer::Evaluation;
 use clap::Args;
@@ -9,9 +9,9 @@ use clap::Args;
 #[derive(Debug, Args)]
 pub(super) struct EvaluationArgs {
     /// Evaluation of the patches. All but the tessellation stages give every edge as many segments as --factor says,
-    /// rounded up.
-    #[arg(long, value_name = "WHAT", default_value = Evaluation::Tessellation.name(), value_parser = parse::evaluation())]
-    pub(super) evaluation: Evaluation,
+    /// rounded up. cpu needs no patches: points of the limit surface, their segments rounded up to a power of two.
+    #[arg(long, value_name = "WHAT", default_value = Evaluation::Tessellation.name(), value_parser = parse::maker())]
+    pub(super) evaluation: Maker,
     /// Construction of the control points on the GPU; if not given, as is usual with the evaluation (two-stage with tessellation).
     #[arg(long, value_name = "HOW", value_parser = parse::one_of(Construction::ALL, Construction::name))]
     construction: Option<Construction>,
@@ -23,9 +23,17 @@ impl EvaluationArgs {
     pub(super) fn construction(&self, given: &[(&str, bool)], shares: Option<&str>) -> Result<Construction, CliError> {
         let name = self.evaluation.name();
         let wrong = |what: &str| CliError::Usage(format!("--evaluation {name}: it does not go with {what}"));
-        let known = self.evaluation.constructions().iter().copied();
-        let known: Vec<_> = known.filter(|&c| shares.is_none() || self.evaluation.shares(c)).collect();
-        let given = given.iter().filter(|(_, given)| *given && self.evaluation != Evaluation::Tessellation);
+        let given =
+            given.iter().filter(|(_, given)| *given && self.evaluation != Maker::Device(Evaluation::Tessellation));
+        let Maker::Device(evaluation) = self.evaluation else {
+            let construction = self.construction.map(|_| "--construction");
+            return match given.map(|(what, _)| *what).chain(shares).chain(construction).next() {
+                Some(what) => Err(wrong(&format!("{what}: leave one of both out"))),
+                None => Ok(Construction::default()),
+            };
+        };
+        let known = evaluation.constructions().iter().copied();
+        let known: Vec<_> = known.filter(|&c| shares.is_none() || evaluation.shares(c)).collect();
         let given = given.map(|(what, _)| *what).chain(shares.filter(|_| known.is_empty())).next();
         if let Some(what) = given {
             return Err(wrong(&format!("{what}: leave one of both out")));

@@ -6,7 +6,7 @@ use super::output::{self, Progress, Table};
 use super::parse;
 use super::source::{MeshArgs, notes};
 use ash_subdiv::adaptive::{AdaptiveOptions, LevelCounts, Reason};
-use ash_subdiv::mesh::{Repair, Repairs};
+use ash_subdiv::mesh::{Animations, Repair, Repairs};
 use ash_subdiv::renderer::ModelTables;
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions};
@@ -67,6 +67,23 @@ described! {
         loose_edges: usize = "on boundaries, on others",
         /// Put together out of triangles.
         rebuilt_quads: usize = "out of triangles",
+        animations: Vec<AnimationOut>,
+    }
+}
+
+described! {
+    #[derive(Serialize)]
+    struct AnimationOut {
+        name: Option<String> = "null if it has none",
+        seconds: f64 = "time of the last key",
+    }
+}
+
+impl AnimationOut {
+    fn all(animations: &Animations) -> Vec<Self> {
+        let one =
+            |number| Self { name: animations.name(number).map(str::to_owned), seconds: animations.duration(number) };
+        (0..animations.len()).map(one).collect()
     }
 }
 
@@ -211,16 +228,22 @@ impl Display for Patches {
 pub(super) fn run(args: &InfoArgs, json: bool) -> Result<(), CliError> {
     let progress = Progress::new("reading the mesh");
     let (mesh, repairs) = args.mesh.source.load_repaired()?;
+    // They need not be right where nobody asks for them.
+    let animations = args.mesh.source.animations().unwrap_or_else(|error| {
+        error.message().iter().for_each(|why| progress.note(format!("the animations can't be read: {why}")));
+        Animations::default()
+    });
     progress.now("building tables");
     let options = args.mesh.model_options(args.construction);
     let tables = ModelTables::new(&mesh, &options)?;
-    let info = Info::new(&mesh, &tables, &options, &repairs);
+    let animations_out = AnimationOut::all(&animations);
+    let info = Info { animations: animations_out, ..Info::new(&mesh, &tables, &options, &repairs) };
     drop(progress);
     if json {
         return output::json_pretty(&info);
     }
     info.print()?;
-    notes(&repairs).iter().for_each(output::note);
+    notes(&repairs).iter().chain(animations.notes()).for_each(output::note);
     info.notices.iter().for_each(output::note);
     Ok(())
 }
@@ -262,6 +285,7 @@ impl Info {
             repairs: repairs.list.iter().map(Repaired::new).collect(),
             loose_edges: repairs.loose_edges,
             rebuilt_quads: repairs.rebuilt_quads,
+            animations: Vec::new(),
         }
     }
 
@@ -288,6 +312,10 @@ impl Info {
         table.row([&"  irregular quads", &self.patches.irregular_quad]);
         table.row([&"  triangles", &self.patches.triangle]);
         table.row([&"  of pentagons", &self.patches.pentagon]);
+        for (number, AnimationOut { name, seconds }) in self.animations.iter().enumerate() {
+            let name = name.as_deref().unwrap_or("without a name");
+            table.row([&format!("animation {number}, {name}: seconds"), seconds]);
+        }
         table.row([&"connectivity types", &self.connectivity_types]);
         table.row([&format!("bytes, {}", self.construction), &self.bytes["total"]]);
         for (name, bytes) in self.bytes.iter().filter(|(name, _)| **name != "total") {

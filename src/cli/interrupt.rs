@@ -51,12 +51,17 @@ impl Drop for Watch {
     }
 }
 
+/// Whether the program is asked to end, while there is a [`Watch`].
+pub(super) fn is_interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
 /// Writes until the program is asked to end.
 pub(super) struct Interruptible<W>(pub W);
 
 impl<W: Write> Write for Interruptible<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if INTERRUPTED.load(Ordering::Relaxed) {
+        if is_interrupted() {
             return Err(io::Error::other("interrupted: nothing is written"));
         }
         self.0.write(bytes)

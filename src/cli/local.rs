@@ -25,24 +25,37 @@ impl Local {
     /// Takes a mesh into its local space.
     pub(super) fn of(mesh: ControlMesh) -> Result<(ControlMesh, Self), CliError> {
         let local = Self::around(mesh.bounds());
-        if local.is_file() {
-            return Ok((mesh, local));
+        Ok((local.take(mesh)?, local))
+    }
+
+    /// Takes a mesh into this space.
+    pub(super) fn take(self, mesh: ControlMesh) -> Result<ControlMesh, CliError> {
+        if self.is_file() {
+            return Ok(mesh);
         }
         let mut data: MeshData = mesh.into_data();
-        data.positions.iter_mut().for_each(|position| *position = local.to_local((*position).into()).into());
+        self.take_positions(&mut data.positions);
         for edit in &mut data.edits {
             match &mut edit.change {
-                Change::Position { position, .. } => *position = local.to_local((*position).into()).into(),
+                Change::Position { position, .. } => *position = self.to_local((*position).into()).into(),
                 Change::Offset { offset, .. } | Change::FrameOffset { offset, .. } => {
-                    *offset = offset.map(|x| x / local.size);
+                    *offset = offset.map(|x| x / self.size);
                 }
                 _ => {}
             }
         }
-        Ok((ControlMesh::new(data)?, local))
+        Ok(ControlMesh::new(data)?)
     }
 
-    fn around([low, high]: [DVec3; 2]) -> Self {
+    /// Takes points of the file into this space.
+    pub(super) fn take_positions(self, positions: &mut [[f64; 3]]) {
+        if !self.is_file() {
+            positions.iter_mut().for_each(|position| *position = self.to_local((*position).into()).into());
+        }
+    }
+
+    /// The space for everything within these bounds.
+    pub(super) fn around([low, high]: [DVec3; 2]) -> Self {
         // Halves, for sums may leave the range.
         let (centre, half) = (low / 2.0 + high / 2.0, (high / 2.0 - low / 2.0).length());
         let is_near = centre.abs().max_element() <= 2.0 * FAR * half;

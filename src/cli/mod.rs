@@ -13,6 +13,7 @@
 //! | `obj` | what `shapes` and `convert` write |
 //! | `rules` | rules of subdivision instead of the file's |
 //! | `source` | where the mesh comes from, how it is prepared, which device |
+//! | `motion` | the mesh at a time, sequences of files |
 //! | `output` | standard output, notes, tables of text, progress, files |
 //! | `interrupt` | signals that end the program while it writes |
 //! | `parse` | values of options |
@@ -35,6 +36,7 @@ mod interrupt;
 mod leaves;
 mod local;
 mod memory;
+mod motion;
 mod output;
 mod paint;
 mod parse;

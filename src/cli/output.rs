@@ -105,6 +105,9 @@ impl Table {
     }
 }
 
+/// What a bar shows.
+const BAR: &str = "{msg} {wide_bar} {elapsed}, {eta} left";
+
 /// Shows on a terminal that something is going on, until dropped.
 pub(super) struct Progress(ProgressBar);
 
@@ -122,11 +125,21 @@ impl Progress {
     /// A bar that fills with `steps` steps of [`Progress::advance`], and says how long the rest will take.
     pub(super) fn bar(what: &'static str, steps: u64) -> Self {
         let bar = ProgressBar::new(steps).with_message(what);
-        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {elapsed}, {eta} left") {
+        if let Ok(style) = ProgressStyle::with_template(BAR) {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(500));
         Self(bar)
+    }
+
+    /// From now on a bar, as [`Progress::bar`] has it.
+    pub(super) fn fill(&self, what: &'static str, steps: u64) {
+        if let Ok(style) = ProgressStyle::with_template(BAR) {
+            self.0.set_style(style);
+        }
+        self.0.set_length(steps);
+        self.0.set_position(0);
+        self.0.set_message(what);
     }
 
     /// Further steps are done.

@@ -41,11 +41,30 @@ pub(super) enum Surface {
 /// Name of the limit surface in [`scheme_or_limit`].
 pub(super) const LIMIT: &str = "limit";
 
-/// An evaluation of patches by its name.
-pub(super) fn evaluation() -> impl TypedValueParser<Value = Evaluation> {
+/// Maker of the vertices that are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Maker {
+    /// The device, out of patches.
+    Device(Evaluation),
+    /// The CPU, as points of the limit surface.
+    Cpu,
+}
+
+impl Maker {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Device(evaluation) => evaluation.name(),
+            Self::Cpu => "cpu",
+        }
+    }
+}
+
+/// A maker of vertices by its name.
+pub(super) fn maker() -> impl TypedValueParser<Value = Maker> {
     // Subdivision has --level.
     use Evaluation::{Compute, Geometry, GeometryTwoPass, Instanced, Tessellation};
-    one_of([Tessellation, Compute, Instanced, Geometry, GeometryTwoPass], Evaluation::name)
+    let [a, b, c, d, e] = [Tessellation, Compute, Instanced, Geometry, GeometryTwoPass].map(Maker::Device);
+    one_of([a, b, c, d, e, Maker::Cpu], Maker::name)
 }
 
 /// The largest tessellation factor that every device has.
@@ -78,6 +97,25 @@ pub(super) fn count(text: &str) -> Result<u64, String> {
     let whole = |x: &f64| (0.0..1e15).contains(x) && x.fract() == 0.0;
     let number = text.parse().ok().filter(whole).map(|x: f64| x as u64);
     number.ok_or_else(|| "it must be a whole number, such as 1000000 or 1e6".into())
+}
+
+/// A time.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
+    time.ok_or_else(|| "it must be a number of seconds".into())
+}
+
+/// Frames a second.
+pub(super) fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
+    rate.ok_or_else(|| "it must be a number above 0".into())
+}
+
+/// Frames from the first to the one before the end.
+pub(super) fn frames(text: &str) -> Result<std::ops::Range<u32>, String> {
+    let ends = text.split_once("..").and_then(|(first, end)| Some(first.parse().ok()?..end.parse().ok()?));
+    ends.filter(|frames| !frames.is_empty())
+        .ok_or_else(|| "it must be FIRST..END, such as 0..60 for frames 0 to 59".into())
 }
 
 /// Something above zero.

@@ -84,6 +84,11 @@ impl Shading {
         self.quantity().is_some() || self == Self::Levels
     }
 
+    /// Whether vertices with normals are all that is drawn.
+    pub(super) fn is_of_vertices(self) -> bool {
+        matches!(self, Self::Lit | Self::Normals | Self::Wireframe | Self::ReflectionLines)
+    }
+
     pub(super) fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }
@@ -126,6 +131,11 @@ impl Shading {
     /// The styles of the layers.
     pub(super) fn styles(self, displaced: bool) -> Vec<Style> {
         self.layers(displaced).into_iter().map(|layer| layer.style).collect()
+    }
+
+    /// The colour of each layer, where there are no kinds of patches.
+    pub(super) fn colours(self) -> Vec<[f32; 4]> {
+        self.layers(false).into_iter().map(|layer| layer.colours[0].linear()).collect()
     }
 
     /// A draw for each layer, in order, else like this one.

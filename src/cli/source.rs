@@ -1,12 +1,15 @@
 //! Where the mesh comes from, how it is prepared, and on which device the work is done.
 
 use super::error::CliError;
+use super::motion::{TimeArgs, at_time};
 use super::output::Progress;
 use super::parse;
 use super::rules::RulesArgs;
 use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy, Sums};
 use ash_subdiv::headless::{Headless, HeadlessOptions};
-use ash_subdiv::mesh::{ReadOptions, RepairOptions, Repairs, read, read_repaired, shape};
+use ash_subdiv::mesh::{
+    Animated, Animations, ReadOptions, RepairOptions, Repairs, animated_shape, read, read_animated, read_repaired,
+};
 use ash_subdiv::table::{CpuSurface, Notice, TableOptions};
 use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme};
 use clap::Args;
@@ -59,6 +62,9 @@ pub(super) struct SourceArgs {
     /// With --adaptive: what patches are, a face each or a leaf each. The surface is the same; by leaves --evaluation is tessellation
     #[arg(long, value_name = "WHAT", requires = "adaptive", default_value = "faces", value_parser = parse::one_of(DrawnBy::ALL, DrawnBy::name))]
     by: DrawnBy,
+
+    #[command(flatten)]
+    pub time: TimeArgs,
 
     #[command(flatten)]
     rules: RulesArgs,
@@ -167,11 +173,40 @@ impl SourceArgs {
         Ok(mesh)
     }
 
-    /// Reads the file, or makes the shape.
+    /// Reads the file, or makes the shape, as it is at the time that is asked for.
     pub(super) fn load_repaired(&self) -> Result<(ControlMesh, Repairs), CliError> {
-        let (mesh, repairs) = match (&self.mesh, &self.shape) {
-            (Some(path), None) => self.reading.read(path, self.mesh_name.clone())?,
-            (None, Some(name)) => (shape(name)?, Repairs::default()),
+        let TimeArgs { time, animation } = &self.time;
+        let Some(seconds) = time else {
+            if let Some(name) = animation {
+                return Err(CliError::Usage(format!("--animation {name}: say when, with --time or --frames")));
+            }
+            let Animated { mesh, repairs, .. } = self.read(false)?;
+            return Ok((mesh, repairs));
+        };
+        let animated = self.read(true)?;
+        let animation = self.time.choose(self, &animated.animations)?;
+        Ok((at_time(&animated, animation, *seconds)?, animated.repairs))
+    }
+
+    /// Reads the file, or makes the shape, with its animations; reports repairs.
+    pub(super) fn load_animated(&self, progress: &Progress) -> Result<Animated, CliError> {
+        let animated = self.read(true)?;
+        report_repairs(&animated.repairs, progress);
+        animated.animations.notes().iter().for_each(|note| progress.note(note));
+        Ok(animated)
+    }
+
+    /// The animations of the file or shape.
+    pub(super) fn animations(&self) -> Result<Animations, CliError> {
+        let may_have = self.is_gltf() || self.shape.is_some();
+        if may_have { Ok(self.read(true)?.animations) } else { Ok(Animations::default()) }
+    }
+
+    /// Reads the file, or makes the shape, `moving` with its animations.
+    pub(super) fn read(&self, moving: bool) -> Result<Animated, CliError> {
+        let mut animated = match (&self.mesh, &self.shape) {
+            (Some(path), None) => self.reading.read_animated(path, self.mesh_name.clone(), moving)?,
+            (None, Some(name)) => animated_shape(name)?,
             (Some(path), Some(name)) => {
                 let path = path.display();
                 return Err(CliError::Usage(format!(
@@ -185,7 +220,8 @@ impl SourceArgs {
                 ));
             }
         };
-        Ok((self.rules.apply(mesh)?, repairs))
+        animated.mesh = self.rules.apply(animated.mesh)?;
+        Ok(animated)
     }
 }
 
@@ -226,12 +262,20 @@ impl RebuildQuads {
 impl ReadingArgs {
     /// Reads a file, or one mesh of it.
     pub(super) fn read(&self, path: &Path, mesh: Option<String>) -> Result<(ControlMesh, Repairs), CliError> {
+        let Animated { mesh, repairs, .. } = self.read_animated(path, mesh, false)?;
+        Ok((mesh, repairs))
+    }
+
+    /// Reads a file, or one mesh of it, `moving` with its animations.
+    fn read_animated(&self, path: &Path, mesh: Option<String>, moving: bool) -> Result<Animated, CliError> {
         let quads = self.rebuild_quads == RebuildQuads::Auto;
         let options = ReadOptions { drop_isolated: self.drop_isolated, mesh, quads };
-        match self.strict {
-            true => Ok((read(path, &options)?, Repairs::default())),
-            false => Ok(read_repaired(path, &options, &RepairOptions { weld: self.weld })?),
-        }
+        let repair = (!self.strict).then_some(RepairOptions { weld: self.weld });
+        Ok(match repair {
+            repair if moving => read_animated(path, &options, repair.as_ref())?,
+            Some(repair) => read_repaired(path, &options, &repair)?.into(),
+            None => (read(path, &options)?, Repairs::default()).into(),
+        })
     }
 }
 

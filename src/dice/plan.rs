@@ -128,6 +128,14 @@ impl<T: Real> Plan<T> {
         histogram
     }
 
+    /// The depth of each facet, one a face corner of the control mesh, as [`Depth::Each`](super::Depth::Each) has them; 1 where
+    /// nothing is drawn. Of several positions of one mesh the greatest serve all.
+    pub fn depths(&self) -> Vec<u32> {
+        let mut depths = vec![1; self.face_offsets.last().map_or(0, |&end| end as usize)];
+        self.facets().iter().for_each(|facet| depths[facet.facet as usize] = facet.depth + 1);
+        depths
+    }
+
     /// A distance within which all faces are of the limit surface, for the control vertices of which the plan was made.
     ///
     /// It is a bound from control points: second differences, `(uu + 2 uv + vv) / 8` of them and a quarter of that for each

@@ -69,6 +69,12 @@ pub enum MeshError {
     Format { message: String },
     #[error("there is no mesh or node named \"{name}\" in the scene: {known}")]
     UnknownMesh { name: String, known: String },
+    #[error("there is no animation \"{name}\": {known}")]
+    UnknownAnimation { name: String, known: String },
+    #[error("{given} positions are to be filled, but the mesh has {count} vertices")]
+    PositionCount { given: usize, count: usize },
+    #[error("{seconds} is no time of an animation: it must be a finite number of seconds")]
+    BadTime { seconds: f64 },
     #[error("there is no shape named \"{name}\": choose one of {known}")]
     UnknownShape { name: String, known: String },
 }

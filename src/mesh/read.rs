@@ -1,4 +1,4 @@
-use super::{ControlMesh, MeshError, ObjOptions, RepairOptions, Repairs};
+use super::{Animations, ControlMesh, MeshError, ObjOptions, RepairOptions, Repairs};
 use std::path::Path;
 
 /// How [`read`] reads a file.
@@ -18,7 +18,7 @@ pub struct ReadOptions {
 /// [`MeshError::Unreadable`] where there is no such file or its ending is unknown; otherwise what the reader says,
 /// with the path ([`MeshError::InFile`]).
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<ControlMesh, MeshError> {
-    read_with(path.as_ref(), options, None).map(|(mesh, _)| mesh)
+    read_any(path.as_ref(), options, None, false).map(|read| read.mesh)
 }
 
 /// As [`read`], with what is odd about the file mended: see [`repair`](super::repair()).
@@ -30,13 +30,44 @@ pub fn read_repaired(
     options: &ReadOptions,
     repair: &RepairOptions,
 ) -> Result<(ControlMesh, Repairs), MeshError> {
-    read_with(path.as_ref(), options, Some(repair))
+    read_any(path.as_ref(), options, Some(repair), false).map(|read| (read.mesh, read.repairs))
 }
 
-type Read = Result<(ControlMesh, Repairs), MeshError>;
+/// A mesh with what moves it.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Animated {
+    /// The control mesh, as nothing moves it.
+    pub mesh: ControlMesh,
+    /// What was mended.
+    pub repairs: Repairs,
+    /// Empty where nothing moves.
+    pub animations: Animations,
+}
 
-/// Reads a file; with `None` nothing is mended, but quads may be put together.
-fn read_with(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
+/// As [`read`], or [`read_repaired`] with `repair`, with the animations of the file. Only glTF has any.
+///
+/// # Errors
+/// As [`read`], and where skins, morph targets or animations are broken.
+pub fn read_animated(
+    path: impl AsRef<Path>,
+    options: &ReadOptions,
+    repair: Option<&RepairOptions>,
+) -> Result<Animated, MeshError> {
+    read_any(path.as_ref(), options, repair, true)
+}
+
+type Read = Result<Animated, MeshError>;
+
+/// A mesh that nothing moves.
+impl From<(ControlMesh, Repairs)> for Animated {
+    fn from((mesh, repairs): (ControlMesh, Repairs)) -> Self {
+        Self { mesh, repairs, animations: Animations::default() }
+    }
+}
+
+/// Reads a file, `moving` with its animations; without `repair` nothing is mended, but quads may be put together.
+fn read_any(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>, moving: bool) -> Read {
     let unreadable = |message: String| MeshError::Unreadable { path: path.to_owned(), message };
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     let reader = match ending.as_deref() {
@@ -55,27 +86,27 @@ fn read_with(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>)
         std::io::ErrorKind::NotFound => unreadable("there is no such file".into()),
         _ => unreadable(error.to_string()),
     })?;
-    reader(path, &bytes, options, repair)
+    reader(path, &bytes, options, repair, moving)
         .map_err(|error| MeshError::InFile { path: path.to_owned(), error: Box::new(error) })
 }
 
-fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
+fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>, _: bool) -> Read {
     whole(options, "an OBJ file")?;
-    match repair {
-        Some(repair) => ControlMesh::from_obj_bytes_repaired(bytes, repair),
+    Ok(Animated::from(match repair {
+        Some(repair) => ControlMesh::from_obj_bytes_repaired(bytes, repair)?,
         None => {
             let options = ObjOptions { drop_isolated: options.drop_isolated };
-            Ok((ControlMesh::from_obj_bytes(bytes, &options)?, Repairs::default()))
+            (ControlMesh::from_obj_bytes(bytes, &options)?, Repairs::default())
         }
-    }
+    }))
 }
 
-fn read_ply(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
+fn read_ply(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>, _: bool) -> Read {
     whole(options, "a PLY file")?;
-    match repair {
-        Some(repair) => ControlMesh::from_ply_bytes_repaired(bytes, repair),
-        None => Ok((ControlMesh::from_ply_bytes(bytes)?, Repairs::default())),
-    }
+    Ok(Animated::from(match repair {
+        Some(repair) => ControlMesh::from_ply_bytes_repaired(bytes, repair)?,
+        None => (ControlMesh::from_ply_bytes(bytes)?, Repairs::default()),
+    }))
 }
 
 /// No mesh of several is asked for.
@@ -87,19 +118,22 @@ fn whole(options: &ReadOptions, file: &str) -> Result<(), MeshError> {
 }
 
 #[cfg(feature = "gltf")]
-fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>) -> Read {
+fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>, moving: bool) -> Read {
     let folder = path.parent().map(Path::to_owned);
     let options = super::GltfOptions { mesh: options.mesh.clone(), folder, quads: options.quads };
-    match repair {
-        Some(repair) => ControlMesh::from_gltf_bytes_repaired(bytes, &options, repair),
+    if moving {
+        return ControlMesh::from_gltf_bytes_animated(bytes, &options, repair);
+    }
+    Ok(Animated::from(match repair {
+        Some(repair) => ControlMesh::from_gltf_bytes_repaired(bytes, &options, repair)?,
         None => {
             let (data, rebuilt_quads) = super::gltf::read(bytes, &options)?;
-            Ok((ControlMesh::new(data)?, Repairs { rebuilt_quads, ..Repairs::default() }))
+            (ControlMesh::new(data)?, Repairs { rebuilt_quads, ..Repairs::default() })
         }
-    }
+    }))
 }
 
 #[cfg(not(feature = "gltf"))]
-fn read_gltf(_: &Path, _: &[u8], _: &ReadOptions, _: Option<&RepairOptions>) -> Read {
+fn read_gltf(_: &Path, _: &[u8], _: &ReadOptions, _: Option<&RepairOptions>, _: bool) -> Read {
     Err(MeshError::Format { message: "this build can't read glTF: turn on the cargo feature \"gltf\"".into() })
 }

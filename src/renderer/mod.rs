@@ -65,10 +65,10 @@ pub use shader::ShaderId;
 #[cfg(feature = "headless")]
 pub(crate) use shader::Capture;
 #[cfg(feature = "headless")]
-pub(crate) use shader::STAGES;
+pub(crate) use shader::{DrawConstants, ItemRecord, STAGES, ViewData};
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub(crate) use {
     evaluate::{subdivision::level as subdivision_level, topology},
     options::is_size,
-    shader::{DrawConstants, ItemRecord, ViewData, reads_texels, spaced},
+    shader::{reads_texels, spaced},
 };

@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 mod adaptive;
+mod animation;
 mod bench;
 #[path = "../common/mod.rs"]
 mod common;

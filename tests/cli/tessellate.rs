@@ -22,10 +22,12 @@ fn surfaces_are_written_closed() {
         "depth_histogram",
         "faces",
         "file",
+        "frames",
         "largest_error",
         "mesh",
         "quads",
         "seconds",
+        "time",
         "triangles",
         "vertices",
     ];
@@ -209,4 +211,90 @@ fn nothing_half_written_is_left() {
     assert!(kill.success() && !status.success(), "{status} {:?}", status.signal());
     assert_eq!(files(&folder), ["a.obj"]);
     assert_eq!(fs::read_to_string(&path).unwrap(), "from before");
+}
+
+/// Positions and faces of an OBJ file, read here: only what this program writes, but nothing of how.
+fn plain_obj(path: &Path) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
+    let (mut positions, mut faces) = (Vec::new(), Vec::new());
+    for line in std::fs::read_to_string(path).unwrap().lines() {
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => {
+                let numbers: Vec<f64> = words.map(|word| word.parse().unwrap()).collect();
+                positions.push([numbers[0], numbers[1], numbers[2]]);
+            }
+            Some("f") => {
+                let index = |word: &str| word.split('/').next().unwrap().parse::<usize>().unwrap() - 1;
+                faces.push(words.map(index).collect());
+            }
+            _ => {}
+        }
+    }
+    (positions, faces)
+}
+
+/// The first vertex that lies inside an edge of other vertices, to a part of the edge's length.
+fn inside_an_edge(positions: &[[f64; 3]], edges: &[[usize; 2]]) -> Option<(usize, [usize; 2])> {
+    let longest = |[a, b]: [usize; 2]| (0..3).map(|k| (positions[a][k] - positions[b][k]).abs()).fold(0.0, f64::max);
+    let size = edges.iter().map(|&edge| longest(edge)).fold(0.0, f64::max);
+    let cell = |p: [f64; 3]| p.map(|x| (x / size).floor() as i64);
+    let mut cells: std::collections::HashMap<[i64; 3], Vec<usize>> = std::collections::HashMap::new();
+    (0..positions.len()).for_each(|vertex| cells.entry(cell(positions[vertex])).or_default().push(vertex));
+    let lies_in = |vertex: usize, [a, b]: [usize; 2]| {
+        let [p, a, b] = [vertex, a, b].map(|v| glam::DVec3::from(positions[v]));
+        let t = (p - a).dot(b - a) / (b - a).length_squared();
+        (1e-4..1.0 - 1e-4).contains(&t) && (p - a - t * (b - a)).length() < 1e-6 * (b - a).length()
+    };
+    edges.iter().find_map(|&edge| {
+        let middle = [0, 1, 2].map(|k| (positions[edge[0]][k] + positions[edge[1]][k]) / 2.0);
+        let [x, y, z] = cell(middle);
+        let around = (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
+        let near = around.filter_map(|cell| cells.get(&cell)).flatten();
+        let inside = near.copied().find(|&vertex| !edge.contains(&vertex) && lies_in(vertex, edge));
+        inside.map(|vertex| (vertex, edge))
+    })
+}
+
+#[test]
+fn no_vertex_of_a_file_is_inside_an_edge_of_others() {
+    let folder = folder("t-junctions");
+    // A cube that stays flat: there a vertex inside an edge would lie on it.
+    let faces = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+    let mut text: String = (0..8).map(|i| format!("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2)).collect();
+    for face @ [a, b, c, d] in faces {
+        text += &format!("f {a} {b} {c} {d}\n");
+        (0..4).for_each(|k| text += &format!("t crease 2/1/0 {} {} 10\n", face[k] - 1, face[(k + 1) % 4] - 1));
+    }
+    let flat = folder.join("flat.obj");
+    std::fs::write(&flat, text).unwrap();
+    let flat = flat.display().to_string();
+    let view = "--pixels 6 --size 200x200 --eye 1.5,1.6,1.7 --target 0,0,0 --fov 60";
+    for (source, depth, closed) in [
+        (flat.as_str(), view, true),
+        ("--shape creature", "--tolerance 0.004", true),
+        ("--shape machine-part", "--edge-length 0.12", true),
+        ("--shape cloth", view, false),
+    ] {
+        for quads in ["", "--quads"] {
+            let path = folder.join("out.obj");
+            let told = json(&format!("tessellate {source} {depth} {quads} -o {}", path.display()));
+            let depths = told["depth_histogram"].as_array().unwrap().iter().filter(|count| **count != 0).count();
+            assert!(depths > 1, "{source}: depths differ");
+            let (positions, faces) = plain_obj(&path);
+            let mut sides = std::collections::HashMap::new();
+            for face in &faces {
+                for (k, &from) in face.iter().enumerate() {
+                    let to = face[(k + 1) % face.len()];
+                    assert!(sides.insert([from, to], ()).is_none(), "{source}: two faces run from {from} to {to}");
+                }
+            }
+            let open = sides.keys().filter(|[a, b]| !sides.contains_key(&[*b, *a])).count();
+            assert!(if closed { open == 0 } else { open > 0 }, "{source}: {open} open edges");
+            let edges: Vec<[usize; 2]> = sides.into_keys().filter(|[a, b]| a < b || open > 0).collect();
+            assert_eq!(inside_an_edge(&positions, &edges), None, "{source} {depth} {quads}");
+        }
+    }
+    // It would be seen.
+    let positions = [[0., 0., 0.], [1., 0., 0.], [0.5, 0., 0.], [0.5, 1., 0.]];
+    assert_eq!(inside_an_edge(&positions, &[[0, 3], [0, 1]]), Some((2, [0, 1])));
 }

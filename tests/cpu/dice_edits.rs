@@ -70,12 +70,19 @@ fn sharpness_reaches_along_creases() {
     let data = MeshData { crease_method: CreaseMethod::Chaikin, ..grid_torus(12, 8) };
     let mut random = Random::new(2);
     let edges = data.face_vertices.chunks_exact(4).flat_map(|face| [[face[0], face[1]], [face[1], face[2]]]);
-    let creases = edges.map(|vertices| Crease { vertices, sharpness: [0.0, 0.3, 1.2, 2.1, 4.5][random.below(5)] });
-    let creases: Vec<Crease> = creases.collect();
-    let mesh = ControlMesh::new(MeshData { creases, ..data }).unwrap();
+    // In the second kind weak creases are fully sharp for what is at both of their ends, the far one too.
+    for kinds in [[0.0, 0.3, 1.2, 2.1, 4.5], [0.3, 0.3, 0.7, 6.0, 6.0]] {
+        let crease = |vertices| Crease { vertices, sharpness: kinds[random.below(5)] };
+        let creases: Vec<Crease> = edges.clone().map(crease).collect();
+        let mesh = ControlMesh::new(MeshData { creases, ..data.clone() }).unwrap();
+        sharpness_reaches_along(&mesh);
+    }
+}
+
+fn sharpness_reaches_along(mesh: &ControlMesh) {
     for (face, children, edge) in [(30, &[1, 0][..], 0), (3, &[1, 1], 0), (55, &[0, 0], 3), (77, &[0, 1, 1], 0)] {
         let edit = Edit { face, children: children.to_vec(), change: Change::EdgeSharpness { edge, sharpness: 8.0 } };
-        let edited = with(&mesh, vec![edit]);
+        let edited = with(mesh, vec![edit]);
         let tessellation = Tessellation::<f64>::new(&Topology::new(&edited), &DiceOptions::fixed(3)).unwrap();
         let surface = LimitSurface::new(&edited).unwrap();
         let of_vertex = |(place, &position): (&Place, &[f64; 3])| {

@@ -69,6 +69,33 @@ fn a_vertex_buffer_is_the_same_surface() {
 }
 
 #[test]
+fn vertices_of_the_cpu_are_the_same_surface() {
+    let headless = headless();
+    let cpu = floor(Path::Cpu);
+    // All regular, so that patches have no error.
+    for factor in [2.0, 8.0] {
+        let bench = Bench::new(&headless, options()).unwrap();
+        let [drawn, other] = [GREGORY, cpu].map(|c| bench.picture(&subject("torus"), c, factor).unwrap());
+        let (pixels, other) = (covered(&drawn), different(&drawn, &other));
+        assert!(pixels > 1500 && other * 100 <= pixels, "{factor}: {other} of {pixels}");
+    }
+    let moving = BenchOptions { factors: vec![2.0, 4.0], instances: 3, passes: 2, ..options() };
+    let rows = race(&headless, moving, "cube", &[GREGORY, cpu]);
+    assert_eq!(rows.len(), 4);
+    for row in rows.iter().filter(|row| row.contestant == cpu) {
+        let n = row.factor as u64;
+        assert_eq!((row.triangles, row.evaluations), (Some(36 * 2 * n * n), Some(0)));
+        // A closed surface of four-sided faces: each vertex once.
+        assert_eq!([bytes(row, "vertices"), bytes(row, "indices")], [24 * (6 * n * n + 2), 12 * 12 * n * n]);
+        assert!(row.setup.tables > 0.0 && row.gpu.host.iter().zip(&row.gpu.device).all(|(host, device)| host > device));
+    }
+    // Not a power of two: the next.
+    let rows = race(&headless, BenchOptions { factors: vec![3.0], ..options() }, "cube", &[cpu]);
+    assert_eq!(rows[0].triangles, Some(6 * 2 * 16));
+    headless.finish_silent();
+}
+
+#[test]
 fn acc_as_published_is_the_same_surface() {
     let headless = headless();
     let acc = |(path, construction)| Contestant::new(path, Some((Scheme::Acc, construction)));
@@ -136,7 +163,9 @@ fn bytes(row: &Row, name: &str) -> u64 {
 #[test]
 fn a_race_counts_what_was_drawn() {
     let headless = headless();
-    let all = Contestant::all(&Path::ALL, &Scheme::ALL, &Construction::ALL);
+    // All but the CPU's, which begins with two segments.
+    let mut all = Contestant::all(&Path::ALL, &Scheme::ALL, &Construction::ALL);
+    all.retain(|contestant| contestant.path != Path::Cpu);
     // Levels of subdivision, too.
     let factors = vec![1.0, 2.0, 4.0];
     let rows = race(&headless, BenchOptions { instances: 3, passes: 2, factors, ..options() }, "cube", &all);
@@ -276,9 +305,10 @@ fn variants_are_of_what_can_be_combined() {
         assert_eq!(of(&every, path, Scheme::Gregory), gregory, "{path:?}");
         assert_eq!(of(&every, path, Scheme::Acc), acc, "{path:?}");
     }
-    // Floors are there in any case: what others cannot get below.
+    // Floors are there in any case: what others cannot get below; and the CPU's vertices, which have one normal each.
     let shared = variants(&[Normals::Shared], &[Cull::NONE]);
-    assert!(shared.iter().all(|c| c.path.is_floor() || c.normals == Normals::Shared) && shared.len() == 6);
+    let is_alone = |path: Path| path.is_floor() || path == Path::Cpu;
+    assert!(shared.iter().all(|c| is_alone(c.path) || c.normals == Normals::Shared) && shared.len() == 7);
     // Instances are culled by compute only; what is not culled is there once.
     let way = |path, construction| Contestant::new(path, Some((Scheme::Gregory, construction)));
     let ways = [way(Path::Tessellation, Construction::TwoStage), way(Path::Instanced, Construction::Cached)];

@@ -161,6 +161,8 @@ vertex, that `tessellation` makes once a patch. The same surface, with the schem
 construction two-stage; `acc-published-instanced` likewise with `cached`, to be compared with
 `instanced`.
 `subdivision` refines faces in a geometry shader, at factors 1, 2, 4 and 8: levels 0 to 3.
+The path `cpu` fills its vertices on the CPU: in frames by the host's clock, not in device times;
+its factors are rounded up to a power of two.
 Floors: `bilinear` passes corners through the tessellation stages, `vertex-buffer` draws what was
 evaluated before.
 --cull is for `tessellation` and `instanced`: with `cached`, compute shaders cull patches

@@ -6,7 +6,8 @@ use super::super::described::help;
 use super::super::displacement::DisplacementArgs;
 use super::super::error::CliError;
 use super::super::evaluation::EvaluationArgs;
-use super::super::parse::{self, Colour};
+use super::super::motion::FramesArgs;
+use super::super::parse::{self, Colour, Maker};
 use super::super::shading::Shading;
 use super::super::source::{DeviceArgs, MeshArgs};
 use super::RenderOut;
@@ -67,6 +68,11 @@ pub(in super::super) struct RenderArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: PathBuf,
     #[command(flatten)]
+    pub(super) frames: FramesArgs,
+    /// Fit the camera to each frame anew, instead of once to all.
+    #[arg(long, requires = "frames", help_heading = "Animation")]
+    pub(super) refit: bool,
+    #[command(flatten)]
     pub(super) evaluation: EvaluationArgs,
     #[command(flatten)]
     pub(super) factor: FactorArgs,
@@ -114,24 +120,39 @@ Examples:
   subdiv render model.obj --adaptive 4 --shading levels -o levels.png
   subdiv render model.obj --adaptive 4 --factor 32 --shading reflection-lines -o stripes.png
   subdiv render model.obj --level 2 --shading wireframe -o subdivided.png
+  subdiv render model.obj --evaluation cpu --factor 16 -o limit.png
   subdiv render --shape creature --displacement scales --displacement-scale 0.01 --pixels 4 -o scales.png
+  subdiv render model.glb --animation Walk --time 0.5 -o walk.png
+  subdiv render --shape tentacle --frames 0..60 -o frames/frame_%04d.png
   subdiv render --shape cloth --eye 3,4,5 --target 0,0,0 --fov 25 --size 1920x1080 -o cloth.png";
 
 impl RenderArgs {
+    /// Whether the CPU makes the vertices.
+    pub(super) fn is_cpu(&self) -> bool {
+        self.evaluation.evaluation == Maker::Cpu && self.factor.level.is_none()
+    }
+
     /// Construction of the control points; an error if the evaluation does not go with what was asked for.
     pub(super) fn construction(&self) -> Result<Construction, CliError> {
         let factor = self.factor.factor;
-        if factor > parse::MAX_FACTOR && self.evaluation.evaluation == Evaluation::Tessellation {
+        if factor > parse::MAX_FACTOR && self.evaluation.evaluation == Maker::Device(Evaluation::Tessellation) {
             return Err(CliError::Usage(format!(
                 "--factor {factor}: the tessellation stages take at most {}: choose another --evaluation for more",
                 parse::MAX_FACTOR
             )));
         }
+        let culls = match self.evaluation.evaluation {
+            Maker::Device(evaluation) => evaluation.culls(),
+            Maker::Cpu => false,
+        };
+        let cpu = self.is_cpu();
         let tessellated = [
             ("--pixels", self.factor.pixels.is_some()),
             ("--bend", self.factor.bend.is_some()),
-            ("--cull", self.factor.cull.cull() != Cull::NONE && !self.evaluation.evaluation.culls()),
+            ("--cull", self.factor.cull.cull() != Cull::NONE && !culls),
             ("--spacing", self.spacing != Spacing::Equal),
+            ("--refine", cpu && self.mesh.source.refine > 0),
+            ("--adaptive", cpu && self.mesh.source.adaptive().is_some()),
         ];
         self.evaluation.construction(&tessellated, self.displacement.is_given().then_some("--displacement"))
     }

@@ -4,11 +4,12 @@ use super::super::displacement::texture;
 use super::super::error::CliError;
 use super::super::paint::{Painting, PaintingSet};
 use super::args::STRIPES;
+use super::diced::Diced;
 use super::{RenderArgs, StatisticsOut};
 use ash::vk;
 use ash_subdiv::capture::{CaptureDraw, Captured, CapturedFactors};
-use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels};
-use ash_subdiv::renderer::{Cull, Evaluation, Factor, ModelTables};
+use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
+use ash_subdiv::renderer::{Cull, Evaluation, Factor, ModelId, ModelTables};
 use ash_subdiv::{Construction, ControlMesh, DrawItem, ModelOptions, Options, Renderer, Target, View};
 
 /// Size, view and maps of a picture.
@@ -68,24 +69,68 @@ impl RenderArgs {
             ..Options::default()
         }
     }
+}
 
-    /// Draws the picture: rows from the top, four bytes RGBA a pixel.
-    pub(super) fn draw(
-        &self,
-        headless: &Headless,
+impl RenderArgs {
+    /// The background, as the picture's format has it.
+    pub(super) fn clear_colour(&self) -> [f32; 4] {
+        match self.shading.format() {
+            vk::Format::R8G8B8A8_SRGB => self.background.linear(),
+            _ => self.background.0.map(|byte| f32::from(byte) / 255.0),
+        }
+    }
+}
+
+/// What draws a mesh, frame by frame.
+pub(super) enum Drawing<'h> {
+    /// The renderer.
+    Patches(Patched<'h>),
+    /// The device, but with vertices of the CPU.
+    Triangles(Diced<'h>),
+}
+
+impl Drawing<'_> {
+    /// Draws a picture, with the control vertices at these positions if they moved: rows from the top, four bytes RGBA a pixel.
+    pub(super) fn draw(&mut self, view: &View, positions: Option<&[[f32; 3]]>) -> Result<Vec<u8>, CliError> {
+        match self {
+            Self::Patches(patches) => patches.draw(view, positions),
+            Self::Triangles(triangles) => triangles.draw(view, positions),
+        }
+    }
+}
+
+/// What draws a mesh as patches.
+pub(super) struct Patched<'h> {
+    headless: &'h Headless,
+    target: Offscreen,
+    renderer: Renderer,
+    model: ModelId,
+    draws: Vec<DrawItem>,
+    /// Whether patches are culled by lists.
+    culls: bool,
+    background: [f32; 4],
+    // After the renderer, which reads them.
+    painting: Option<PaintingSet>,
+    _texture: Option<Texture>,
+}
+
+impl<'h> Patched<'h> {
+    pub(super) fn new(
+        args: &RenderArgs,
+        headless: &'h Headless,
         picture: &Picture,
         tables: ModelTables,
         mesh: &ControlMesh,
         model_options: &ModelOptions,
-    ) -> Result<Vec<u8>, CliError> {
+    ) -> Result<Self, CliError> {
         let samples = vk::SampleCountFlags::from_raw(picture.samples);
         let [width, height] = picture.size;
-        let desc = OffscreenDesc { samples, color: self.shading.format(), ..OffscreenDesc::new(width, height) };
+        let desc = OffscreenDesc { samples, color: args.shading.format(), ..OffscreenDesc::new(width, height) };
         let target = Offscreen::new(headless, &desc)?;
         let texture = picture.texels.map(|texels| texture(headless, texels)).transpose()?;
         let painting = picture.painting.map(|painting| PaintingSet::new(headless.context(), painting)).transpose()?;
-        let culls = self.factor.cull.cull() != Cull::NONE && model_options.construction == Construction::Cached;
-        let options = self.renderer_options(model_options, painting.as_ref(), culls);
+        let culls = args.factor.cull.cull() != Cull::NONE && model_options.construction == Construction::Cached;
+        let options = args.renderer_options(model_options, painting.as_ref(), culls);
         let render_target = Target::dynamic(desc.color, desc.depth, desc.samples);
         // SAFETY: the layout outlives the renderer, whose shaders fit it; every submission is waited for, so the renderer
         // is dropped when idle.
@@ -95,39 +140,44 @@ impl RenderArgs {
             unsafe { renderer.add_displacement(texture.into()) };
         }
         let model = renderer.add_tables(tables, &mesh.positions_f32(), model_options)?;
-        let mut factor = self.factor.factor();
+        let mut factor = args.factor.factor();
         if model_options.evaluation.needs_segments() {
             renderer.set_segments(model, factor.value().ceil() as u32)?;
             factor = Factor::Segments;
         }
         let item = DrawItem {
-            cull: self.factor.cull.cull(),
-            displacement: self.displacement.amount(mesh),
-            words: [self.stripes.unwrap_or(STRIPES), 0, 0, 0],
+            cull: args.factor.cull.cull(),
+            displacement: args.displacement.amount(mesh),
+            words: [args.stripes.unwrap_or(STRIPES), 0, 0, 0],
             ..DrawItem::new(model, factor)
         };
-        let draws = self.shading.draws(item);
-        // SAFETY: there was no frame before.
+        let background = args.clear_colour();
+        let draws = args.shading.draws(item);
+        Ok(Self { headless, target, renderer, model, draws, culls, background, painting, _texture: texture })
+    }
+
+    fn draw(&mut self, view: &View, positions: Option<&[[f32; 3]]>) -> Result<Vec<u8>, CliError> {
+        let Self { headless, target, renderer, draws, painting, .. } = self;
+        // SAFETY: every submission before was waited for.
         let frame = unsafe { renderer.begin_frame() };
+        if let Some(positions) = positions {
+            renderer.set_positions(self.model, frame, positions)?;
+        }
         // SAFETY: the command buffer is being recorded, outside rendering.
         let visible = headless.try_submit(|cmd| unsafe {
             renderer.cmd_prepare(cmd, frame)?;
-            culls.then(|| renderer.cmd_cull(cmd, frame, &picture.view, &draws)).transpose()
+            self.culls.then(|| renderer.cmd_cull(cmd, frame, view, draws)).transpose()
         })?;
         let record = |cmd| {
             // SAFETY: inside rendering that fits the target, after the frame was prepared; the set outlives the submission.
             unsafe {
-                painting.iter().for_each(|painting| painting.cmd_bind(headless, cmd, &renderer));
+                painting.iter().for_each(|painting| painting.cmd_bind(headless, cmd, renderer));
                 match &visible {
                     Some(visible) => renderer.cmd_draw_visible(cmd, frame, visible),
-                    None => renderer.cmd_draw(cmd, frame, &picture.view, &draws),
+                    None => renderer.cmd_draw(cmd, frame, view, draws),
                 }
             }
         };
-        let background = match desc.color {
-            vk::Format::R8G8B8A8_SRGB => self.background.linear(),
-            _ => self.background.0.map(|byte| f32::from(byte) / 255.0),
-        };
-        Ok(target.draw(headless, background, record)?)
+        Ok(target.draw(headless, self.background, record)?)
     }
 }

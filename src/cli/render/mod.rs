@@ -1,14 +1,19 @@
-//! `subdiv render`: a picture of a mesh. What is asked for is in `args`, what the device does for it in `draw`.
+//! `subdiv render`: a picture of a mesh. What is asked for is in `args`, what the device does for it in `draw`, and with vertices of
+//! the CPU in `diced`.
 
 mod args;
+mod diced;
 mod draw;
 
 use super::described::described;
 use super::error::CliError;
 use super::info::Patches;
+use super::interrupt::{Watch, is_interrupted};
 use super::local::Local;
+use super::motion::{FramesOut, Moving, moved};
 use super::output::{self, Progress, write_file};
 use super::paint::{ErrorMap, Legend, LevelMap, Painting};
+use super::parse::Maker;
 use super::picture::unpremultiply;
 use super::shading::Shading;
 use super::source::report_notices;
@@ -17,10 +22,12 @@ use ash::vk;
 use ash_subdiv::gpu::DeviceProperties;
 use ash_subdiv::headless::{HeadlessError, Texels, save_png};
 use ash_subdiv::renderer::{DisplacementId, Evaluation, Factor, ModelTables};
-use ash_subdiv::{ControlMesh, ModelOptions};
-use draw::Picture;
+use ash_subdiv::{Construction, ControlMesh, ModelOptions, View};
+use diced::Diced;
+use draw::{Drawing, Patched, Picture};
 use glam::DVec3;
 use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 described! {
     #[derive(Serialize)]
@@ -39,7 +46,9 @@ described! {
         samples: u32,
         device: &'a str,
         error: Option<ErrorOut> = "null unless an error is shown",
-        statistics: Option<StatisticsOut>,
+        statistics: Option<StatisticsOut> = "null with frames",
+        time: Option<f64>,
+        frames: Option<FramesOut>,
     }
 }
 
@@ -73,52 +82,50 @@ impl ErrorOut {
 }
 
 pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
-    let file = args.output.display().to_string();
-    let ending = args.output.extension().map(|ending| ending.to_ascii_lowercase());
-    if ending.is_none_or(|ending| ending != "png") {
-        return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
-    }
+    let files = args.files()?;
     let construction = args.construction()?;
     args.check_shading()?;
     let legend = if args.shading.is_painted() { Legend::height(args.size)? } else { 0 };
     let progress = Progress::new("reading the mesh");
-    let (mesh, local) = Local::of(args.mesh.load(&progress)?)?;
+    let (mesh, local, moving) = args.load(&progress)?;
     let painting = args.painting(&mesh, &progress)?;
     progress.now("building tables");
-    let evaluation = args.factor.level.map_or(args.evaluation.evaluation, |_| Evaluation::Subdivision);
-    let mut options = ModelOptions { spacing: args.spacing, evaluation, ..args.mesh.model_options(construction) };
     let texels = args.displacement.texels()?;
-    options.displacement = texels.as_ref().map(|_| DisplacementId::FIRST);
+    let options = args.model_options(construction, texels.is_some(), painting.is_some());
     let drawn = painting.as_ref().map_or(&mesh, Painting::mesh);
-    options.refine = if painting.is_some() { 0 } else { options.refine };
     let tables = ModelTables::new(drawn, &options)?;
     if painting.is_none() {
         report_notices(tables.notices(), &progress);
     }
     let patches = Patches::of(&tables);
-    let size @ [width, height] = [args.size[0], args.size[1] - legend];
-    let seen = args.seen_points(&mesh, texels.as_ref())?;
-    let view = args.camera.in_space(local).view(&seen, f64::from(width) / f64::from(height))?.sized(width, height);
+    let size = [args.size[0], args.size[1] - legend];
+    let views = args.views(&mesh, moving.as_ref(), texels.as_ref(), local, size)?;
     progress.now("drawing");
-    let (samples, device, mut pixels, statistics) = args.device.run(|headless| {
+    let shown = Shown { files: &files, views: &views, moving: moving.as_ref() };
+    let (samples, device, pixels, statistics) = args.device.run(|headless| {
         let samples = args.check_limits(headless.properties())?;
-        let picture = Picture { size, samples, view, painting: painting.as_ref(), texels: texels.as_ref() };
-        let statistics = args.statistics(headless, &picture, drawn, &options)?;
-        let pixels = args.draw(headless, &picture, tables, drawn, &options)?;
+        let picture = Picture { size, samples, view: views[0], painting: painting.as_ref(), texels: texels.as_ref() };
+        let statistics = if moving.is_some() { None } else { args.statistics(headless, &picture, drawn, &options)? };
+        let drawing = match args.is_cpu() {
+            true => Drawing::Triangles(Diced::new(args, headless, &picture, &mesh, &progress)?),
+            false => Drawing::Patches(Patched::new(args, headless, &picture, tables, drawn, &options)?),
+        };
+        let pixels = args.draw_all(drawing, &shown, painting.as_ref(), &progress)?;
         Ok((samples, headless.properties().name.clone(), pixels, statistics))
     })?;
-    progress.now("writing the picture");
-    args.save(&mut pixels, painting.as_ref())?;
+    if let Some(mut pixels) = pixels {
+        args.save(&args.output, &mut pixels, painting.as_ref())?;
+    }
     drop(progress);
     let error = painting.as_ref().and_then(ErrorOut::of);
     if !json {
         return args.print(patches, samples, &device, error);
     }
     output::json_pretty(&RenderOut {
-        file: &file,
+        file: &args.output.display().to_string(),
         size: args.size,
         patches,
-        evaluation: options.evaluation.name(),
+        evaluation: if args.is_cpu() { args.evaluation.evaluation.name() } else { options.evaluation.name() },
         construction: options.construction.name(),
         factor: Some(args.factor.factor()).filter(|f| matches!(f, Factor::Uniform(_))).map(Factor::value),
         level: args.factor.level,
@@ -130,12 +137,110 @@ pub(super) fn run(args: &RenderArgs, json: bool) -> Result<(), CliError> {
         device: &device,
         statistics,
         error,
+        time: args.mesh.source.time.time,
+        frames: moving.as_ref().map(Moving::described),
     })
 }
 
 impl RenderArgs {
-    /// Writes the picture to its file, with the legend of what is painted.
-    fn save(&self, pixels: &mut Vec<u8>, painting: Option<&Painting>) -> Result<(), CliError> {
+    /// Names of the pictures.
+    fn files(&self) -> Result<Vec<PathBuf>, CliError> {
+        let ending = self.output.extension().map(|ending| ending.to_ascii_lowercase());
+        if ending.is_none_or(|ending| ending != "png") {
+            let file = self.output.display();
+            return Err(CliError::Usage(format!("--output {file}: pictures are PNG files: let the name end in .png")));
+        }
+        self.frames.files(&self.output)
+    }
+
+    /// Options of the model that is drawn.
+    fn model_options(&self, construction: Construction, displaced: bool, painted: bool) -> ModelOptions {
+        let evaluation = match self.evaluation.evaluation {
+            _ if self.factor.level.is_some() => Evaluation::Subdivision,
+            Maker::Device(evaluation) => evaluation,
+            Maker::Cpu => Evaluation::default(),
+        };
+        let options = self.mesh.model_options(construction);
+        ModelOptions {
+            spacing: self.spacing,
+            evaluation,
+            displacement: displaced.then_some(DisplacementId::FIRST),
+            // What is painted is of the mesh that was refined for it.
+            refine: if painted { 0 } else { options.refine },
+            ..options
+        }
+    }
+
+    /// The mesh in its local space, in the first of the frames if there are any.
+    fn load(&self, progress: &Progress) -> Result<(ControlMesh, Local, Option<Moving>), CliError> {
+        let Some(moving) = self.frames.load(&self.mesh.source, progress)? else {
+            let (mesh, local) = Local::of(self.mesh.load(progress)?)?;
+            return Ok((mesh, local, None));
+        };
+        let local = Local::around(moving.bounds()?);
+        Ok((local.take(moving.first()?)?, local, Some(moving.in_space(local))))
+    }
+}
+
+/// What is drawn into which files.
+struct Shown<'s> {
+    files: &'s [PathBuf],
+    /// One a file.
+    views: &'s [View],
+    moving: Option<&'s Moving>,
+}
+
+impl RenderArgs {
+    /// Draws all frames to their files; gives the pixels if there is but a picture.
+    fn draw_all(
+        &self,
+        mut drawing: Drawing<'_>,
+        shown: &Shown<'_>,
+        painting: Option<&Painting>,
+        progress: &Progress,
+    ) -> Result<Option<Vec<u8>>, CliError> {
+        let Shown { files, views, moving } = shown;
+        let Some(moving) = moving else { return Ok(Some(drawing.draw(&views[0], None)?)) };
+        let _watch = Watch::start();
+        progress.fill("drawing", files.len() as u64);
+        for (number, positions) in moving.frames().enumerate() {
+            if is_interrupted() {
+                let all = files.len();
+                return Err(CliError::Work(format!("interrupted: {number} of {all} frames are written")));
+            }
+            let positions: Vec<[f32; 3]> = positions?.into_iter().map(|p| p.map(|x| x as f32)).collect();
+            let mut pixels = drawing.draw(&views[number], Some(&positions))?;
+            self.save(&files[number], &mut pixels, painting)?;
+            progress.advance(1);
+        }
+        Ok(None)
+    }
+
+    /// The view of each file.
+    fn views(
+        &self,
+        mesh: &ControlMesh,
+        moving: Option<&Moving>,
+        texels: Option<&Texels>,
+        local: Local,
+        [width, height]: [u32; 2],
+    ) -> Result<Vec<View>, CliError> {
+        let (camera, aspect) = (self.camera.in_space(local), f64::from(width) / f64::from(height));
+        let view = |points: &[DVec3]| Ok::<_, CliError>(camera.view(points, aspect)?.sized(width, height));
+        let Some(moving) = moving else { return Ok(vec![view(&self.seen_points(mesh, texels)?)?]) };
+        let mut seen = Vec::new();
+        for positions in moving.frames() {
+            let points = self.seen_points(&moved(mesh, positions?)?, texels)?;
+            seen.push(camera.deciding(&points, aspect));
+        }
+        if self.refit {
+            return seen.iter().map(|points| view(points)).collect();
+        }
+        Ok(vec![view(&seen.concat())?; seen.len()])
+    }
+
+    /// Writes a picture to its file, with the legend of what is painted.
+    fn save(&self, file: &Path, pixels: &mut Vec<u8>, painting: Option<&Painting>) -> Result<(), CliError> {
         let [width, height] = self.size;
         if self.background.is_transparent() {
             unpremultiply(pixels, self.shading.format() == vk::Format::R8G8B8A8_SRGB);
@@ -143,7 +248,7 @@ impl RenderArgs {
         if let Some(painting) = painting {
             painting.legend(self.mesh.scheme.name()).add(self.size, self.background, pixels)?;
         }
-        write_file(&self.output, |part| match save_png(part, vk::Extent2D { width, height }, pixels) {
+        write_file(file, |part| match save_png(part, vk::Extent2D { width, height }, pixels) {
             Err(HeadlessError::Picture { message, .. }) => Err(message),
             result => result.map_err(|error| error.to_string()),
         })
@@ -153,7 +258,11 @@ impl RenderArgs {
     fn print(&self, patches: Patches, samples: u32, device: &str, error: Option<ErrorOut>) -> Result<(), CliError> {
         output::with_stdout(|out| {
             let (file, [width, height], factor) = (self.output.display(), self.size, self.factor.text());
-            writeln!(out, "{file}: {width} x {height}, {patches}, {factor}, {samples} samples, on {device}")?;
+            write!(out, "{file}: ")?;
+            if let Some(frames) = self.frames.count() {
+                write!(out, "{frames} frames, ")?;
+            }
+            writeln!(out, "{width} x {height}, {patches}, {factor}, {samples} samples, on {device}")?;
             if let Some(ErrorOut { top, largest }) = error {
                 let [top, largest] = [top, largest].map(output::short);
                 writeln!(out, "the scale ends at {top} (--error-max); the largest error is {largest}")?;
@@ -197,6 +306,15 @@ impl RenderArgs {
         if self.shading.is_painted() && self.factor.level.is_some() {
             let what = if self.shading == Shading::Levels { "levels are those" } else { "the error is that" };
             return usage(format!("--level: {what} of patches: leave one of both out"));
+        }
+        if self.is_cpu() && !self.shading.is_of_vertices() {
+            let known = "choose lit, normals, wireframe or reflection-lines";
+            return usage(format!("--evaluation cpu: --shading {shading} is drawn out of patches: {known}"));
+        }
+        if self.shading.is_painted() && self.frames.is_given() {
+            return usage(format!(
+                "--frames: --shading {shading} is measured for one mesh: draw frame by frame with --time"
+            ));
         }
         if self.shading.is_painted() && self.displacement.is_given() {
             return usage(

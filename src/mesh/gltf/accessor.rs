@@ -35,7 +35,7 @@ impl<'a> Accessor<'a> {
     /// Opens the accessor `index` for elements of type `kind`.
     pub fn open(root: &json::Root, buffers: &'a [Cow<'_, [u8]>], index: usize, kind: Type) -> Result<Self, MeshError> {
         let wrong = |what: &str| format_error(format!("accessor {index} {what}"));
-        let accessor = root.accessors.get(index).ok_or_else(|| wrong("does not exist, but a mesh names it"))?;
+        let accessor = root.accessors.get(index).ok_or_else(|| wrong("does not exist, but something names it"))?;
         match accessor.type_ {
             Checked::Valid(found) if found == kind => {}
             Checked::Valid(found) => {

@@ -4,10 +4,13 @@
 //! indices are wrong, so ranges are checked here where they are used.
 
 mod accessor;
+mod animated;
 mod container;
 mod error;
+mod motion;
 mod polygons;
 mod scene;
+mod skinned;
 
 /// An index is one of a position.
 fn check_index(index: u32, positions: &Accessor) -> Result<(), MeshError> {
@@ -87,7 +90,7 @@ impl ControlMesh {
     ///   with the one that bounds the same solid. A sheet and its back are not joined, nor are pieces that only touch. `TEXCOORD_0` and `NORMAL` are kept a face corner;
     ///   where only some primitives have them, the others get (0, 0) and (0, 0, 0).
     /// * The transforms of the nodes are applied; one that mirrors turns the faces round. That of a node with a skin is
-    ///   not, as the format has it. Skins and morph targets are not applied.
+    ///   not, as the format has it. Skins and morph targets are not applied: [`ControlMesh::from_gltf_bytes_animated`] reads them.
     ///
     /// Vertices that no face uses do not count. Faces that repeat a vertex after welding are errors.
     ///
@@ -115,25 +118,65 @@ impl ControlMesh {
 
 /// The data of a file, and how many quads were put together.
 pub(super) fn read(bytes: &[u8], options: &GltfOptions) -> Result<(MeshData, usize), MeshError> {
-    let (json, binary) = container::split(bytes)?;
-    let root = container::parse(json)?;
-    check_extensions(&root)?;
-    let mut instances = scene::instances(&root)?;
-    if let Some(name) = &options.mesh {
-        instances = scene::choose(instances, name)?;
+    let file = File::open(bytes, options)?;
+    let built = file.build(&file.instances(options)?, options)?;
+    Ok((built.data, built.rebuilt_quads))
+}
+
+/// A file whose numbers can be read.
+struct File<'b> {
+    json: &'b [u8],
+    root: json::Root,
+    buffers: Vec<Cow<'b, [u8]>>,
+}
+
+/// The mesh of a file, before it is mended.
+struct Built {
+    data: MeshData,
+    rebuilt_quads: usize,
+    /// Where each vertex comes from.
+    sources: Vec<Source>,
+}
+
+/// A vertex of a primitive of an instance.
+#[derive(Clone, Copy)]
+struct Source {
+    instance: u32,
+    primitive: u32,
+    index: u32,
+}
+
+impl<'b> File<'b> {
+    fn open(bytes: &'b [u8], options: &GltfOptions) -> Result<Self, MeshError> {
+        let (json, binary) = container::split(bytes)?;
+        let root = container::parse(json)?;
+        check_extensions(&root)?;
+        let buffers = container::buffers(&root, binary, options.folder.as_deref())?;
+        Ok(Self { json, root, buffers })
     }
-    let buffers = container::buffers(&root, binary, options.folder.as_deref())?;
-    let mut builder = Builder::default();
-    for instance in &instances {
-        builder.add_instance(&root, &buffers, instance)?;
+
+    /// The meshes that are asked for.
+    fn instances(&self, options: &GltfOptions) -> Result<Vec<Instance<'_>>, MeshError> {
+        let instances = scene::instances(&self.root)?;
+        match &options.mesh {
+            Some(name) => scene::choose(instances, name),
+            None => Ok(instances),
+        }
     }
-    if builder.data.face_sizes.is_empty() {
-        return Err(format_error("the scene has no triangles: points and lines have no surface"));
+
+    fn build(&self, instances: &[Instance<'_>], options: &GltfOptions) -> Result<Built, MeshError> {
+        let mut builder = Builder::default();
+        for (instance, number) in instances.iter().zip(0..) {
+            builder.add_instance(&self.root, &self.buffers, instance, number)?;
+        }
+        if builder.data.face_sizes.is_empty() {
+            return Err(format_error("the scene has no triangles: points and lines have no surface"));
+        }
+        let groups = std::mem::take(&mut builder.groups);
+        let (mut data, sources) = builder.finish();
+        let rebuilt_quads = if options.quads { quads::rebuild(&mut data, &groups) } else { 0 };
+        Ok(Built { data, rebuilt_quads, sources })
     }
-    let groups = std::mem::take(&mut builder.groups);
-    let mut data = builder.finish();
-    let rebuilt = if options.quads { quads::rebuild(&mut data, &groups) } else { 0 };
-    Ok((data, rebuilt))
 }
 
 fn check_extensions(root: &json::Root) -> Result<(), MeshError> {
@@ -165,6 +208,8 @@ struct Builder {
     /// Of every face, the number of its primitive; `u32::MAX` where the file says which triangles are polygons.
     groups: Vec<u32>,
     primitives: u32,
+    /// Of every vertex.
+    sources: Vec<Source>,
 }
 
 /// What a vertex of a primitive became.
@@ -180,10 +225,13 @@ impl Builder {
         root: &json::Root,
         buffers: &[Cow<'_, [u8]>],
         instance: &Instance<'_>,
+        number: u32,
     ) -> Result<(), MeshError> {
         let mut places = HashMap::new();
-        for primitive in &instance.mesh.primitives {
+        for (primitive, index) in instance.mesh.primitives.iter().zip(0..) {
+            let first = self.sources.len();
             self.add_primitive(root, buffers, instance, primitive, &mut places)?;
+            self.sources[first..].iter_mut().for_each(|s| (s.instance, s.primitive) = (number, index));
         }
         Ok(())
     }
@@ -238,6 +286,7 @@ impl Builder {
             for &corner in corners {
                 let local = *locals.entry(corner).or_insert_with(|| {
                     let vertex = self.add_vertex(positions.get(corner as usize), instance, places);
+                    self.sources.push(Source { instance: 0, primitive: 0, index: corner });
                     let texcoord = texcoords.as_ref().map_or([0.0; 2], |texcoords| texcoords.get(corner as usize));
                     let normal = normals.as_ref().map_or([0.0; 3], |normals| normals.get(corner as usize));
                     let normal = (normal_transform * DVec3::from(normal)).normalize_or_zero();
@@ -275,16 +324,17 @@ impl Builder {
         vertex
     }
 
-    /// Joins what the file split, edge by edge.
-    fn finish(mut self) -> MeshData {
-        weld::join(&mut self.data, &self.places);
+    /// Joins what the file split, edge by edge. Of vertices that are joined the first is the source.
+    fn finish(mut self) -> (MeshData, Vec<Source>) {
+        let kept = weld::join(&mut self.data, &self.places);
+        let sources = kept.into_iter().map(|vertex| self.sources[vertex as usize]).collect();
         if self.has_texcoords {
             self.data.texcoords = Some(FaceVarying { values: self.texcoords, indices: self.attributes.clone() });
         }
         if self.has_normals {
             self.data.normals = Some(FaceVarying { values: self.normals, indices: self.attributes });
         }
-        self.data
+        (self.data, sources)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::error::format_error;
 use crate::mesh::MeshError;
+use crate::mesh::animation::Placement;
 use ::gltf::json;
 use glam::{DMat4, DQuat, DVec3};
 
@@ -10,7 +11,9 @@ pub(super) struct Instance<'a> {
     pub mesh: &'a json::Mesh,
     /// From the mesh's space to the scene's.
     pub transform: DMat4,
-    node: Option<&'a str>,
+    /// The node that it is at, if there is a scene.
+    pub node: Option<usize>,
+    name: Option<&'a str>,
 }
 
 /// The meshes of the default scene (or else the first), in the order of its nodes. A file without scenes is a library:
@@ -24,7 +27,7 @@ pub(super) fn instances(root: &json::Root) -> Result<Vec<Instance<'_>>, MeshErro
         }
     };
     let Some(scene) = scene else {
-        let place = |mesh| Instance { mesh, transform: DMat4::IDENTITY, node: None };
+        let place = |mesh| Instance { mesh, transform: DMat4::IDENTITY, node: None, name: None };
         return Ok(root.meshes.iter().map(place).collect());
     };
     let mut instances = Vec::new();
@@ -37,37 +40,35 @@ pub(super) fn instances(root: &json::Root) -> Result<Vec<Instance<'_>>, MeshErro
         if std::mem::replace(&mut visited[index.value()], true) {
             return Err(format_error(format!("node {index} is reached twice: give a node one parent")));
         }
-        let transform = parent * local_transform(node);
+        let transform = parent * placement(node).matrix();
         if let Some(mesh) = node.mesh {
             let missing = || format_error(format!("mesh {mesh} does not exist, but node {index} names it"));
             let mesh = root.meshes.get(mesh.value()).ok_or_else(missing)?;
             // What is skinned is where its joints are.
             let transform = if node.skin.is_some() { DMat4::IDENTITY } else { transform };
-            instances.push(Instance { mesh, transform, node: node.name.as_deref() });
+            instances.push(Instance { mesh, transform, node: Some(index.value()), name: node.name.as_deref() });
         }
         stack.extend(node.children.iter().flatten().rev().map(|&child| (child, transform)));
     }
     Ok(instances)
 }
 
-fn local_transform(node: &json::Node) -> DMat4 {
+/// Where a node is in the space of its parent.
+pub(super) fn placement(node: &json::Node) -> Placement {
     if let Some(matrix) = node.matrix {
-        return DMat4::from_cols_array(&matrix.map(f64::from));
+        return Placement::Matrix(DMat4::from_cols_array(&matrix.map(f64::from)));
     }
     let vector = |vector: [f32; 3]| DVec3::from(vector.map(f64::from));
-    // Unit only to single precision as written.
-    let rotation = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
-    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
-    DMat4::from_scale_rotation_translation(
-        vector(node.scale.unwrap_or([1.0; 3])),
-        rotation,
-        vector(node.translation.unwrap_or_default()),
-    )
+    Placement::Parts {
+        translation: vector(node.translation.unwrap_or_default()),
+        rotation: DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from)),
+        scale: vector(node.scale.unwrap_or([1.0; 3])),
+    }
 }
 
 /// Keeps the instances whose mesh or node has this name.
 pub(super) fn choose<'a>(instances: Vec<Instance<'a>>, name: &str) -> Result<Vec<Instance<'a>>, MeshError> {
-    let names = |instance: &Instance<'a>| [instance.mesh.name.as_deref(), instance.node];
+    let names = |instance: &Instance<'a>| [instance.mesh.name.as_deref(), instance.name];
     let (chosen, others): (Vec<_>, Vec<_>) =
         instances.into_iter().partition(|instance| names(instance).contains(&Some(name)));
     if !chosen.is_empty() {

@@ -30,14 +30,14 @@ pub(super) fn mend(work: &mut Work, tolerance: f64) {
     }
 }
 
-/// Joins loose faces whose vertices have the same number in `places`.
-pub(in super::super) fn join(data: &mut MeshData, places: &[u32]) {
+/// Joins loose faces whose vertices have the same number in `places`. Gives the number that each vertex had before.
+pub(in super::super) fn join(data: &mut MeshData, places: &[u32]) -> Vec<u32> {
     let joints = Joints::new(data);
     let mut roots: Vec<u32> = (0..data.positions.len() as u32).collect();
     for [a, b] in Matching::new(data, &joints, places).pairs(&open_half_edges(&joints)) {
         unite(&mut roots, a, b);
     }
-    apply(data, roots);
+    apply(data, roots)
 }
 
 /// Edges on boundaries that lie on others.

@@ -16,13 +16,14 @@ mod polygons;
 mod replicate;
 mod sculpt;
 mod simple;
+mod tentacle;
 #[cfg(test)]
 mod tests;
 
 pub use replicate::replicate;
 pub use simple::grid_torus;
 
-use super::{ControlMesh, MeshData, MeshError};
+use super::{Animated, Animations, ControlMesh, MeshData, MeshError, Repairs};
 
 /// A built-in shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +47,7 @@ pub fn shapes() -> &'static [ShapeInfo] {
         info("polygons", "a ball of triangles, quads, pentagons and hexagons"),
         info("valences", "knobs on a slab: vertices of every valence from 3 to 12"),
         info("cloth", "an open sheet with a concave boundary and a hole"),
+        info("tentacle", "an animated tube of 136 quads: it waves, curls and swallows"),
         info("torus", "16 x 8 quads, all regular"),
         info("cube", "6 quads"),
         info("tetrahedron", "4 triangles"),
@@ -68,6 +70,7 @@ pub fn shape(name: &str) -> Result<ControlMesh, MeshError> {
         "polygons" => ControlMesh::new(polygons::polygons()),
         "valences" => with_atlas(polygons::valences()),
         "cloth" => ControlMesh::new(simple::cloth()),
+        "tentacle" => tentacle::mesh(),
         "torus" => ControlMesh::new(simple::torus()),
         "cube" => ControlMesh::new(simple::cube()),
         "tetrahedron" => ControlMesh::new(simple::tetrahedron()),
@@ -78,6 +81,17 @@ pub fn shape(name: &str) -> Result<ControlMesh, MeshError> {
             let known = shapes().iter().map(|shape| shape.name).collect::<Vec<_>>().join(", ");
             Err(MeshError::UnknownShape { name: name.to_owned(), known })
         }
+    }
+}
+
+/// Makes a built-in shape with its animations, if it has any.
+///
+/// # Errors
+/// As [`shape`].
+pub fn animated_shape(name: &str) -> Result<Animated, MeshError> {
+    match name {
+        "tentacle" => tentacle::animated(),
+        _ => Ok(Animated { mesh: shape(name)?, repairs: Repairs::default(), animations: Animations::default() }),
     }
 }
 

@@ -78,6 +78,7 @@ fn closed_shapes_are_closed_and_face_outward() {
         ("machine-part", -10),
         ("polygons", 2),
         ("valences", 2),
+        ("tentacle", 2),
         ("torus", 0),
         ("cube", 2),
         ("tetrahedron", 2),
@@ -266,4 +267,38 @@ fn replicate_refuses_nothing_too_much_and_nonsense() {
     assert!(matches!(replicate(&cube, [0, 1, 1], 1.0), Err(MeshError::Empty { .. })));
     assert!(matches!(replicate(&cube, [u32::MAX; 3], 1.0), Err(MeshError::TooLarge { .. })));
     assert!(matches!(replicate(&cube, [2, 1, 1], f64::NAN), Err(MeshError::NotFinite { .. })));
+}
+
+#[test]
+fn the_tentacle_bends_curls_and_swallows() {
+    let Animated { mesh, animations, .. } = animated_shape("tentacle").unwrap();
+    let rest = mesh.data().positions.clone();
+    let at = |name: &str, seconds: f64| {
+        let mut positions = vec![[0.0; 3]; rest.len()];
+        animations.positions_f64(animations.find(name).unwrap(), seconds, &mut positions).unwrap();
+        positions.into_iter().map(DVec3::from).collect::<Vec<_>>()
+    };
+    let farthest = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    let still: Vec<DVec3> = rest.iter().map(|&p| p.into()).collect();
+    for name in ["wave", "curl", "swallow"] {
+        assert!(farthest(&at(name, 0.0), &at(name, 2.0)) < 1e-12, "{name} goes on where it began");
+        assert!(farthest(&at(name, 1.3), &still) > 0.1, "{name} moves");
+    }
+    for name in ["curl", "swallow"] {
+        assert!(farthest(&at(name, 0.0), &still) < 1e-12, "{name} begins at rest");
+    }
+    // Joint j turns by 10 + 8 j degrees about z: the tip has turned by all, but for the blend towards the joints before it.
+    let curled = at("curl", 1.0);
+    let tip = |p: &[DVec3]| {
+        let ring = &p[16 * 8..17 * 8];
+        (ring[2] - ring[0]).cross(ring[4] - ring[2]).normalize()
+    };
+    let turned = (0..7).map(|joint| -10.0 - 8.0 * f64::from(joint)).sum::<f64>().to_radians();
+    assert!(tip(&still).distance(-DVec3::Y) < 1e-9 || tip(&still).distance(DVec3::Y) < 1e-9);
+    let expected = glam::DQuat::from_rotation_z(turned) * tip(&still);
+    assert!(tip(&curled).angle_between(expected) < 20f64.to_radians(), "{} {expected}", tip(&curled));
+    // Bulges rise around the axis, at heights that stay.
+    let swollen = at("swallow", 0.4);
+    assert!(swollen.iter().zip(&still).all(|(a, b)| (a.y - b.y).abs() < 1e-12));
+    assert!(swollen.iter().zip(&still).all(|(a, b)| a.with_y(0.0).length() >= b.with_y(0.0).length() - 1e-12));
 }

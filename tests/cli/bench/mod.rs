@@ -28,10 +28,10 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
     // A torus in 5 schemes and 3 constructions and in ACC as published, a tetrahedron in 3 schemes; each in 2 floors, 2 spacings
     // and 2 factors.
     // Left out: 2 schemes without triangles in 3 constructions, ACC as published among them, and 5 ways to evaluate lattices of
-    // 5 schemes, which have no such spacing, with ACC as published, instanced, for either mesh.
+    // 5 schemes, which have no such spacing, with ACC as published, instanced, and the CPU's vertices, for either mesh.
     let rows = results["rows"].as_array().unwrap();
     // Subdivision has no factor 3.
-    let patches = ((5 * 3 + 1 + 2 + 3 * 3 + 2) * 4, (2 * 3 + 1) * 2 + (5 * 5 + 1) * 2 * 2);
+    let patches = ((5 * 3 + 1 + 2 + 3 * 3 + 2) * 4, (2 * 3 + 1) * 2 + (5 * 5 + 2) * 2 * 2);
     assert_eq!((rows.len(), length(&results["left_out"])), (patches.0 + 2 * 2, patches.1 + 2 * 2));
     for row in rows {
         assert_eq!(
@@ -106,9 +106,9 @@ fn bench_writes_tables_and_csv() {
     let csv = String::from_utf8(run(&format!("bench {SMALL} {few} --replicate 1,4 --csv")).stdout).unwrap();
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
-    assert_eq!((lines.len(), lines[0][..3].join(" ")), (9, "mesh spacing motion".into()));
+    assert_eq!((lines.len(), lines[0][..3].join(" ")), (11, "mesh spacing motion".into()));
     let patches = lines[0].iter().position(|name| *name == "patches").unwrap();
-    assert_eq!((lines[5][0], lines[5][patches]), ("cube x4", "24"));
+    assert_eq!((lines[6][0], lines[6][patches]), ("cube x4", "24"));
     for name in ["gpu_ms_mad", "gpu_ratio_low", "geometry_ratio_high", "fence_ms_gpu_median", "upload_ms"] {
         let column = lines[0].iter().position(|other| *other == name).unwrap();
         assert!(lines[1..].iter().all(|line| line[column].parse::<f64>().is_ok()), "{name}: {csv}");
@@ -118,7 +118,7 @@ fn bench_writes_tables_and_csv() {
     assert!(text.contains("\ncube x4: 24 patches, factor 2, equal spacing, still vertices\n"), "{text}");
     assert_eq!(
         text.split("\ntime grows as patches^").nth(1).map(|grown| grown.trim_end().lines().count()),
-        Some(9),
+        Some(11),
         "{text}"
     );
 }
@@ -310,7 +310,7 @@ fn bench_says_what_is_wrong() {
     fails(
         "bench --paths magic",
         2,
-        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, acc-published, acc-published-instanced, compute, instanced, geometry, geometry-two-pass, subdivision, bilinear, vertex-buffer]",
+        "invalid value 'magic' for '--paths <PATH>' [possible values: tessellation, acc-published, acc-published-instanced, compute, instanced, geometry, geometry-two-pass, subdivision, cpu, bilinear, vertex-buffer]",
     );
     fails(
         "bench --results x.json --factors 1",

@@ -50,6 +50,7 @@ const ROUND: &[(i32, i32)] = &[(-2, -4), (2, -4), (4, -2), (4, 2), (2, 4), (-2, 
 const SQUARE: &[(i32, i32)] = &[(-4, -4), (4, -4), (4, 4), (-4, 4)];
 const DIAMOND: &[(i32, i32)] = &[(0, -6), (6, 0), (0, 6), (-6, 0)];
 const UP: &[(i32, i32)] = &[(0, -5), (5, 4), (-5, 4)];
+const STAR: &[(i32, i32)] = &[(0, -5), (1, -1), (5, 0), (1, 1), (0, 5), (-1, 1), (-5, 0), (-1, -1)];
 const DOWN: &[(i32, i32)] = &[(0, 5), (5, -4), (-5, -4)];
 
 /// For paths, in their order.
@@ -62,6 +63,7 @@ pub(super) const MARKS: [Mark; Path::ALL.len()] = [
     Mark { corners: UP, filled: true },
     Mark { corners: UP, filled: false },
     Mark { corners: DOWN, filled: true },
+    Mark { corners: STAR, filled: true },
     Mark { corners: DIAMOND, filled: false },
     Mark { corners: DOWN, filled: false },
 ];

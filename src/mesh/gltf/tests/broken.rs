@@ -164,7 +164,7 @@ fn accessors() {
     error(|json| json["accessors"][0]["componentType"] = json!(5124), "accessor 0 has an unknown component type");
     let signed = "accessor 1 has indices that are not unsigned integers";
     error(|json| json["accessors"][1]["componentType"] = json!(5122), signed);
-    let missing = "accessor 7 does not exist, but a mesh names it";
+    let missing = "accessor 7 does not exist, but something names it";
     error(|json| json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(7), missing);
     error(|json| json["meshes"][0]["primitives"][0]["indices"] = json!(7), missing);
 }

@@ -1,5 +1,6 @@
 //! Small files made here: geometry as one wants it, then broken in one place at a time.
 
+mod animations;
 mod broken;
 mod geometry;
 mod scenes;

@@ -1,23 +1,25 @@
-//! `subdiv tessellate`: the limit surface as a mesh in a file.
+//! `subdiv tessellate`: the limit surface as a mesh in a file, or in one a frame.
+
+mod frames;
+mod write;
 
 use super::camera::CameraArgs;
 use super::described::{described, help};
 use super::displacement::DisplacementArgs;
 use super::error::CliError;
-use super::interrupt::{Interruptible, Watch};
-use super::output::{self, Progress, short, write_file};
+use super::motion::{FramesArgs, FramesOut};
+use super::output::{self, Progress, short};
 use super::parse;
 use super::source::SourceArgs;
 use ash_subdiv::ControlMesh;
-use ash_subdiv::dice::{Camera, Depth, DiceOptions, MAX_DEPTH, Piece, Plan, Sizes, Stream, Tessellation};
-use ash_subdiv::mesh::write::{Kept, Pieces, Polygons, Vertices, write_glb, write_obj, write_ply};
+use ash_subdiv::dice::{Camera, Depth, DiceOptions, MAX_DEPTH, Plan, Sizes, Tessellation};
 use ash_subdiv::topology::Topology;
 use clap::Args;
+use glam::DVec3;
 use serde::Serialize;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use write::{Streamed, write};
 
 #[derive(Debug, Args)]
 #[command(after_help = help::<TessellateOut>(NOTES, EXAMPLES), allow_negative_numbers = true)]
@@ -27,6 +29,8 @@ pub(super) struct TessellateArgs {
     /// The mesh, a file ending in .obj, .ply or .glb. Missing folders are made.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    #[command(flatten)]
+    frames: FramesArgs,
     #[command(flatten)]
     depth: DepthArgs,
     /// Keep faces of four vertices instead of cutting them into triangles (OBJ and PLY). Triangles remain where depths differ.
@@ -79,6 +83,7 @@ Examples:
   subdiv tessellate model.obj -o smooth.glb
   subdiv tessellate model.glb --tolerance 0.01 --quads -o smooth.obj
   subdiv tessellate --shape creature --pixels 4 --size 1920x1080 --yaw 20 -o seen.ply
+  subdiv tessellate --shape tentacle --frames 0..60 -o frames/out_%04d.obj
   subdiv tessellate --shape creature --depth 5 --displacement scales -o scales.glb --json";
 
 described! {
@@ -93,7 +98,9 @@ described! {
         depth_histogram: Vec<usize> = "[facets by depth]",
         largest_error: Option<f64>,
         seconds: f64,
-        bytes: u64,
+        bytes: u64 = "of all files",
+        time: Option<f64>,
+        frames: Option<FramesOut>,
     }
 }
 
@@ -139,13 +146,13 @@ impl TessellateArgs {
         }
     }
 
-    fn options(&self, mesh: &ControlMesh) -> Result<DiceOptions, CliError> {
+    /// How finely, as seen by a camera that these points are in the picture of.
+    fn options(&self, seen: &[DVec3]) -> Result<DiceOptions, CliError> {
         let DepthArgs { depth, pixels, edge_length, tolerance, max_depth } = self.depth;
         let depth = match (pixels, edge_length, tolerance) {
             (Some(pixels), ..) => {
                 let size = self.size.map(f64::from);
-                let points: Vec<_> = mesh.data().positions.iter().map(|&p| p.into()).collect();
-                let view = self.camera.view(&points, size[0] / size[1])?;
+                let view = self.camera.view(seen, self.aspect())?;
                 let view_projection = view.view_projection.map(|column| column.map(f64::from));
                 Depth::Pixels { pixels: pixels.into(), camera: Camera { view_projection, size } }
             }
@@ -154,6 +161,12 @@ impl TessellateArgs {
             _ => Depth::Fixed(depth.unwrap_or(3)),
         };
         Ok(DiceOptions { depth, max_depth, ..DiceOptions::default() })
+    }
+
+    /// Width of the picture over its height.
+    fn aspect(&self) -> f64 {
+        let [width, height] = self.size.map(f64::from);
+        width / height
     }
 
     fn check_size(&self, sizes: Sizes) -> Result<(), CliError> {
@@ -171,40 +184,16 @@ impl TessellateArgs {
 pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
     let kind = args.kind()?;
     args.check()?;
+    let files = args.frames.files(&args.output)?;
     let start = Instant::now();
     let progress = Progress::new("reading the mesh");
-    let mesh = args.source.load(&progress)?;
-    let texels = args.displacement.texels()?;
-    progress.now("choosing depths");
-    let topology = Topology::new(&mesh);
-    let plan = Plan::<f32>::new(&topology, &args.options(&mesh)?)?;
-    let sizes = plan.sizes();
-    args.check_size(sizes)?;
-    let largest_error = if texels.is_none() { Some(plan.error_bound()?) } else { None };
-    if let (Some(distance), Some(error)) = (args.depth.tolerance, largest_error)
-        && error > f64::from(distance)
-    {
-        let depth = args.depth.max_depth;
-        progress.note(format!("--tolerance {distance}: at --max-depth {depth} the error may be {}", short(error)));
-    }
-    let depth_histogram = plan.depth_histogram();
-    let unused = plan.unused();
-    let [vertices, quads, triangles] = if texels.is_none() && unused.is_empty() {
-        progress.now("writing, piece by piece");
-        let stream = plan.stream(&mesh.data().positions)?;
-        let turned = args.turns_texcoords(kind);
-        args.write(kind, &Streamed { stream: &stream, sizes, quads: args.quads, turned })?
-    } else {
-        progress.now("evaluating");
-        let mut tessellation = Tessellation::of(plan, &mesh.data().positions)?;
-        if let Some(texels) = &texels {
-            let [scale, bias] = args.displacement.amount(&mesh);
-            tessellation.displace(|texcoord| scale * texels.sample(texcoord) + bias)?;
-        }
-        progress.now("writing");
-        args.write_arrays(kind, &tessellation, &unused)?
+    let made = match args.frames.load(&args.source, &progress)? {
+        Some(moving) => args.tessellate_frames(kind, &files, &moving, &progress)?,
+        None => args.tessellate(kind, &progress)?,
     };
     drop(progress);
+    let Made { counts: [vertices, quads, triangles], depth_histogram, largest_error, frames } = made;
+    let sizes = files.iter().map(|file| Ok(std::fs::metadata(file)?.len()));
     let out = TessellateOut {
         mesh: args.source.name(),
         file: args.output.display().to_string(),
@@ -215,7 +204,9 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
         depth_histogram,
         largest_error,
         seconds: start.elapsed().as_secs_f64(),
-        bytes: std::fs::metadata(&args.output)?.len(),
+        bytes: sizes.sum::<Result<u64, CliError>>()?,
+        time: args.source.time.time,
+        frames,
     };
     if json {
         return output::json_pretty(&out);
@@ -224,109 +215,66 @@ pub(super) fn run(args: &TessellateArgs, json: bool) -> Result<(), CliError> {
         let TessellateOut { file, faces, vertices, bytes, seconds, .. } = &out;
         let within =
             largest_error.map_or_else(String::new, |error| format!(", within {} of the surface", short(error)));
-        Ok(writeln!(stdout, "{file}: {faces} faces, {vertices} vertices, {bytes} bytes{within}; {seconds:.2} s")?)
+        let frames = args.frames.count().map_or_else(String::new, |frames| format!("{frames} frames of "));
+        Ok(writeln!(
+            stdout,
+            "{file}: {frames}{faces} faces, {vertices} vertices, {bytes} bytes{within}; {seconds:.2} s"
+        )?)
     })
 }
 
+/// What was written.
+struct Made {
+    /// Vertices, quads, triangles.
+    counts: [usize; 3],
+    depth_histogram: Vec<usize>,
+    largest_error: Option<f64>,
+    frames: Option<FramesOut>,
+}
+
 impl TessellateArgs {
-    /// Whether v runs the other way in the file that is written.
-    fn turns_texcoords(&self, kind: Kind) -> bool {
-        self.source.is_gltf() != (kind == Kind::Glb)
-    }
-
-    /// Writes a mesh that is there as a whole, without vertices that belong to no face.
-    fn write_arrays(
-        &self,
-        kind: Kind,
-        tessellation: &Tessellation<f32>,
-        unused: &[u32],
-    ) -> Result<[usize; 3], CliError> {
-        let cut = if self.quads { None } else { Some(tessellation.all_triangles()) };
-        let (quads, triangles) = match &cut {
-            Some(triangles) => (&[][..], triangles.as_slice()),
-            None => (tessellation.quads(), tessellation.triangles()),
-        };
-        let turn = |all: &[[f32; 2]]| all.iter().copied().map(turned).collect::<Vec<_>>();
-        let texcoords = tessellation.texcoords().filter(|_| self.turns_texcoords(kind)).map(turn);
-        let plan = tessellation.plan();
+    /// The mesh in one file.
+    fn tessellate(&self, kind: Kind, progress: &Progress) -> Result<Made, CliError> {
+        let mesh = self.source.load(progress)?;
+        let texels = self.displacement.texels()?;
+        progress.now("choosing depths");
+        let topology = Topology::new(&mesh);
+        let plan = Plan::<f32>::new(&topology, &self.options(&points(&mesh))?)?;
         let sizes = plan.sizes();
-        let owned = sizes.positions as u32;
-        let copies: Vec<u32> = (owned..sizes.vertices as u32).map(|copy| plan.position_of(copy)).collect();
-        let all = Polygons {
-            positions: tessellation.positions(),
-            normals: tessellation.normals(),
-            texcoords: texcoords.as_deref().or(tessellation.texcoords()),
-            copies: (owned, &copies),
-            quads,
-            triangles,
-        };
-        let kept = Kept::of(&all, unused);
-        self.write(kind, &kept.as_ref().map_or(all, Kept::polygons))
-    }
-
-    /// Writes the file. Gives the numbers of its vertices, quads and triangles.
-    fn write(&self, kind: Kind, mesh: &dyn Pieces) -> Result<[usize; 3], CliError> {
-        let write = |part: &Path| -> io::Result<()> {
-            let _watch = Watch::start();
-            let mut out = BufWriter::with_capacity(1 << 20, Interruptible(File::create(part)?));
-            match kind {
-                Kind::Obj => write_obj(mesh, &mut out)?,
-                Kind::Ply => write_ply(mesh, &mut out)?,
-                Kind::Glb => write_glb(mesh, &mut out)?,
+        self.check_size(sizes)?;
+        let largest_error = if texels.is_none() { Some(plan.error_bound()?) } else { None };
+        self.note_error(largest_error, progress);
+        let depth_histogram = plan.depth_histogram();
+        let unused = plan.unused();
+        let counts = if texels.is_none() && unused.is_empty() {
+            progress.now("writing, piece by piece");
+            let stream = plan.stream(&mesh.data().positions)?;
+            let turned = self.turns_texcoords(kind);
+            write(&self.output, kind, &Streamed { stream: &stream, sizes, quads: self.quads, turned })?
+        } else {
+            progress.now("evaluating");
+            let mut tessellation = Tessellation::of(plan, &mesh.data().positions)?;
+            if let Some(texels) = &texels {
+                let [scale, bias] = self.displacement.amount(&mesh);
+                tessellation.displace(|texcoord| scale * texels.sample(texcoord) + bias)?;
             }
-            out.flush()
+            progress.now("writing");
+            self.write_arrays(&self.output, kind, &tessellation, &unused)?
         };
-        write_file(&self.output, |part| write(part).map_err(|error| error.to_string()))?;
-        let ([vertices, _], [quads, triangles]) = (mesh.vertex_counts(), mesh.face_counts());
-        Ok([vertices, quads, triangles])
+        Ok(Made { counts, depth_histogram, largest_error, frames: None })
+    }
+
+    /// Reports where the greatest depth does not keep the tolerance.
+    fn note_error(&self, largest_error: Option<f64>, progress: &Progress) {
+        if let (Some(distance), Some(error)) = (self.depth.tolerance, largest_error)
+            && error > f64::from(distance)
+        {
+            let depth = self.depth.max_depth;
+            progress.note(format!("--tolerance {distance}: at --max-depth {depth} the error may be {}", short(error)));
+        }
     }
 }
 
-/// A tessellation that is made while it is written.
-struct Streamed<'s> {
-    stream: &'s Stream<'s, f32>,
-    sizes: Sizes,
-    /// Whether quads stay quads.
-    quads: bool,
-    /// Whether v runs the other way.
-    turned: bool,
-}
-
-impl Pieces for Streamed<'_> {
-    fn vertex_counts(&self) -> [usize; 2] {
-        [self.sizes.vertices, self.sizes.positions]
-    }
-
-    fn face_counts(&self) -> [usize; 2] {
-        let Sizes { quads, triangles, .. } = self.sizes;
-        if self.quads { [quads, triangles] } else { [0, 2 * quads + triangles] }
-    }
-
-    fn has_texcoords(&self) -> bool {
-        self.stream.plan().has_texcoords()
-    }
-
-    fn position_of(&self, vertex: u32) -> u32 {
-        self.stream.plan().position_of(vertex)
-    }
-
-    fn vertices(&self, visit: &mut dyn FnMut(Vertices) -> io::Result<()>) -> io::Result<()> {
-        self.stream.for_each_piece(|Piece { positions, normals, texcoords }| {
-            let other = texcoords.filter(|_| self.turned);
-            let other = other.map(|all| all.iter().copied().map(turned).collect::<Vec<_>>());
-            visit(Vertices { positions, normals, texcoords: other.as_deref().or(texcoords) })
-        })
-    }
-
-    fn quads(&self, visit: &mut dyn FnMut(&[[u32; 4]]) -> io::Result<()>) -> io::Result<()> {
-        if self.quads { self.stream.for_each_quads(visit) } else { Ok(()) }
-    }
-
-    fn triangles(&self, visit: &mut dyn FnMut(&[[u32; 3]]) -> io::Result<()>) -> io::Result<()> {
-        if self.quads { self.stream.for_each_triangles(visit) } else { self.stream.for_each_cut(visit) }
-    }
-}
-
-fn turned([u, v]: [f32; 2]) -> [f32; 2] {
-    [u, 1.0 - v]
+fn points(mesh: &ControlMesh) -> Vec<DVec3> {
+    mesh.data().positions.iter().map(|&position| position.into()).collect()
 }
