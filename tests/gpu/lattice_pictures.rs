@@ -4,7 +4,7 @@ use crate::common::stage::{Stage, begin, with_segments};
 use crate::lattices::ways;
 use ash::vk;
 use ash_subdiv::renderer::{Evaluation, Factor, Fragment, Geometry};
-use ash_subdiv::{Construction, DrawItem, ModelId, ModelOptions, Options, Renderer, Scheme, Style, shape};
+use ash_subdiv::{Construction, DrawItem, ModelOptions, Options, Renderer, Scheme, Style, shape};
 use glam::{Mat4, Vec3};
 
 mod test_shaders {
@@ -225,7 +225,7 @@ fn displaced_pictures_are_those_of_the_tessellation_stages() {
                 renderer.set_segments(model, n).unwrap();
             }
             let frame = stage.frame(&mut renderer);
-            let mut picture = |(model, evaluation): (ModelId, Evaluation), height| {
+            let mut picture = |(model, evaluation): (ash_subdiv::ModelId, Evaluation), height| {
                 let factor = if evaluation.needs_segments() { Factor::Segments } else { Factor::Uniform(n as f32) };
                 let item = DrawItem { displacement: [height, 0.0], ..DrawItem::new(model, factor) };
                 stage.draw(&mut renderer, frame, &[item]).expect("a picture")

@@ -56,7 +56,11 @@ fn tally(
     let edges = captured.tables().edges().expect("asked for").vertices.len();
     let displacement = if texture.is_some() { [DISPLACEMENT * diagonal(mesh), 0.0] } else { [0.0; 2] };
     let mut sum = Tally::default();
-    for factor in [Factor::Edges(1.0), Factor::Pixels(9.0)] {
+    // By leaves, one for all asks for another of each level.
+    let by_leaves = options.adaptive.is_some_and(|adaptive| adaptive.drawn_by == DrawnBy::Leaves);
+    for factor in
+        [Factor::Edges(1.0), Factor::Pixels(9.0)].into_iter().chain(by_leaves.then_some(Factor::Uniform(11.0)))
+    {
         // As many as make enough vertices of a small mesh.
         let most = (120_000.0 / edges as f32).clamp(9.0, 60.0);
         let edge_factors = random_factors(edges, most, seed);

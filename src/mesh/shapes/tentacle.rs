@@ -21,9 +21,8 @@ const BULGES: u32 = 4;
 pub(super) fn mesh() -> Result<ControlMesh, MeshError> {
     let ring = |ring: u32| {
         let along = f64::from(ring) / f64::from(RINGS - 1);
-        // A foot, and a knob at the tip.
-        let radius =
-            0.14 + 0.2 * (1.0 - along) + 0.25 * (-12.0 * along).exp() + 0.1 * (-(10.0 * (along - 0.9)).powi(2)).exp();
+        // A foot, and a tip.
+        let radius = 0.03 + 0.33 * (1.0 - along) + 0.25 * (-12.0 * along).exp();
         RING.map(|[x, z]| [radius * x / x.hypot(z), LOW + HEIGHT * along, -radius * z / x.hypot(z)])
     };
     let mut data = MeshData { positions: (0..RINGS).flat_map(ring).collect(), ..MeshData::default() };

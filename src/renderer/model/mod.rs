@@ -20,7 +20,7 @@ use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, pat
 use crate::renderer::options::{DisplacementMap, Error, Factor, Geometry, MemoryUsage, ModelId, ModelOptions, Options};
 use crate::renderer::shader::{PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
-use crate::table::{Evaluation, ModelTables, Sharing, TEXEL_BYTES};
+use crate::table::{Construction, Evaluation, ModelTables, Sharing, TEXEL_BYTES};
 use ash::vk;
 use bindings::{ModelBuffers, ModelSet};
 use edge_factors::EdgeFactors;
@@ -116,6 +116,8 @@ fn table_buffer(
 /// Stages of each group of patches, in the order of the plan.
 fn stages(tables: &ModelTables, options: &ModelOptions, pipelines: &ModelPipelines) -> Vec<PatchStages> {
     let &ModelOptions { construction, evaluation, spacing, .. } = options;
+    // Leaves are in tables, as stencils are, whatever makes other patches.
+    let construction = if tables.options().is_by_leaves() { Construction::Stencil } else { construction };
     let of_group = |group: &PatchGroup| {
         let stages = PatchStages {
             scheme: group.scheme,

@@ -82,7 +82,6 @@ impl ModelPipelines {
             }
             match (stages.construction, stages.evaluation) {
                 (_, Evaluation::Subdivision) => {}
-                _ if stages.is_by_leaves() => {}
                 (Construction::Cached, Evaluation::GeometryTwoPass) => self.convert(stages)?,
                 (Construction::Cached, _) => self.cached.make(stages, &self.draws.shaders)?,
                 _ => {}

@@ -110,8 +110,8 @@ impl PatchStages {
     /// Control points that go into the control shader: one a corner, or one a patch that only says which patch it is.
     pub(crate) fn input_points(self) -> u32 {
         match self.construction {
-            Construction::TwoStage if !self.is_by_leaves() => self.kind.corners() as u32,
-            _ => 1,
+            Construction::TwoStage => self.kind.corners() as u32,
+            Construction::Stencil | Construction::Cached => 1,
         }
     }
 
@@ -157,8 +157,8 @@ impl PatchStages {
     /// The vertex shader.
     pub(crate) fn vertex(self) -> ShaderKey {
         match self.construction {
-            Construction::TwoStage if !self.is_by_leaves() => self.shader(Source::TwoStageVert, Output::Surface),
-            _ => ShaderKey::of(Source::PatchNumberVert),
+            Construction::TwoStage => self.shader(Source::TwoStageVert, Output::Surface),
+            Construction::Stencil | Construction::Cached => ShaderKey::of(Source::PatchNumberVert),
         }
     }
 
@@ -214,8 +214,8 @@ impl PatchStages {
     /// The control shader.
     pub(crate) fn control(self, capture: Capture, texcoords: bool) -> ShaderKey {
         let source = match self.construction {
-            Construction::TwoStage if !self.is_by_leaves() => Source::TwoStageTesc,
-            _ => Source::TablesTesc,
+            Construction::TwoStage => Source::TwoStageTesc,
+            Construction::Stencil | Construction::Cached => Source::TablesTesc,
         };
         let output = match capture {
             Capture::Grid => Output::CaptureVertices,
