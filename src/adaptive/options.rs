@@ -28,7 +28,7 @@ named! {
         #[default]
         Faces = "faces",
         /// One a leaf (Niessner et al. 2012), or triangles around its centre if leaves are finer beyond one of its edges: more patches,
-        /// each with control points of its own. [`Evaluation::Tessellation`](crate::Evaluation::Tessellation) only.
+        /// each with control points of its own. [`Evaluation::Tessellation`](crate::table::Evaluation::Tessellation) only.
         Leaves = "leaves",
     }
 }

@@ -7,7 +7,7 @@ use ash_subdiv::capture::Captured;
 use ash_subdiv::headless::Headless;
 use ash_subdiv::limit::LimitSurface;
 use ash_subdiv::renderer::Evaluation;
-use ash_subdiv::table::{FaceOrigin, ModelTables, grid_parameters};
+use ash_subdiv::table::{CpuSurface, FaceOrigin, ModelTables, TableOptions, grid_parameters};
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, shape, shapes};
 use glam::Vec3;
@@ -138,6 +138,43 @@ fn patches_by_leaves_are_the_limit_surface() {
         assert!(before < 5e-3, "{name}: {before:e}");
     }
     assert!(triangles > 1000, "{triangles}");
+    headless.finish_silent();
+}
+
+/// Inside, patches by leaves have the points that faces find in the same leaves, end caps too.
+#[test]
+fn patches_by_leaves_are_those_leaves() {
+    let headless = common::headless();
+    let mut compared = 0;
+    for name in ["machine-part", "valences", "cube"] {
+        let mesh = shape(name).expect("built in");
+        let adaptive = Some(AdaptiveOptions { depth: 2, drawn_by: DrawnBy::Leaves, ..AdaptiveOptions::default() });
+        let options = ModelOptions { adaptive, ..ModelOptions::default() };
+        let captured = Captured::new(&headless, &mesh, &options).expect("a model");
+        let (samples, tables) = (captured.grid(5).expect("a capture"), captured.tables());
+        let surface =
+            CpuSurface::with_options(&mesh, &TableOptions { adaptive, ..TableOptions::default() }).expect("patches");
+        let vertices = surface.vertices(|p| p);
+        let of_face: HashMap<_, _> = surface.plan().patches().iter().map(|patch| (patch.face, *patch)).collect();
+        for (patch, samples) in samples.iter().enumerate() {
+            let kind = tables.plan().patches()[patch].kind;
+            for (at, sample) in grid_parameters(kind, 5).into_iter().zip(samples) {
+                // On edges some are of the neighbour's leaf.
+                let third = if kind == PatchKind::Triangle { 1.0 - at[0] - at[1] } else { 0.5 };
+                if [at[0], at[1], third].into_iter().any(|t| !(0.1..0.9).contains(&t)) {
+                    continue;
+                }
+                let (origin, _, [u, v]) = by_leaves_on_limit(&mesh, tables, patch, at);
+                let of_face = of_face[&origin.face];
+                let expected = surface.evaluate(of_face, &surface.points_of(of_face, &vertices), u, v);
+                let away = (Vec3::from(sample.position).as_dvec3() - expected.position).length() / diagonal(&mesh);
+                let turned = (Vec3::from(sample.normal).as_dvec3().normalize_or_zero() - expected.normal).length();
+                assert!(away < 2e-7 && turned < 1e-4, "{name} {origin:?} at {at:?}: {away:e}, {turned:e}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 20_000, "{compared}");
     headless.finish_silent();
 }
 
