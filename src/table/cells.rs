@@ -213,8 +213,8 @@ impl Cells {
             of_faces.push(root.cell(steps, [leaf.u, leaf.v], first, leaf.transition));
         }
         // The curve of an edge within a face begins there.
-        let edges = Topology::new(&pieces.mesh);
-        let (numbers, count) = number_edges(&edges);
+        let edges = &*pieces.topology;
+        let (numbers, count) = number_edges(edges);
         let of_half_edge = |(h, line): (u32, &Line)| match *line {
             Line::Edge(of, ends) => whole[of as usize].part(ends, 2 * SIDE),
             Line::Inner => OnCurve {

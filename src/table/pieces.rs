@@ -7,13 +7,13 @@ use crate::mesh::{BoundaryRule, ControlMesh, Crease, FaceVarying, MeshData, Mesh
 use crate::topology::Topology;
 use rustc_hash::FxBuildHasher;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Parts of the side of a root, of the finest level.
 pub(super) const SIDE: u32 = crate::constants::PIECE_PARTS;
 const _: () = assert!(SIDE == 1 << crate::constants::MAX_DEPTH);
 
-/// A part of a leaf beyond one of whose edges leaves are finer: the triangle between a part of its boundary, which is an edge of
-/// one patch beyond it, too, and the apex, which all triangles of the leaf have.
+/// A triangle of a leaf beside finer ones, between a part of the leaf's boundary, which is an edge of one patch beyond it, and an apex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct LeafPart {
     /// The leaf's edge on which the part lies.
@@ -38,7 +38,7 @@ enum Place {
     Root(u32, [u32; 2]),
 }
 
-/// A line of the control mesh: what edges of leaves lie on that other roots have, too.
+/// A line of the control mesh on which edges of leaves lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Line {
     /// A half-edge's edge; from and to, in parts of `2 * SIDE`, where the half-edge starts being 0.
@@ -49,7 +49,7 @@ pub(super) enum Line {
 
 /// A mesh cut by leaves.
 pub(super) struct Pieces {
-    pub mesh: ControlMesh,
+    pub topology: Arc<Topology>,
     /// What each face is of the mesh before.
     pub faces: Vec<CutFace>,
     /// What each half-edge lies on.
@@ -194,7 +194,8 @@ struct Faces {
     texcoords: Vec<[f32; 2]>,
 }
 
-/// Cuts a mesh into the leaves of a plan; each leaf beyond one of whose edges leaves are finer into triangles. So every edge of a patch is one of its neighbour, too.
+/// Cuts a mesh into the leaves of a plan, and each leaf beside finer ones into triangles: every edge of a patch is an edge of its
+/// neighbour, too.
 ///
 /// # Errors
 /// [`MeshError::TooLarge`].
@@ -231,7 +232,7 @@ pub(super) fn cut_by_leaves(whole: &Topology, plan: &Plan) -> Result<Pieces, Mes
     data.positions = places.positions;
     // What is not drawn has no leaves.
     data.boundary = BoundaryRule::EdgeOnly;
-    Ok(Pieces { mesh: ControlMesh::new(data)?, faces, lines })
+    Ok(Pieces { topology: Arc::new(Topology::new(&ControlMesh::new(data)?)), faces, lines })
 }
 
 impl Faces {
@@ -247,7 +248,7 @@ impl Faces {
             self.push_face(4, leaf, Part::Leaf(number));
             return;
         }
-        // An edge that is halved once has an end of every triangle that is not degenerate.
+        // From the middle of an edge that is halved once no triangle is degenerate.
         let halved = (0..4).find(|&k| parts.iter().filter(|part| part.0 == k).count() == 2);
         let apex = halved.map_or(at.map(|t| t + side / 2), |k| on_side(at, side, k, side / 2));
         let of_apex = |point| point == apex;

@@ -256,7 +256,7 @@ impl Prepared {
             _ if by_leaves => {
                 let pieces = cut_by_leaves(&whole, &plan)?;
                 let cells = cells.cut_by_leaves(&whole, &plan, &pieces)?;
-                (Arc::new(Topology::new(&pieces.mesh)), cells, Some(Cut { whole, faces: pieces.faces }))
+                (pieces.topology, cells, Some(Cut { whole, faces: pieces.faces }))
             }
             true => (whole, cells, None),
             false => {

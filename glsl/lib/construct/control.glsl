@@ -85,7 +85,8 @@ void finish_patch(uint patch_number) {
     float inside = largest;
 #if defined(READS_LEAVES) && defined(TRIANGLE)
     // A triangle of a leaf is half as wide along one edge as along the others.
-    inside = IS_BY_LEAVES ? sqrt(smallest * largest) : largest;
+    precise float mean = sqrt(smallest * largest);
+    inside = IS_BY_LEAVES ? mean : largest;
 #endif
     vec2 inner = vec2(max(least, inside));
 #if defined(PENTAGON)

@@ -10,7 +10,7 @@
 #include "edges/shared_texcoords.glsl"
 #endif
 
-// Where corner k of a patch is in the patch's own parameters, and beside it on the edge from there.
+// Where corner k of a patch is, in the patch's own parameters.
 vec3 corner_place(uint k) {
 #ifdef TRIANGLE
     return k == 0u ? vec3(1.0, 0.0, 0.0) : k == 1u ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
@@ -22,19 +22,22 @@ vec3 corner_place(uint k) {
 // What of the edge of a whole face the edge from corner k is: a power of two, the same from either side.
 float edge_part(uint k) {
     uint piece = face_word(evaluated_patch, 1u);
-    float part = exp2(-float(piece_level(piece)));
+    precise float part = exp2(-float(piece_level(piece)));
 #ifdef TRIANGLE
-    vec2 way = abs(piece_corner(piece, k) - piece_corner(piece, k == 2u ? 0u : k + 1u));
-    part *= max(way.x, way.y);
-#endif
+    precise vec2 way = piece_corner(piece, k) - piece_corner(piece, k == 2u ? 0u : k + 1u);
+    precise float of_leaf = part * max(abs(way.x), abs(way.y));
+    return of_leaf;
+#else
     return part;
+#endif
 }
 
 // What the edge from corner k of the patch asks for, by its owner, so that both sides ask for the same.
 float leaf_factor(uint patch_number, uint k) {
     evaluated_patch = draw.first_patch + patch_number;
     if (metric() == METRIC_UNIFORM) {
-        return item.factor * edge_part(k);
+        precise float factor = item.factor * edge_part(k);
+        return factor;
     }
     if (metric() == METRIC_EDGES) {
         return plus_factor(patch_number, k);
@@ -89,7 +92,7 @@ vec3[5] leaf_corner(uint patch_number, uint k) {
 float leaf_corner_lod(uint corner, uint patch_number, uint k) {
     evaluated_patch = draw.first_patch + patch_number;
     uint owner = owner_of(4u + k);
-    float factor = item.factor * exp2(-float(piece_level(face_word(owner >> OWNER_SHIFT, 1u))));
+    precise float factor = item.factor * exp2(-float(piece_level(face_word(owner >> OWNER_SHIFT, 1u))));
     if (metric() == METRIC_PIXELS || metric() == METRIC_CURVATURE) {
         Surface at = evaluate_spot(spot_of(owner, 4u + k, corner_place(k), 0.0));
         precise vec3 a = at.du / 3.0, b = at.dv / 3.0;

@@ -205,8 +205,8 @@ Spot wedge_spot(uint patch_number, vec3 at) {
 
 // A point of edge `edge` of a leaf. Rust twin: `on_side` in src/table/pieces.rs.
 vec2 on_leaf_edge(uint edge, uint part) {
-    float t = float(part) / float(PIECE_PARTS);
-    return edge == 0u ? vec2(t, 0.0) : edge == 1u ? vec2(1.0, t) : edge == 2u ? vec2(1.0 - t, 1.0) : vec2(0.0, 1.0 - t);
+    precise float t = float(part) / float(PIECE_PARTS), s = 1.0 - t;
+    return edge == 0u ? vec2(t, 0.0) : edge == 1u ? vec2(1.0, t) : edge == 2u ? vec2(s, 1.0) : vec2(0.0, s);
 }
 
 uint piece_level(uint piece) {
