@@ -421,6 +421,7 @@ fn pictures_evaluated_on_lattices_are_the_same() {
             let fits = picture.displacement.is_none()
                 && matches!(picture.factor, Factor::Uniform(_))
                 && picture.evaluation == Evaluation::Tessellation
+                && picture.adaptive.is_none_or(|adaptive| adaptive.drawn_by == DrawnBy::Faces)
                 && !picture.culled;
             if !fits || !(picture.of_lattice || quads_only(picture.shape)) {
                 continue;
