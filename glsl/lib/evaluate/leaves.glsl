@@ -132,7 +132,7 @@ Surface evaluate_leaf(uvec4 head, LeafPoints of_leaf, vec2 at) {
         }
     }
     // As seen from one of them, for sums to keep the bits of small leaves.
-    vec3 origin = of_leaf.points[0][1];
+    vec3 origin = of_leaf.points[1][1];
     vec3 points[4][4];
     for (int i = 0; i < 4; ++i) {
         for (int j = 0; j < 4; ++j) {
