@@ -20,15 +20,15 @@ named! {
 }
 
 named! {
-    /// What patches are. The surface is the same.
+    /// Part of the surface that a patch is. The surface is the same.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub enum DrawnBy {
         /// One a face, which finds the leaf of each of its vertices (Brainerd et al. 2016): few patches, factors as without adaptive
         /// subdivision, every evaluation.
         #[default]
         Faces = "faces",
-        /// One a leaf (Niessner et al. 2012), or triangles around its centre if leaves are finer beyond one of its edges: more patches,
-        /// each with control points of its own. [`Evaluation::Tessellation`](crate::table::Evaluation::Tessellation) only.
+        /// One a leaf (Niessner et al. 2012), or a fan of triangles if leaves are finer beyond one of its edges: more patches, each with
+        /// control points of its own. [`Evaluation::Tessellation`](crate::table::Evaluation::Tessellation) only.
         Leaves = "leaves",
     }
 }
@@ -47,7 +47,7 @@ pub struct AdaptiveOptions {
     pub refine_creases: bool,
     /// What refined vertices are sums of.
     pub sums: Sums,
-    /// What patches are.
+    /// Part of the surface that a patch is.
     pub drawn_by: DrawnBy,
 }
 

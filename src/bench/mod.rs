@@ -201,7 +201,7 @@ pub struct Contestant {
     pub creases: Creases,
     /// What its refined vertices are sums of, if it is adaptive.
     pub sums: Sums,
-    /// What its patches are, if it is adaptive.
+    /// Part of the surface that a patch of it is, if it is adaptive.
     pub drawn_by: DrawnBy,
     /// Source of its normals.
     pub normals: Normals,

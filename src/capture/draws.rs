@@ -69,7 +69,8 @@ impl Captured<'_> {
 
     /// The options without what pipelines do not depend on.
     fn pipelines(&self) -> ModelOptions {
-        let adaptive = self.options.adaptive.map(|_| AdaptiveOptions::default());
+        let of = |AdaptiveOptions { drawn_by, .. }| AdaptiveOptions { drawn_by, ..AdaptiveOptions::default() };
+        let adaptive = self.options.adaptive.map(of);
         ModelOptions { name: String::new(), refine: 0, adaptive, ..self.options.clone() }
     }
 

@@ -59,7 +59,7 @@ pub(super) struct SourceArgs {
     #[arg(long, value_name = "OF", requires = "adaptive", default_value = "levels", value_parser = parse::one_of(Sums::ALL, Sums::name))]
     sums: Sums,
 
-    /// With --adaptive: what patches are, a face each or a leaf each. The surface is the same; by leaves --evaluation is tessellation
+    /// With --adaptive: one patch a face, or one a leaf. The surface is the same; leaves go with --evaluation tessellation only
     #[arg(long, value_name = "WHAT", requires = "adaptive", default_value = "faces", value_parser = parse::one_of(DrawnBy::ALL, DrawnBy::name))]
     by: DrawnBy,
 
@@ -125,7 +125,7 @@ impl SourceArgs {
         TableOptions { scheme, fallback: self.fallback(), refine: self.refine, adaptive, ..TableOptions::default() }
     }
 
-    /// Refuses patches by leaves, where a command needs a patch a face.
+    /// Refuses patches by leaves, for a command that needs one patch a face.
     ///
     /// # Errors
     /// That they were asked for.

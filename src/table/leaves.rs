@@ -11,7 +11,7 @@ use crate::constants::{
     PIECE_TO_SHIFT, WEDGE_BIT,
 };
 use crate::mesh::SHARPNESS_INFINITE;
-use crate::topology::Topology;
+use crate::topology::{PatchKind, Topology};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -107,18 +107,14 @@ impl Refinement {
 }
 
 impl LeafTable {
-    /// The corners of a patch by leaves, by its number, in (u, v) of its cell ([`PatchId`](super::PatchId)): those of a triangle, or
-    /// [0, 0], [1, 0], [1, 1], [0, 1].
-    ///
-    /// # Panics
-    /// If there is no patch with this number.
-    pub fn cell_corners(&self, patch: usize, is_triangle: bool) -> Vec<[f64; 2]> {
+    /// The corners of a patch by leaves, in (u, v) of its cell.
+    pub(super) fn cell_corners(&self, patch: usize, kind: PatchKind) -> Vec<[f64; 2]> {
         let word = self.faces[patch][1];
-        let [from, to] = [word, word >> PIECE_TO_SHIFT].map(|at| at & PIECE_MASK);
         let on = |edge, part| on_side([0, 0], PIECE_PARTS, edge, part).map(|t| f64::from(t) / f64::from(PIECE_PARTS));
-        if !is_triangle {
+        if kind != PatchKind::Triangle {
             return (0..4).map(|k| on(k, 0)).collect();
         }
+        let [from, to] = [word, word >> PIECE_TO_SHIFT].map(|at| at & PIECE_MASK);
         let edge = word >> PIECE_EDGE_SHIFT & 3;
         let apex = match word >> PIECE_APEX_SHIFT {
             APEX_IS_CENTRE => [0.5; 2],

@@ -154,6 +154,15 @@ impl ModelTables {
         self.leaves.as_ref()
     }
 
+    /// Corners of a patch by leaves, by its number, in (u, v) of its cell ([`PatchId`](super::PatchId)): three of a triangle, else
+    /// `[0, 0]`, `[1, 0]`, `[1, 1]`, `[0, 1]`. `None` unless patches are leaves
+    /// ([`AdaptiveOptions::drawn_by`](crate::adaptive::AdaptiveOptions::drawn_by)), or if there is no such patch.
+    pub fn cell_corners(&self, patch: usize) -> Option<Vec<[f64; 2]>> {
+        let leaves = self.leaves.as_ref().filter(|_| self.options.is_by_leaves())?;
+        let kind = self.plan.patches().get(patch)?.kind;
+        Some(leaves.cell_corners(patch, kind))
+    }
+
     /// The patches, in the order of the tables.
     pub fn plan(&self) -> &PatchPlan {
         &self.plan

@@ -3,7 +3,7 @@
 use crate::common::random::{random_creased_mesh, random_mesh};
 use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy};
 use ash_subdiv::renderer::{EdgeTable, ModelTables};
-use ash_subdiv::table::TableOptions;
+use ash_subdiv::table::{Evaluation, TableOptions};
 use ash_subdiv::topology::PatchKind;
 use ash_subdiv::{ControlMesh, Scheme, shape, shapes};
 use std::collections::{HashMap, HashSet};
@@ -63,12 +63,12 @@ fn every_edge_is_one_of_both_patches_beside_it() {
 fn patches_cover_each_face_once() {
     for (name, mesh) in meshes() {
         let tables = tables(&mesh, Some(by_leaves(2, Some(3))));
-        let leaves = tables.leaves().expect("adaptive");
         let mut areas: HashMap<(u32, Option<u32>), f64> = HashMap::new();
         let mut cells = HashSet::new();
         for (number, (patch, origin)) in tables.plan().patches().iter().zip(tables.origins()).enumerate() {
             let triangle = patch.kind == PatchKind::Triangle;
-            let corners = leaves.cell_corners(number, triangle);
+            let corners = tables.cell_corners(number).expect("by leaves");
+            assert_eq!(corners.len(), patch.kind.corners());
             let of = |i: usize, j: usize| corners[i][0] * corners[j][1] - corners[i][1] * corners[j][0];
             let doubled: f64 = (0..corners.len()).map(|i| of(i, (i + 1) % corners.len())).sum();
             assert!(doubled > 0.0, "{name}: {origin:?} turns the other way");
@@ -84,6 +84,25 @@ fn patches_cover_each_face_once() {
         assert_eq!(areas.len(), parts.map(|size| if size == 4 { 1 } else { size }).sum::<usize>(), "{name}");
         assert!(areas.values().all(|&area| area == 1.0), "{name}: {areas:?}");
     }
+}
+
+#[test]
+fn patches_by_leaves_that_there_are_not() {
+    let mesh = shape("tetrahedron").expect("built in");
+    assert_eq!(tables(&mesh, None).cell_corners(0), None);
+    assert_eq!(tables(&mesh, Some(AdaptiveOptions::default())).cell_corners(0), None);
+    let by_leaves = by_leaves(6, None);
+    assert_eq!(tables(&mesh, Some(by_leaves)).cell_corners(usize::MAX), None);
+    let adaptive = Some(by_leaves);
+    let told = |options: TableOptions| ModelTables::new(&mesh, options).map(|_| ()).unwrap_err().to_string();
+    assert_eq!(
+        told(TableOptions { refine: 5, adaptive, ..TableOptions::default() }),
+        "the mesh has 11 levels of refinement: at most 10 can be addressed"
+    );
+    assert_eq!(
+        told(TableOptions { evaluation: Evaluation::Instanced, adaptive, ..TableOptions::default() }),
+        "evaluation by instanced has no patches by leaves: only by tessellation there are such; draw by faces"
+    );
 }
 
 /// Those of Niessner et al. (2012), where each face has its leaves.

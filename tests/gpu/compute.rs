@@ -1,6 +1,7 @@
 //! Evaluation by compute: when it happens, and what evaluations say when they are used wrongly.
 
 use crate::common::stage::{Stage, begin, read_vertices, with_segments};
+use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy};
 use ash_subdiv::gpu::{Allocation, AllocationRequest, Allocator, AllocatorError};
 use ash_subdiv::renderer::{Evaluation, Factor, MemoryUsage, ModelTables};
 use ash_subdiv::topology::Topology;
@@ -209,6 +210,13 @@ fn wrong_use_is_told() {
     assert_eq!(
         text(renderer.add_tables(tables, &mesh.positions_f32(), &other).unwrap_err()),
         "model 0: its tables were built for Evaluation::Compute, not for GeometryTwoPass: build them with the same options"
+    );
+    let adaptive = Some(AdaptiveOptions { drawn_by: DrawnBy::Leaves, ..AdaptiveOptions::default() });
+    let by_leaves = ModelOptions { adaptive, construction: Construction::Cached, ..ModelOptions::default() };
+    let tables = ModelTables::new(&mesh, &by_leaves).expect("tables");
+    assert_eq!(
+        text(renderer.add_tables(tables, &mesh.positions_f32(), &compute(Scheme::Gregory)).unwrap_err()),
+        "model 0: Evaluation::Compute does not go with patches by leaves: do without, or choose Evaluation::Tessellation"
     );
     let options = ModelOptions { construction: Construction::TwoStage, ..compute(Scheme::Gregory) };
     assert_eq!(

@@ -87,7 +87,7 @@ fn by_leaves_on_limit(
 ) -> (FaceOrigin, i32, [f64; 2]) {
     let (kind, origin) = (tables.plan().patches()[patch].kind, tables.origins()[patch]);
     let triangle = kind == PatchKind::Triangle;
-    let corners = tables.leaves().expect("adaptive").cell_corners(patch, triangle);
+    let corners = tables.cell_corners(patch).expect("by leaves");
     let weights = match triangle {
         true => vec![u, v, 1.0 - u - v],
         false => vec![(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v],

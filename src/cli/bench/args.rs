@@ -50,7 +50,7 @@ pub(in super::super) struct BenchArgs {
     /// level; `composed`, of control vertices, all at once.
     #[arg(long, value_name = "OF", value_delimiter = ',', default_value = "levels", value_parser = parse::one_of(Sums::ALL, Sums::name))]
     pub(super) sums: Vec<Sums>,
-    /// With --adaptive: what patches are, with commas: `faces`, one each; `leaves`, one each, of paths with tessellation stages.
+    /// With --adaptive: patches, with commas: one a face (`faces`) or one a leaf (`leaves`, on paths with tessellation stages).
     #[arg(long, value_name = "WHAT", value_delimiter = ',', default_value = "faces", value_parser = parse::one_of(DrawnBy::ALL, DrawnBy::name))]
     pub(super) by: Vec<DrawnBy>,
     /// Measure each row of the tessellation stages and of instances again with patches culled that are not seen: `back`

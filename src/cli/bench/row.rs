@@ -78,7 +78,7 @@ described! {
         /// What its refined vertices are sums of.
         #[serde(default = "levels")]
         pub sums: String,
-        /// What its patches are.
+        /// Part of the surface that a patch is: faces or leaves.
         #[serde(default = "faces")]
         pub drawn_by: String,
         /// And by what, if that is not what usually does.

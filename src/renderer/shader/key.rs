@@ -63,7 +63,7 @@ pub(crate) struct PatchStages {
     pub stride: u32,
     /// Whether the vertex shader has the control points as attributes of an instance.
     pub attributes: bool,
-    /// What the patches are, where leaves are evaluated.
+    /// Part of the surface that a patch is, where leaves are evaluated.
     pub adaptive: Option<DrawnBy>,
 }
 

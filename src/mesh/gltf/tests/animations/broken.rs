@@ -23,6 +23,21 @@ fn assert_broken(change: impl Fn(&mut File), expected: &str) {
 }
 
 #[test]
+fn nodes() {
+    let children = |children: [Value; 2]| {
+        move |file: &mut File| {
+            let nodes = file.json["nodes"].as_array_mut().unwrap();
+            nodes.extend(children.clone().map(|children| json!({ "children": children })));
+        }
+    };
+    let missing = "node 9 does not exist, but is a child of node 1";
+    assert_broken(children([json!([9]), json!([0])]), missing);
+    // Beside the scene, which has a root.
+    let circle = "nodes are each other's children: give the scene a root";
+    assert_broken(children([json!([2]), json!([1])]), circle);
+}
+
+#[test]
 fn channels_and_samplers() {
     let channel = |key: &'static str, value: Value| {
         move |file: &mut File| file.json["animations"][0]["channels"][0][key] = value.clone()
