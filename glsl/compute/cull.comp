@@ -1,5 +1,6 @@
 // Which patches of a draw can be seen: one invocation for each patch, by the rules of the control shaders. Control points that are
-// cached are read; others are made, as in a draw of the two-stage or the stencil construction, for nothing but this. Each workgroup
+// cached are read; others are made, as in a draw of the two-stage or the stencil construction, for nothing but this. Of faces that are
+// refined, hulls are. Each workgroup
 // lists those of its patches that can be seen, and writes the indirect draws of them; for instances to have what is kept of them as
 // attributes, it also copies that, one after the other as on the list.
 #version 460
@@ -27,6 +28,15 @@ uint outside[CORNERS];
 vec4 pixel_box[CORNERS];
 #include "edges/culling.glsl"
 #include "edges/edge_factors.glsl"
+#ifdef MAY_BE_ADAPTIVE
+#include "edges/hulls.glsl"
+#else
+const bool ADAPTIVE = false;
+
+Examined examine_hull(uint patch_number, uint first, uint step) {
+    return Examined(0u, vec4(0.0), true);
+}
+#endif
 
 // Not in a loop: Mesa (22.3) unrolls none that has another in it, and so has the arrays that it goes through in memory. That took
 // half as long again.
@@ -60,15 +70,22 @@ void find_points(uint patch_number) {
 const uint NOTHING = 0u, SOME = 1u, ALL = 2u;
 
 uint to_see(uint patch_number) {
-    find_points(patch_number);
+    if (!ADAPTIVE) {
+        find_points(patch_number);
+    }
     bool crosses = false;
     float smallest = MAX_FACTOR;
     for (uint k = 0u; k < CORNERS; ++k) {
-        Examined examined = examine(owned[k]);
+        Examined examined;
+        if (ADAPTIVE) {
+            examined = examine_hull(draw.first_patch + patch_number, k, CORNERS);
+        } else {
+            examined = examine(owned[k]);
+            smallest = min(smallest, within_limits(plus_factor(patch_number, k)));
+        }
         outside[k] = examined.outside;
         pixel_box[k] = examined.pixel_box;
         crosses = crosses || examined.crosses;
-        smallest = min(smallest, within_limits(plus_factor(patch_number, k)));
     }
     return is_culled(1.0 / smallest) ? NOTHING : crosses ? SOME : ALL;
 }

@@ -103,14 +103,19 @@
 #define PIECE_LEVEL_SHIFT 24u
 #define PIECE_APEX_SHIFT 28u
 #define APEX_IS_CENTRE 4u
-// Words of a face, and the first of those that say who owns the positions, the normals. An owner is a patch from OWNER_SHIFT on, whether
+// Words of a face: the first of those that say who owns the positions, the normals; that where its hull starts. An owner is a patch from OWNER_SHIFT on, whether
 // it is a wedge, and its edge or corner; or none, where a neighbour is not refined.
-#define FACE_WORDS 18u
+#define FACE_WORDS 19u
 #define OWNERS 2u
 #define NORMAL_OWNERS 10u
+#define FACE_HULL 18u
 #define OWNER_SHIFT 3u
 #define WEDGE_BIT 4u
 #define OWNER_NONE 0xffffffffu
+
+// An entry of a hull: a vertex, or the first of those that are the control points of an end cap.
+#define HULL_CAP_BIT 0x80000000u
+#define CAP_VERTICES 20u
 
 // What is captured of a patch, and of a vertex.
 #define CONTROL_POINT_WORDS 96u

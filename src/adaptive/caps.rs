@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 /// Control points of a cap.
-pub(super) const POINTS: u32 = 20;
+pub(crate) const POINTS: u32 = 20;
 
 /// The bit of a vertex in a row, while a plan is being made, that is one of a shared frame.
 pub(super) const FRAME: u32 = 1 << 30;

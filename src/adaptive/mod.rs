@@ -41,6 +41,7 @@ mod options;
 mod plan;
 mod rows;
 
+pub(crate) use caps::POINTS as CAP_POINTS;
 pub use counts::LevelCounts;
 pub use error::AdaptiveError;
 pub use feature::Reason;

@@ -1,12 +1,13 @@
 //! What shaders read of faces that are refined: quadtrees, leaves, and who owns edges and corners.
 
+use super::hulls::hulls;
 use super::pieces::{LeafPart, on_side};
 use super::plan::PatchPlan;
 use super::prepare::Prepared;
 use super::wedges::Part;
-use crate::adaptive::{self, LEAF, LeafKind, LevelCounts};
+use crate::adaptive::{self, DrawnBy, LEAF, LeafKind, LevelCounts};
 use crate::constants::{
-    APEX_IS_CENTRE, FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE,
+    APEX_IS_CENTRE, FACE_HULL, FACE_WORDS, LEAF_CAP, LEAF_CREASE, LEAF_FOURS, LEAF_REGULAR, NORMAL_OWNERS, OWNER_NONE,
     OWNER_SHIFT, OWNERS, PIECE_APEX_SHIFT, PIECE_EDGE_SHIFT, PIECE_LEVEL_SHIFT, PIECE_MASK, PIECE_PARTS,
     PIECE_TO_SHIFT, WEDGE_BIT,
 };
@@ -21,10 +22,13 @@ use std::ops::Range;
 pub struct LeafTable {
     /// For each patch from the first that is refined on, in order: its root, of a wedge that around the start of its edge, then that
     /// around the end; by leaves its leaf, then which part of the leaf it is, and the leaf's level. Then the owners of the positions on its edges, from corner k to the next, and at its corners; likewise the owners of
-    /// the normals, which differ where infinitely sharp edges part faces. An owner is a patch from bit `OWNER_SHIFT` on, with
+    /// the normals, which differ where infinitely sharp edges part faces. Then where its hull starts in `hulls`, but for patches by leaves. An owner is a patch from bit `OWNER_SHIFT` on, with
     /// `WEDGE_BIT` where it is a wedge, and its edge or corner; or `OWNER_NONE`, where a neighbour is not refined. Of patches that are
     /// not refined zeros.
     pub faces: Vec<[u32; FACE_WORDS as usize]>,
+    /// The hulls of faces, of which wedges of one face have the same: the number of entries, then for each a vertex, or with
+    /// `HULL_CAP_BIT` the first of `CAP_VERTICES`. The surface of the face lies between all of these.
+    pub hulls: Vec<u32>,
     /// For each leaf, its kind; a crease's sharpness or the first of the four face points f- of an end cap; two words that are not
     /// used; then 16 control points, row by row along v.
     pub leaves: Vec<[u32; 4 * LEAF_FOURS as usize]>,
@@ -128,8 +132,12 @@ impl LeafTable {
         let topology = prepared.topology();
         let first_patch = patches.patches().iter().position(|patch| patch.refined).unwrap_or(patches.patches().len());
         let owners = Owners::new(topology, patches);
-        let faces = patches.patches()[first_patch..].par_iter();
-        let faces = faces.map(|patch| {
+        let (hulls, starts) = match plan.options.drawn_by {
+            DrawnBy::Faces => hulls(prepared, patches, &plan, &owners),
+            DrawnBy::Leaves => (Vec::new(), vec![0; patches.patches().len() - first_patch]),
+        };
+        let faces = patches.patches()[first_patch..].par_iter().zip(starts);
+        let faces = faces.map(|(patch, hull)| {
             let mut words = [0; FACE_WORDS as usize];
             if patch.refined {
                 words[..2].copy_from_slice(&match prepared.cut_face(patch.face).map(|cut| cut.part) {
@@ -137,6 +145,7 @@ impl LeafTable {
                     Some(Part::OfLeaf(leaf, part)) => leaf_piece(&plan, leaf, part),
                     _ => prepared.roots(&plan, patch),
                 });
+                words[FACE_HULL as usize] = hull;
                 let (edges, normals) = (OWNERS as usize, NORMAL_OWNERS as usize);
                 for (k, h) in patch.corners(topology).enumerate() {
                     [words[edges + k], words[normals + k]] = owners.edge(h);
@@ -151,6 +160,7 @@ impl LeafTable {
         let refinement = Refinement::new(&plan, |vertex| patches.vertex(vertex));
         Self {
             faces,
+            hulls,
             leaves,
             first_patch: first_patch as u32,
             refinement,
@@ -214,7 +224,7 @@ fn mask_fours(rows: &adaptive::Rows) -> (Vec<[f32; 4]>, Vec<u32>) {
 }
 
 /// Who makes what patches share.
-struct Owners<'t> {
+pub(super) struct Owners<'t> {
     topology: &'t Topology,
     /// The number of each face's patch, if it is refined.
     refined: Vec<u32>,
@@ -263,7 +273,7 @@ impl<'t> Owners<'t> {
     }
 
     /// The owners of position and normal along the edge of a half-edge.
-    fn edge(&self, h: u32) -> [u32; 2] {
+    pub(super) fn edge(&self, h: u32) -> [u32; 2] {
         let twin = self.topology.twin(h);
         if twin.is_some_and(|twin| self.is_coarse(twin)) {
             return [OWNER_NONE; 2];
@@ -275,7 +285,7 @@ impl<'t> Owners<'t> {
     }
 
     /// The owners of position and normal where a half-edge starts.
-    fn corner(&self, h: u32) -> [u32; 2] {
+    pub(super) fn corner(&self, h: u32) -> [u32; 2] {
         let (fan, _) = self.topology.fan(h);
         let around = self.touching.get(&self.topology.mesh_vertex(h)).unwrap_or(&fan);
         if around.iter().any(|&h| self.is_coarse(h)) {

@@ -11,6 +11,7 @@ mod cells;
 mod cpu;
 mod edges;
 mod error;
+mod hulls;
 mod lattice;
 mod leaves;
 mod model;

@@ -225,7 +225,7 @@ impl ModelTables {
 
     /// The arrays behind the bindings of set 1 from 1 on, in order, with their names. Those that the model does not need
     /// are empty.
-    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 16] {
+    pub(crate) fn bindings(&self) -> [(&'static str, &[u8]); 17] {
         fn array<'t, T, E: bytemuck::NoUninit>(table: &'t Option<T>, array: impl Fn(&'t T) -> &'t [E]) -> &'t [u8] {
             table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
         }
@@ -262,6 +262,7 @@ impl ModelTables {
             ("texcoords", array(&self.texcoords, |t| t.as_slice())),
             ("shared_corners", array(&self.shared, |t| t.corners.as_flattened())),
             ("shared_texcoords", array(&self.shared, |t| &t.texcoords)),
+            ("hulls", array(&self.leaves, |t| &t.hulls)),
             ("faces", array(&self.leaves, |t| t.faces.as_flattened())),
         ]
     }

@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::common::stage::{Stage, begin, with_segments};
+use ash_subdiv::adaptive::AdaptiveOptions;
 use ash_subdiv::capture::{CaptureDraw, Captured};
 use ash_subdiv::headless::{Statistics, Texels, Texture};
 use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, VisibleItems};
@@ -100,7 +101,7 @@ fn lists_leave_out_what_the_control_shader_does() {
         ("cloth", Scheme::Gregory),
     ];
     let all = FACTORS.into_iter().flat_map(|factor| CULLS.map(|cull| (factor, cull)));
-    leave_out_the_same(Construction::Cached, &models, &all.collect::<Vec<_>>());
+    leave_out_the_same(Construction::Cached, None, &models, &all.collect::<Vec<_>>());
 }
 
 /// Likewise where the lists are of control points that are made for nothing else.
@@ -113,20 +114,34 @@ fn lists_leave_out_the_same_without_cached_points() {
         ("pentagons", Scheme::Pm),
         ("machine-part", Scheme::GregoryFitted),
     ];
-    leave_out_the_same(Construction::TwoStage, &models, &some);
+    leave_out_the_same(Construction::TwoStage, None, &models, &some);
     let models = [("creature-mixed", Scheme::Gregory), ("cloth", Scheme::Acc)];
-    leave_out_the_same(Construction::Stencil, &models, &some);
+    leave_out_the_same(Construction::Stencil, None, &models, &some);
+}
+
+/// Likewise of faces that are refined, which are culled by their hulls.
+#[test]
+fn lists_leave_out_the_same_refined_faces() {
+    let adaptive = Some(AdaptiveOptions { depth: 2, ..AdaptiveOptions::default() });
+    let models = [("creature-mixed", Scheme::Gregory), ("machine-part", Scheme::GregoryFitted)];
+    let ways = [(FACTORS[0], FRUSTUM), (FACTORS[1], Cull::ALL)];
+    leave_out_the_same(Construction::TwoStage, adaptive, &models, &ways);
 }
 
 const FACTORS: [Factor; 4] = [Factor::Uniform(6.0), Factor::Pixels(3.0), Factor::Curvature(0.3), Factor::Edges(1.0)];
 const CULLS: [Cull; 3] = [BACK, FRUSTUM, Cull::ALL];
 
-fn leave_out_the_same(construction: Construction, models: &[(&str, Scheme)], ways: &[(Factor, Cull)]) {
+fn leave_out_the_same(
+    construction: Construction,
+    adaptive: Option<AdaptiveOptions>,
+    models: &[(&str, Scheme)],
+    ways: &[(Factor, Cull)],
+) {
     let stage = Stage::new();
     let mut renderer = stage.renderer(&options());
     for &(name, scheme) in models {
         let mesh = if name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
-        let options = ModelOptions { edge_factors: true, ..tessellated(scheme, construction) };
+        let options = ModelOptions { edge_factors: true, adaptive, ..tessellated(scheme, construction) };
         let model = renderer.add_model(&mesh, &options).expect("a model");
         let edges = renderer.tables(model).unwrap().edges().expect("asked for").vertices.len();
         let factors: Vec<f32> = (0..edges).map(|edge| 2.0 + (edge % 5) as f32).collect();

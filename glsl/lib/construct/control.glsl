@@ -51,9 +51,27 @@ layout(location = 12) out uint outside[];
 layout(location = 13) out vec4 pixel_box[];
 #include "edges/culling.glsl"
 #include "edges/edge_factors.glsl"
+#ifdef MAY_BE_ADAPTIVE
+#include "edges/hulls.glsl"
+#endif
 #ifdef READS_LEAVES
 #include "construct/leaf.glsl"
 #endif
+
+// What culling looks at of the corner of this invocation.
+Examined examine_corner(uint patch_number, vec3 points[OWNED]) {
+#ifdef READS_LEAVES
+    if (IS_BY_LEAVES) {
+        return examine_leaf(patch_number);
+    }
+#endif
+#ifdef MAY_BE_ADAPTIVE
+    if (ADAPTIVE) {
+        return examine_hull(draw.first_patch + patch_number, uint(gl_InvocationID), CORNERS);
+    }
+#endif
+    return examine(points);
+}
 
 // What is left to do when all control points are written and a barrier is passed. `patch_number` counts within the draw.
 void finish_patch(uint patch_number) {
@@ -142,11 +160,7 @@ void finish_corner(uint patch_number) {
         handed_on[gl_InvocationID][i] = ROW_OF(numbers, i);
     }
     if ((DRAW_FLAGS & CULL_FLAGS) != 0u) {
-#ifdef READS_LEAVES
-        Examined examined = IS_BY_LEAVES ? examine_leaf(patch_number) : examine(points);
-#else
-        Examined examined = examine(points);
-#endif
+        Examined examined = examine_corner(patch_number, points);
         outside[gl_InvocationID] = examined.outside;
         pixel_box[gl_InvocationID] = examined.pixel_box;
     }

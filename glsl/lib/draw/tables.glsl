@@ -26,6 +26,7 @@ layout(set = 1, binding = BINDING_TABLE_STARTS, std140) uniform Tables {
     uint texcoords;
     uint shared_corners;
     uint shared_texcoords;
+    uint hulls;
     uint faces;  // where that of patch 0 would be
 } tables;
 

@@ -31,43 +31,61 @@ vec4 clip_row(int i) {
 }
 
 #if HULL > 0
-// Of points between which a patch lies.
-Examined examine_points(vec3 points[HULL]) {
-    vec4 box = vec4(1e30, 1e30, -1e30, -1e30);
-    if ((DRAW_FLAGS & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
-        return Examined(0u, box, false);
-    }
-    // How far before each plane the foremost point is, and the hindmost, in clip space: w + x, w + y, w - x, w - y; z, w - z.
-    vec4 sides = vec4(-1e30), hind_sides = vec4(1e30);
-    vec2 depths = vec2(-1e30), hind_depths = vec2(1e30);
-    for (int i = 0; i < HULL; ++i) {
-        vec3 at = to_world(points[i]);
-        vec4 clip = view.measured_view_projection * vec4(at, 1.0);
-        vec4 before_sides = clip.w + vec4(clip.xy, -clip.xy);
-        vec2 before_depths = vec2(clip.z, clip.w - clip.z);
-        sides = max(sides, before_sides);
-        depths = max(depths, before_depths);
-        hind_sides = min(hind_sides, before_sides);
-        hind_depths = min(hind_depths, before_depths);
-        if ((DRAW_FLAGS & CULL_SMALL_FLAG) != 0u) {
-            vec2 pixels = (0.5 + 0.5 * clip.xy / clip.w) * view.viewport.xy;
-            box = vec4(min(box.xy, pixels), max(box.zw, pixels));
-            if (!(clip.w > view.viewport.z)) {
-                // Not all of it is before the eye: as large as the picture.
-                box = vec4(-1e30, -1e30, 1e30, 1e30);
-            }
+// How far before each plane the foremost of some points is, and the hindmost, in clip space: w + x, w + y, w - x, w - y; z, w - z. And
+// the box around them in pixels.
+struct Extents {
+    vec4 sides, hind_sides;
+    vec2 depths, hind_depths;
+    vec4 box;
+};
+
+// Of no points yet.
+Extents no_extents() {
+    return Extents(vec4(-1e30), vec4(1e30), vec2(-1e30), vec2(1e30), vec4(1e30, 1e30, -1e30, -1e30));
+}
+
+void include_point(inout Extents extents, vec3 point) {
+    vec4 clip = view.measured_view_projection * vec4(to_world(point), 1.0);
+    vec4 before_sides = clip.w + vec4(clip.xy, -clip.xy);
+    vec2 before_depths = vec2(clip.z, clip.w - clip.z);
+    extents.sides = max(extents.sides, before_sides);
+    extents.depths = max(extents.depths, before_depths);
+    extents.hind_sides = min(extents.hind_sides, before_sides);
+    extents.hind_depths = min(extents.hind_depths, before_depths);
+    if ((DRAW_FLAGS & CULL_SMALL_FLAG) != 0u) {
+        vec2 pixels = (0.5 + 0.5 * clip.xy / clip.w) * view.viewport.xy;
+        extents.box = vec4(min(extents.box.xy, pixels), max(extents.box.zw, pixels));
+        if (!(clip.w > view.viewport.z)) {
+            // Not all of it is before the eye: as large as the picture.
+            extents.box = vec4(-1e30, -1e30, 1e30, 1e30);
         }
     }
+}
+
+// What points say between which a patch lies.
+Examined examined_points(Extents extents) {
     vec3 x = clip_row(0).xyz, y = clip_row(1).xyz, z = clip_row(2).xyz, w = clip_row(3).xyz;
     float margin = reach();
     vec4 side_margins = margin * vec4(length(w + x), length(w + y), length(w - x), length(w - y));
     vec2 depth_margins = margin * vec2(length(z), length(w - z));
-    bvec4 beyond_sides = lessThan(sides + side_margins, vec4(0.0));
-    bvec2 beyond_depths = lessThan(depths + depth_margins, vec2(0.0));
-    bool within = all(greaterThan(hind_sides, side_margins)) && all(greaterThan(hind_depths, depth_margins));
+    bvec4 beyond_sides = lessThan(extents.sides + side_margins, vec4(0.0));
+    bvec2 beyond_depths = lessThan(extents.depths + depth_margins, vec2(0.0));
+    bool within =
+        all(greaterThan(extents.hind_sides, side_margins)) && all(greaterThan(extents.hind_depths, depth_margins));
     uvec4 bits = uvec4(beyond_sides) << uvec4(0u, 1u, 2u, 3u);
     uvec2 more = uvec2(beyond_depths) << uvec2(4u, 5u);
-    return Examined(bits.x | bits.y | bits.z | bits.w | more.x | more.y, box, !within);
+    return Examined(bits.x | bits.y | bits.z | bits.w | more.x | more.y, extents.box, !within);
+}
+
+Examined examine_points(vec3 points[HULL]) {
+    Extents extents = no_extents();
+    if ((DRAW_FLAGS & (CULL_FRUSTUM_FLAG | CULL_SMALL_FLAG)) == 0u) {
+        return Examined(0u, extents.box, false);
+    }
+    for (int i = 0; i < HULL; ++i) {
+        include_point(extents, points[i]);
+    }
+    return examined_points(extents);
 }
 
 // Of what a corner keeps of its control points.

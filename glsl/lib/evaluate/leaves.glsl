@@ -5,15 +5,10 @@
 #define LEAVES_GLSL
 
 #include "constants.glsl"
+#include "draw/patches.glsl"
 #include "draw/positions.glsl"
 #include "draw/tables.glsl"
 #include "evaluate/patch.glsl"
-
-// What patches are. Of faces that are refined, triangles are wedges, each between an edge of a face other than a quad and the face's
-// centre; by leaves, they are parts of leaves.
-layout(constant_id = ID_ADAPTIVE) const uint PATCHES = NOT_ADAPTIVE;
-const bool ADAPTIVE = PATCHES != NOT_ADAPTIVE;
-const bool IS_BY_LEAVES = PATCHES == BY_LEAVES;
 
 layout(set = 1, binding = BINDING_TABLE_TEXELS + 4) uniform usamplerBuffer quadtree_texels;
 layout(set = 1, binding = BINDING_TABLE_TEXELS + 5) uniform usamplerBuffer leaf_texels;

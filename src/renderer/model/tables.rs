@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Tables of a model.
-const TABLES: usize = 16;
+const TABLES: usize = 17;
 /// The table of refined faces among them.
 const FACES: usize = TABLES - 1;
 

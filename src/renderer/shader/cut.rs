@@ -32,8 +32,8 @@ impl Cut {
         Self { listed: self.listed, ..Self::default() }
     }
 
-    /// Of patches by leaves, whose control points do not tell which way they face.
-    pub(crate) fn of_leaves(self) -> Self {
+    /// Of faces that are refined: neither hulls nor the control points of leaves tell which way they face.
+    pub(crate) fn of_refined(self) -> Self {
         Self { cull: Cull { back: false, ..self.cull }, ..self }
     }
 

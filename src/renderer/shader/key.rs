@@ -162,11 +162,10 @@ impl PatchStages {
         }
     }
 
-    /// Whether its control points enclose it, so that they tell whether it can be seen. See
+    /// Whether its control points enclose it, or its hull does of a face that is refined, so that they tell whether it can be seen. See
     /// `glsl/lib/edges/culling.glsl`.
     pub(crate) fn has_hull(self) -> bool {
-        // Leaves may reach beyond the control points of the whole.
-        patch(self.scheme, self.kind).shaders().hull > 0 && self.adaptive.is_none()
+        patch(self.scheme, self.kind).shaders().hull > 0
     }
 
     /// What tells apart the pipelines that list which patches can be seen.
@@ -175,6 +174,7 @@ impl PatchStages {
             sharing: Sharing::Positions,
             has_speakers: false,
             attributes: self.attributes,
+            adaptive: self.adaptive,
             ..self.for_control_points()
         }
     }
@@ -186,10 +186,8 @@ impl PatchStages {
 
     /// What the shaders of draws that are cut so are specialized to, but for those that evaluate and shade.
     pub(crate) fn specialization(self, cut: Cut, device: &DeviceProperties) -> [Specialization; 12] {
-        let flags = match self.is_by_leaves() {
-            true => cut.of_leaves().flags(true),
-            false => cut.flags(self.has_hull()),
-        };
+        let cut = if self.adaptive.is_some() { cut.of_refined() } else { cut };
+        let flags = cut.flags(self.has_hull());
         let adaptive = match self.adaptive {
             None => constants::NOT_ADAPTIVE,
             Some(DrawnBy::Faces) => constants::BY_FACES,
