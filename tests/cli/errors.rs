@@ -7,6 +7,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+// Longer than a screen: a list of cases.
 #[test]
 fn wrong_usage_is_said_in_one_line() {
     fails("", 2, "no command is given: try 'subdiv --help'");

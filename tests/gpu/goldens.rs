@@ -131,6 +131,7 @@ impl Picture {
     }
 }
 
+// Longer than a screen: a list.
 pub fn pictures() -> Vec<Picture> {
     let mut pictures: Vec<Picture> = shapes().iter().map(|info| Picture::lit(info.name)).collect();
     let kinds = [[0.9, 0.5, 0.05, 1.0], [0.25, 0.1, 0.5, 1.0], [0.05, 0.4, 0.1, 1.0], [0.5, 0.05, 0.05, 1.0]];
@@ -300,6 +301,7 @@ fn close_up(point: Vec3, towards: Vec3, half: f32) -> View {
     View::perspective(eye.into(), point.into(), [0.0, 1.0, 0.0], 0.6, 1.0, [half, 60.0 * half])
 }
 
+// Longer than a screen: a frame from its options to its pixels, step by step.
 fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_render_pass: bool) -> Vec<u8> {
     let mesh = match picture.shape {
         "pentagons" => common::pentagons(),
