@@ -79,7 +79,7 @@ named! {
         /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
         Bilinear = "bilinear",
         /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
-        /// lattice, which has fewer, for triangles.
+        /// grid, which has fewer, for triangles.
         VertexBuffer = "vertex-buffer",
     }
 }
