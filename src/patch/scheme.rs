@@ -286,6 +286,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn corners_own_every_point_once() {
+        for scheme in Scheme::ALL {
+            let forms = PatchKind::ALL.into_iter().filter_map(|kind| Some((kind, scheme.form(kind)?.facts())));
+            for (kind, form) in forms {
+                assert_eq!(form.corners, kind.corners(), "{scheme:?} {kind:?}");
+                let mut slots: Vec<usize> = (0..form.corners).flat_map(|k| scheme.corner_slots(kind, k)).collect();
+                slots.sort_unstable();
+                assert!(slots.into_iter().eq(0..scheme.points(kind)), "{scheme:?} {kind:?}");
+            }
+        }
+    }
+
+    #[test]
     fn points_have_the_names_of_the_paper() {
         let of = |scheme, kind| (0..Scheme::points(scheme, kind)).map(move |i| scheme.point_name(kind, i));
         let names = |scheme, kind| of(scheme, kind).collect::<Vec<_>>().join(" ");
