@@ -6,6 +6,7 @@
 //!   its first ones asks for further compiles with those macros defined, embedded as `QUAD_PATCH_TESE_ODD` and so on.
 
 use axes::ShaderKey;
+use form::PatchForm;
 use sharing::Sharing;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -18,6 +19,10 @@ use std::{env, fs, thread};
 #[allow(dead_code, reason = "what is left is for the renderer")]
 #[path = "src/renderer/shader/axes.rs"]
 mod axes;
+#[path = "src/patch/form.rs"]
+mod form;
+#[path = "src/named.rs"]
+mod named;
 #[path = "src/table/sharing.rs"]
 mod sharing;
 
@@ -42,8 +47,9 @@ fn main() {
 
 fn build() -> Result<(), String> {
     println!("cargo:rerun-if-changed=build.rs");
-    println!("cargo:rerun-if-changed=src/renderer/shader/axes.rs");
-    println!("cargo:rerun-if-changed=src/table/sharing.rs");
+    for source in ["named.rs", "patch/form.rs", "renderer/shader/axes.rs", "table/sharing.rs"] {
+        println!("cargo:rerun-if-changed=src/{source}");
+    }
     println!("cargo:rerun-if-env-changed=GLSLANG");
     println!("cargo:rustc-check-cfg=cfg(shared)");
     // Test data beside the repository; tests that need it are ignored where it is absent.
@@ -90,7 +96,7 @@ fn constants(path: &str) -> Result<String, String> {
 
 /// The compile of one of the renderer's shaders.
 fn job(key: ShaderKey) -> Job {
-    let source = key.source.word();
+    let source = key.source.name();
     let words = [vec![source.to_owned()], key.words()].concat().join("_");
     let name = words.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     Job { source: Path::new("glsl").join(source), arguments: key.arguments(), name }
@@ -108,7 +114,7 @@ fn shader_ids(keys: &[ShaderKey], jobs: &[Job], spirv: Option<&Path>) -> Result<
         let with = job.arguments.join(" ");
         line(&mut variants, format_args!("/// `{}` with `{with}`.\n{variant},", job.source.display()))?;
         let key = format!(
-            "ShaderKey {{ source: Source::{source:?}, patch: Patch::{patch:?}, sharing: Sharing::{sharing:?}, \
+            "ShaderKey {{ source: Source::{source:?}, patch: PatchForm::{patch:?}, sharing: Sharing::{sharing:?}, \
              output: Output::{output:?}, attributes: {attributes}, level: {level} }}"
         );
         line(&mut ids, format_args!("{key} => ShaderId::{variant},"))?;

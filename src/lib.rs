@@ -1,5 +1,13 @@
 //! Catmull-Clark control meshes, drawn smooth by Vulkan's tessellation stages.
 //!
+//! # Where to start
+//!
+//! * To draw: a [`ControlMesh`] from a file ([`read()`]), from arrays ([`MeshData`]) or built in ([`shape`]); a [`Renderer`] beside your
+//!   own, to which it becomes a model ([`Renderer::add_model`], [`ModelOptions`]); then a frame after the other: see [`renderer`].
+//! * The limit surface as a mesh, without a device: [`dice`].
+//! * Buffers for a renderer of your own: [`table`]. Control points and samples on the CPU: [`Scheme`],
+//!   [`table::CpuSurface`].
+//!
 //! # The way of a mesh to the picture
 //!
 //! ```text
@@ -69,8 +77,9 @@
 //! * **Parameters**: a quad has its corners at (u, v) = (0, 0), (1, 0), (1, 1), (0, 1); a triangle has barycentric
 //!   (u, v, w), one at its corners 0, 1, 2. `gl_TessCoord` is the same.
 //! * **Order of control points**: in [`patch::bicubic`], [`patch::gregory`], [`patch::acc`] and [`patch::pm`].
-//! * **Vectors**: data are arrays (meshes, views, items, positions of a frame), so any version of any maths crate serves. Points that
-//!   are computed on the CPU are `DVec3` of the re-exported [`glam`], which `into` and `to_array` turn into arrays and back.
+//! * **Vectors**: what a caller gives or keeps is arrays (meshes, views, items, positions of a frame), so any version of any maths crate
+//!   serves. What the CPU computes is of the re-exported [`glam`] (`DVec3`; `Vec3` where it repeats a shader), which `into` and
+//!   `to_array` turn into arrays and back.
 //! * **Options** are structs with a default, written with `..Default::default()`: new fields and new choices are minor changes.
 //! * **Matrices** are given by columns, as `glam::Mat4::to_cols_array_2d` gives them, and act on column vectors. World
 //!   space is right-handed.

@@ -23,9 +23,10 @@
 #include <opensubdiv/osd/glslPatchShaderSource.h>
 #include <opensubdiv/osd/ompEvaluator.h>
 
+#include "../control_mesh.h"
+
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -39,20 +40,12 @@
 
 using namespace OpenSubdiv;
 
+char const *const kProgram = "opensubdiv";
+
 constexpr int kWarmUpFrames = 6;
 constexpr int kSetUpRuns = 9;
 
-[[noreturn]] void fail(std::string const &what) {
-    std::fprintf(stderr, "opensubdiv: %s\n", what.c_str());
-    std::exit(1);
-}
-
 // ---------------------------------------------------------------- time and statistics
-
-double now_ms() {
-    using namespace std::chrono;
-    return duration<double, std::milli>(steady_clock::now().time_since_epoch()).count();
-}
 
 double median(std::vector<double> v) {
     if (v.empty()) fail("no samples");
@@ -120,54 +113,6 @@ Args parse_args(int argc, char **argv) {
     return args;
 }
 
-// ---------------------------------------------------------------- mesh
-
-struct Mesh {
-    std::vector<float> points;  // x y z
-    std::vector<int> face_sizes, face_vertices, crease_pairs, corners;
-    std::vector<float> crease_weights, corner_weights;
-    int vertex_count() const { return int(points.size() / 3); }
-};
-
-// Reads v, f and OpenSubdiv's own "t crease 2/1/0 a b sharpness" and "t corner 1/1/0 a sharpness".
-Mesh read_obj(std::string const &path) {
-    std::ifstream file(path);
-    if (!file) fail("cannot read " + path);
-    Mesh mesh;
-    std::map<std::string, int> ignored;
-    for (std::string line; std::getline(file, line);) {
-        std::stringstream words(line);
-        std::string kind, word;
-        words >> kind;
-        if (kind == "v") {
-            float x, y, z;
-            words >> x >> y >> z;
-            mesh.points.insert(mesh.points.end(), {x, y, z});
-        } else if (kind == "f") {
-            int count = 0;
-            for (; words >> word; ++count) {
-                int index = std::atoi(word.c_str());
-                mesh.face_vertices.push_back(index > 0 ? index - 1 : mesh.vertex_count() + index);
-            }
-            mesh.face_sizes.push_back(count);
-        } else if (kind == "t") {
-            std::string tag, counts;
-            words >> tag >> counts;
-            int a, b;
-            float sharpness;
-            if (tag == "crease" && words >> a >> b >> sharpness) {
-                mesh.crease_pairs.insert(mesh.crease_pairs.end(), {a, b});
-                mesh.crease_weights.push_back(sharpness);
-            } else if (tag == "corner" && words >> a >> sharpness) {
-                mesh.corners.push_back(a);
-                mesh.corner_weights.push_back(sharpness);
-            } else ++ignored[tag];
-        }
-    }
-    for (auto const &[tag, count] : ignored) std::printf("note ignored_tag=%s lines=%d\n", tag.c_str(), count);
-    return mesh;
-}
-
 // ---------------------------------------------------------------- OpenSubdiv's tables
 
 struct Tables {
@@ -181,7 +126,7 @@ Tables build_tables(Mesh const &mesh, Args const &args) {
     double t0 = now_ms();
 
     Far::TopologyDescriptor desc;
-    desc.numVertices = mesh.vertex_count();
+    desc.numVertices = mesh.vertex_count;
     desc.numFaces = int(mesh.face_sizes.size());
     desc.numVertsPerFace = mesh.face_sizes.data();
     desc.vertIndicesPerFace = mesh.face_vertices.data();
@@ -253,8 +198,8 @@ void write_samples(Mesh const &mesh, Tables const &tables, Args const &args) {
     for (int size : mesh.face_sizes)
         if (size != 4) fail("--samples is for meshes of quads");
     std::vector<float> points = mesh.points;
-    points.resize(size_t(mesh.vertex_count() + tables.stencils->GetNumStencils()) * 3);
-    Osd::BufferDescriptor const source(0, 3, 3), target(mesh.vertex_count() * 3, 3, 3);
+    points.resize(size_t(mesh.vertex_count + tables.stencils->GetNumStencils()) * 3);
+    Osd::BufferDescriptor const source(0, 3, 3), target(mesh.vertex_count * 3, 3, 3);
     Osd::CpuEvaluator::EvalStencils(points.data(), source, points.data(), target, tables.stencils->GetSizes().data(),
                                     tables.stencils->GetOffsets().data(), tables.stencils->GetControlIndices().data(),
                                     tables.stencils->GetWeights().data(), 0, tables.stencils->GetNumStencils());
@@ -338,7 +283,7 @@ using PointsDesc = Osd::BufferDescriptor;
 template <class Evaluator>
 void measure_cpu_points(char const *name, Mesh const &mesh, Tables const &tables, int frames,
                         Osd::CpuGLVertexBuffer &buffer, std::string const &label) {
-    int const coarse = mesh.vertex_count();
+    int const coarse = mesh.vertex_count;
     std::vector<double> total, upload;
     for (int frame = -kWarmUpFrames; frame < frames; ++frame) {
         glFinish();
@@ -361,7 +306,7 @@ void measure_cpu_points(char const *name, Mesh const &mesh, Tables const &tables
 // One frame: upload the coarse points, evaluate all stencils in a compute shader.
 void measure_glsl_points(Mesh const &mesh, Tables const &tables, int frames, Points &buffer,
                          std::string const &label) {
-    int const coarse = mesh.vertex_count();
+    int const coarse = mesh.vertex_count;
     PointsDesc const src(0, 3, 3), dst(coarse * 3, 3, 3);
     std::unique_ptr<Osd::GLComputeEvaluator> evaluator(
         Osd::GLComputeEvaluator::Create(src, dst, PointsDesc(), PointsDesc()));
@@ -626,14 +571,14 @@ int main(int argc, char **argv) {
                         " cap=" + (args.gregory ? "gregory" : "bspline");
     Tables const tables = measure_set_up(mesh, args, label);
     label += " patches=" + std::to_string(tables.patches->GetNumPatchesTotal());
-    print_bytes(tables, mesh.vertex_count(), label);
+    print_bytes(tables, mesh.vertex_count, label);
     if (!args.samples.empty()) {
         write_samples(mesh, tables, args);
         return 0;
     }
 
     // Control points.
-    int const point_count = mesh.vertex_count() + tables.stencils->GetNumStencils();
+    int const point_count = mesh.vertex_count + tables.stencils->GetNumStencils();
     std::unique_ptr<Osd::CpuGLVertexBuffer> cpu_points(Osd::CpuGLVertexBuffer::Create(3, point_count));
     std::unique_ptr<Points> points(Points::Create(3, point_count));
     measure_cpu_points<Osd::CpuEvaluator>("cpu", mesh, tables, args.frames, *cpu_points, label);

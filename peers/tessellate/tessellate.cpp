@@ -12,16 +12,15 @@
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 
+#include "../control_mesh.h"
+
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -32,62 +31,7 @@
 using namespace OpenSubdiv;
 using Surface = Bfr::Surface<float>;
 
-[[noreturn]] void fail(std::string const &what) {
-    std::fprintf(stderr, "tessellate: %s\n", what.c_str());
-    std::exit(1);
-}
-
-double now_ms() {
-    using namespace std::chrono;
-    return duration<double, std::milli>(steady_clock::now().time_since_epoch()).count();
-}
-
-// ---------------------------------------------------------------- mesh
-
-struct Mesh {
-    std::vector<float> points;  // x y z, and room for 16-byte loads behind the last
-    std::vector<int> face_sizes, face_vertices, crease_pairs, corners;
-    std::vector<float> crease_weights, corner_weights;
-    int vertex_count = 0;
-};
-
-// Reads v, f and OpenSubdiv's own "t crease 2/1/0 a b sharpness" and "t corner 1/1/0 a sharpness".
-Mesh read_obj(std::string const &path) {
-    std::ifstream file(path);
-    if (!file) fail("cannot read " + path);
-    Mesh mesh;
-    for (std::string line; std::getline(file, line);) {
-        std::stringstream words(line);
-        std::string kind, word;
-        words >> kind;
-        if (kind == "v") {
-            float x, y, z;
-            words >> x >> y >> z;
-            mesh.points.insert(mesh.points.end(), {x, y, z});
-            ++mesh.vertex_count;
-        } else if (kind == "f") {
-            int count = 0;
-            for (; words >> word; ++count) {
-                int index = std::atoi(word.c_str());
-                mesh.face_vertices.push_back(index > 0 ? index - 1 : mesh.vertex_count + index);
-            }
-            mesh.face_sizes.push_back(count);
-        } else if (kind == "t") {
-            std::string tag, counts;
-            words >> tag >> counts;
-            int a, b;
-            float sharpness;
-            if (tag == "crease" && words >> a >> b >> sharpness) {
-                mesh.crease_pairs.insert(mesh.crease_pairs.end(), {a, b});
-                mesh.crease_weights.push_back(sharpness);
-            } else if (tag == "corner" && words >> a >> sharpness) {
-                mesh.corners.push_back(a);
-                mesh.corner_weights.push_back(sharpness);
-            }
-        }
-    }
-    return mesh;
-}
+char const *const kProgram = "tessellate";
 
 // ---------------------------------------------------------------- points
 
@@ -252,6 +196,7 @@ Times with_embree(Mesh &mesh, Points const &points, int threads, int count, Out 
         for (float &weight : *weights)
             if (weight >= 10) weight = std::numeric_limits<float>::infinity();
     int const faces = int(mesh.face_sizes.size());
+    // For loads of 16 bytes.
     mesh.points.resize(3 * size_t(mesh.vertex_count) + 4);
     share(RTC_BUFFER_TYPE_FACE, RTC_FORMAT_UINT, mesh.face_sizes.data(), 4, faces);
     share(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, mesh.face_vertices.data(), 4, mesh.face_vertices.size());

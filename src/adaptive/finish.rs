@@ -102,6 +102,7 @@ impl Builder {
         parts
     }
 
+    // Longer than a screen: each step numbers what the next ones read.
     pub(super) fn finish(mut self) -> Result<Plan, AdaptiveError> {
         let used = self.used();
         let control = self.control_vertices;

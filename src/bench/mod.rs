@@ -79,7 +79,7 @@ named! {
         /// A floor: the tessellation stages at the same factors, but corners pass through and faces stay bilinear.
         Bilinear = "bilinear",
         /// A floor: triangles that were evaluated before, as they are. The tessellator's own triangles for quads; a plain
-        /// lattice, which has fewer, for triangles.
+        /// grid, which has fewer, for triangles.
         VertexBuffer = "vertex-buffer",
     }
 }
@@ -260,7 +260,7 @@ impl Contestant {
     /// The same, and adaptive surfaces of these depths, with each way to follow creases, each kind of sums and each kind of patches,
     /// where the scheme has end caps and the path draws them: patches by leaves where it has tessellation stages.
     pub fn at_depths(self, depths: &[u32], creases: &[Creases], sums: &[Sums], by: &[DrawnBy]) -> Vec<Self> {
-        let caps = matches!(self.patches, Some((Scheme::Gregory | Scheme::GregoryFitted, _)));
+        let caps = self.patches.is_some_and(|(scheme, _)| scheme.has_caps());
         let depths = if caps { depths } else { &[] };
         let by: Vec<DrawnBy> =
             by.iter().copied().filter(|&by| by == DrawnBy::Faces || self.path.tessellates()).collect();

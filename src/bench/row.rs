@@ -29,7 +29,7 @@ pub struct Row {
     pub evaluations: Option<u64>,
     /// Invocations of compute shaders in a frame.
     pub computed: Option<u64>,
-    /// Triangles in a frame, before clipping. Where lattices are strips (see
+    /// Triangles in a frame, before clipping. Where grids are strips (see
     /// [`DeviceProperties::indices_at_once`](crate::gpu::DeviceProperties::indices_at_once)) those that join their rows count, too.
     pub triangles: Option<u64>,
     /// Triangles that clipping left.

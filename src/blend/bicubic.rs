@@ -35,6 +35,11 @@ pub fn bicubic_points<T: Blend>(corners: &[PatchCorner<T>; 4]) -> [T; 16] {
     points
 }
 
+/// The name of a control point: its row and its column.
+pub(crate) fn point_name(number: usize) -> String {
+    format!("b{}{}", number / 4, number % 4)
+}
+
 /// [`bicubic_points`] of a regular face of a mesh, `vertex(v)` being the value at mesh vertex `v`.
 ///
 /// # Panics

@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::output;
-use super::patches::{by_origin, heading, label, sub};
+use super::patches::{by_origin, heading, sub};
 use ash_subdiv::adaptive::{Leaf, LeafKind, Plan};
 use ash_subdiv::table::{CpuSurface, FaceOrigin};
 use ash_subdiv::topology::PatchKind;
@@ -98,7 +98,7 @@ pub(super) fn write(surface: &CpuSurface, plan: &Plan, json: bool) -> Result<(),
             writeln!(out, "{}level {level}, cell {u} {v}: {kind_name}", heading(origin))?;
             for (number, DVec3 { x, y, z }) in points.into_iter().enumerate() {
                 let name = match kind {
-                    LeafKind::Cap => label(scheme, PatchKind::IrregularQuad, number),
+                    LeafKind::Cap => scheme.point_name(PatchKind::IrregularQuad, number),
                     _ => format!("c{}{}", number / 4, number % 4),
                 };
                 writeln!(out, "  {name:<7}{x:>24}{y:>24}{z:>24}")?;

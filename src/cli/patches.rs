@@ -7,8 +7,7 @@ use super::output::{self, Progress};
 use super::source::{DeviceArgs, MeshArgs, report_notices};
 use ash_subdiv::capture::Captured;
 use ash_subdiv::table::{CpuSurface, FaceOrigin, Notice, Patch, TableOptions};
-use ash_subdiv::topology::PatchKind;
-use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme};
+use ash_subdiv::{Construction, ControlMesh, ModelOptions};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 use serde::{Serialize, Serializer};
@@ -188,7 +187,7 @@ fn write<T: Serialize + Display>(args: &PatchesArgs, json: bool, made: Made<T>) 
             writeln!(out, "{}{}{fallback}", heading(origin), kind.name())?;
             for (number, point) in made.points[i].iter().enumerate() {
                 let [x, y, z] = point.each_ref().map(ToString::to_string);
-                writeln!(out, "  {:<7}{x:>24}{y:>24}{z:>24}", label(scheme, kind, number))?;
+                writeln!(out, "  {:<7}{x:>24}{y:>24}{z:>24}", scheme.point_name(kind, number))?;
             }
         }
         Ok(())
@@ -207,46 +206,5 @@ pub(super) fn heading(origin: FaceOrigin) -> String {
     match sub(&origin) {
         -1 => format!("face {}: ", origin.face),
         sub => format!("face {}, part {sub}: ", origin.face),
-    }
-}
-
-/// Name of a control point.
-pub(super) fn label(scheme: Scheme, kind: PatchKind, number: usize) -> String {
-    let n = kind.corners();
-    let sign = if (number - number.min(n)).is_multiple_of(2) { '+' } else { '-' };
-    match (number, scheme) {
-        (b, _) if kind == PatchKind::Regular => format!("b{}{}", b / 4, b % 4),
-        (b, Scheme::Acc) if b < 16 => format!("b{}{}", b / 4, b % 4),
-        (k, Scheme::Acc) => format!("{}{}{sign}", if k % 4 < 2 { 't' } else { 'x' }, k / 4 - 4),
-        (k, Scheme::Pm | Scheme::CPatch) if k < n => format!("v{k}"),
-        (k, Scheme::Pm | Scheme::CPatch) if k < 3 * n => format!("t{}{sign}", (k - n) / 2),
-        (k, Scheme::Pm | Scheme::CPatch) => format!("{}_{}", ["b211", "b121", "b112"][k / n - 3], k % n),
-        // Gregory patches.
-        (k, _) if k < n => format!("p{k}"),
-        (k, _) if k < 3 * n => format!("e{}{sign}", (k - n) / 2),
-        (k, _) => format!("f{}{sign}", (k - 3 * n) / 2),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_have_the_names_of_the_paper() {
-        let of = |scheme, kind| (0..Scheme::points(scheme, kind)).map(move |i| label(scheme, kind, i));
-        let labels = |scheme, kind| of(scheme, kind).collect::<Vec<_>>().join(" ");
-        assert_eq!(
-            labels(Scheme::Gregory, PatchKind::Triangle),
-            "p0 p1 p2 e0+ e0- e1+ e1- e2+ e2- f0+ f0- f1+ f1- f2+ f2-"
-        );
-        assert!(labels(Scheme::Gregory, PatchKind::IrregularQuad).ends_with("e3+ e3- f0+ f0- f1+ f1- f2+ f2- f3+ f3-"));
-        assert!(labels(Scheme::Pm, PatchKind::Regular).starts_with("b00 b01 b02 b03 b10"));
-        assert!(
-            labels(Scheme::Acc, PatchKind::IrregularQuad)
-                .ends_with("b33 t0+ t0- x0+ x0- t1+ t1- x1+ x1- t2+ t2- x2+ x2- t3+ t3- x3+ x3-")
-        );
-        let pm = labels(Scheme::Pm, PatchKind::Pentagon);
-        assert!(pm.starts_with("v0 v1 v2 v3 v4 t0+ t0- t1+") && pm.ends_with("b112_3 b112_4"), "{pm}");
     }
 }

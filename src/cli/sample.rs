@@ -55,14 +55,14 @@ Examples:
   subdiv sample model.obj --scheme limit --grid 9 --cpu --json > limit.json";
 
 /// A sample as it is written: position and normal.
-trait Lattice {
+trait GridPoint {
     type Number: Serialize + Display;
 
     fn position(&self) -> [Self::Number; 3];
     fn normal(&self) -> [Self::Number; 3];
 }
 
-impl Lattice for CapturedVertex {
+impl GridPoint for CapturedVertex {
     type Number = f32;
 
     fn position(&self) -> [f32; 3] {
@@ -74,7 +74,7 @@ impl Lattice for CapturedVertex {
     }
 }
 
-impl Lattice for Sample<DVec3> {
+impl GridPoint for Sample<DVec3> {
     type Number = f64;
 
     fn position(&self) -> [f64; 3] {
@@ -88,7 +88,7 @@ impl Lattice for Sample<DVec3> {
 
 #[derive(Serialize)]
 #[serde(bound = "")]
-struct SamplesOut<'o, L: Lattice> {
+struct SamplesOut<'o, L: GridPoint> {
     grid: u32,
     construction: &'static str,
     #[serde(serialize_with = "in_order")]
@@ -120,7 +120,7 @@ impl Part {
 
 #[derive(Serialize)]
 #[serde(bound = "")]
-struct FaceOut<'o, L: Lattice> {
+struct FaceOut<'o, L: GridPoint> {
     face: u32,
     sub: i64,
     scheme: &'static str,
@@ -131,7 +131,10 @@ struct FaceOut<'o, L: Lattice> {
 }
 
 /// Writes the patches one by one, sorted by their origins.
-fn in_order<L: Lattice, S: Serializer>((origins, parts, samples): &Parts<L>, serializer: S) -> Result<S::Ok, S::Error> {
+fn in_order<L: GridPoint, S: Serializer>(
+    (origins, parts, samples): &Parts<L>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(by_origin(origins).into_iter().map(|i| FaceOut {
         face: origins[i].face,
         sub: sub(&origins[i]),
@@ -141,11 +144,11 @@ fn in_order<L: Lattice, S: Serializer>((origins, parts, samples): &Parts<L>, ser
     }))
 }
 
-fn positions<L: Lattice, S: Serializer>(samples: &&[L], serializer: S) -> Result<S::Ok, S::Error> {
+fn positions<L: GridPoint, S: Serializer>(samples: &&[L], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(samples.iter().map(L::position))
 }
 
-fn normals<L: Lattice, S: Serializer>(samples: &&[L], serializer: S) -> Result<S::Ok, S::Error> {
+fn normals<L: GridPoint, S: Serializer>(samples: &&[L], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(samples.iter().map(L::normal))
 }
 
@@ -244,7 +247,7 @@ fn sample_limit(mesh: &ControlMesh, n: u32) -> Result<Sampled, CliError> {
     Ok(faces.flat_map_iter(|face| limit.subs(face).map(move |sub| (face, sub))).map(of_part).unzip())
 }
 
-fn write<L: Lattice>(args: &SampleArgs, json: bool, faces: Parts<L>) -> Result<(), CliError> {
+fn write<L: GridPoint>(args: &SampleArgs, json: bool, faces: Parts<L>) -> Result<(), CliError> {
     if json {
         let construction = if args.cpu { "cpu" } else { args.construction.name() };
         return output::json(&SamplesOut { grid: args.grid, construction, faces });

@@ -19,11 +19,11 @@ pub(super) struct Dense {
     tree: RTree<GeomWithData<Rectangle<[f64; 3]>, Block>>,
 }
 
-/// Some neighbouring cells of a lattice.
+/// Some neighbouring cells of a grid.
 struct Block {
     /// Its first point.
     first: usize,
-    /// Points in a row of the lattice.
+    /// Points in a row of the grid.
     stride: usize,
     columns: usize,
     rows: usize,
@@ -36,7 +36,7 @@ fn cells(parts: &Range<i32>, patches: usize) -> usize {
 }
 
 /// The points of one patch with these parts, among `patches`: part by part, in rows along u.
-pub(super) fn lattice(parts: &Range<i32>, patches: usize, position: impl Fn(Parameters) -> DVec3) -> Vec<DVec3> {
+pub(super) fn grid(parts: &Range<i32>, patches: usize, position: impl Fn(Parameters) -> DVec3) -> Vec<DVec3> {
     let side = cells(parts, patches) as u32;
     let at = |i: u32| f64::from(i) / f64::from(side);
     let row = |sub, j| (0..=side).map(move |i| Parameters { sub, u: at(i), v: at(j) });
@@ -44,14 +44,14 @@ pub(super) fn lattice(parts: &Range<i32>, patches: usize, position: impl Fn(Para
 }
 
 impl Dense {
-    /// A surface from the [`lattice`] of every patch.
-    pub(super) fn new(parts: &[Range<i32>], lattices: &[Vec<DVec3>]) -> Self {
-        Self::with_patches(parts, lattices, parts.len())
+    /// A surface from the [`grid`] of every patch.
+    pub(super) fn new(parts: &[Range<i32>], grids: &[Vec<DVec3>]) -> Self {
+        Self::with_patches(parts, grids, parts.len())
     }
 
     /// As if there were this many patches.
-    fn with_patches(parts: &[Range<i32>], lattices: &[Vec<DVec3>], patches: usize) -> Self {
-        let points = lattices.concat();
+    fn with_patches(parts: &[Range<i32>], grids: &[Vec<DVec3>], patches: usize) -> Self {
+        let points = grids.concat();
         let mut blocks = Vec::new();
         let mut start = 0;
         for parts in parts {
@@ -153,8 +153,8 @@ mod tests {
             }
         };
         let patches = 20_000;
-        let lattices = [lattice(&parts[0], patches, sheet(0.0)), lattice(&parts[1], patches, sheet(0.5))];
-        let dense = Dense::with_patches(&parts, &lattices, patches);
+        let grids = [grid(&parts[0], patches, sheet(0.0)), grid(&parts[1], patches, sheet(0.5))];
+        let dense = Dense::with_patches(&parts, &grids, patches);
         let blocks: Vec<_> = dense.tree.iter().flat_map(|block| block.data.triangles(&dense.points)).collect();
         let cells = |parts| cells(parts, patches).pow(2);
         assert_eq!((cells(&parts[0]), cells(&parts[1])), (49, 16));

@@ -78,7 +78,7 @@ pub struct ErrorReport {
 /// Measures how far schemes are from the Catmull-Clark limit surface of a mesh.
 ///
 /// **Samples.** Each patch is evaluated at the middles of `samples` by `samples` cells of equal size in u and v. A
-/// triangle has three such lattices, one for each part of the limit surface over it
+/// triangle has three such uniform grids, one for each part of the limit surface over it
 /// ([`LimitSurface`]); (u, v) of the part around corner k is taken to be the point of the triangle that is bilinear
 /// between corner k, the middles of its edges and the centre. That is a convention: other ways to lay the parameters of
 /// a triangle over those of the limit surface give other distances, and slightly other angles. Where the mesh is refined

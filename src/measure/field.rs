@@ -1,4 +1,4 @@
-//! The error at every point of a lattice, to be shown where it is.
+//! The error at every point of a uniform grid, to be shown where it is.
 
 use super::surfaces::{Face, Surfaces, angle};
 use crate::mesh::MeshError;

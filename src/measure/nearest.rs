@@ -1,6 +1,6 @@
 //! Distances to the nearest point of the other surface.
 
-use super::dense::{Dense, lattice};
+use super::dense::{Dense, grid};
 use super::sums::Sums;
 use super::surfaces::{Parameters, Surfaces, angle};
 use crate::mesh::MeshError;
@@ -29,7 +29,7 @@ struct Probe {
 
 /// Points of a patch at which both surfaces are evaluated.
 struct LimitPatch {
-    lattice: Vec<DVec3>,
+    grid: Vec<DVec3>,
     probes: Vec<Probe>,
 }
 
@@ -39,7 +39,7 @@ pub(super) fn measure(surfaces: &Surfaces, areas: &[f64], samples: u32) -> Resul
     let ranges = spread(areas, samples);
     let limits = surfaces.for_each(|limit, patch| {
         let (of_patch, patches) = (&parts[patch], parts.len());
-        let lattice = lattice(of_patch, patches, |at| surfaces.limit(limit, patch, at).position);
+        let grid = grid(of_patch, patches, |at| surfaces.limit(limit, patch, at).position);
         let probe = |number: u32| {
             let at = parameters(of_patch, number);
             let truth = surfaces.limit(limit, patch, at);
@@ -47,10 +47,10 @@ pub(super) fn measure(surfaces: &Surfaces, areas: &[f64], samples: u32) -> Resul
             let weight = truth.du.cross(truth.dv).length() / mean;
             Probe { at, sample: Sample { position: truth.position, normal: truth.normal }, weight }
         };
-        LimitPatch { lattice, probes: ranges[patch].clone().map(probe).collect() }
+        LimitPatch { grid, probes: ranges[patch].clone().map(probe).collect() }
     })?;
-    let (lattices, probes): (Vec<_>, Vec<_>) = limits.into_iter().map(|patch| (patch.lattice, patch.probes)).unzip();
-    let limit = Dense::new(&parts, &lattices);
+    let (grids, probes): (Vec<_>, Vec<_>) = limits.into_iter().map(|patch| (patch.grid, patch.probes)).unzip();
+    let limit = Dense::new(&parts, &grids);
     let own = |probes: &Vec<Probe>| {
         let mut sums = Sums::default();
         for probe in probes {
@@ -63,11 +63,11 @@ pub(super) fn measure(surfaces: &Surfaces, areas: &[f64], samples: u32) -> Resul
         let of_patch = |patch: usize| {
             let points = surfaces.control_points(scheme, patch);
             let evaluate = |at| surfaces.evaluate(scheme, patch, &points, at);
-            let lattice = lattice(&parts[patch], parts.len(), |at| evaluate(at).position);
-            (lattice, probes[patch].iter().map(|probe| evaluate(probe.at)).collect::<Vec<_>>())
+            let grid = grid(&parts[patch], parts.len(), |at| evaluate(at).position);
+            (grid, probes[patch].iter().map(|probe| evaluate(probe.at)).collect::<Vec<_>>())
         };
-        let (lattices, samples): (Vec<_>, Vec<_>) = (0..parts.len()).into_par_iter().map(of_patch).unzip();
-        let dense = Dense::new(&parts, &lattices);
+        let (grids, samples): (Vec<_>, Vec<_>) = (0..parts.len()).into_par_iter().map(of_patch).unzip();
+        let dense = Dense::new(&parts, &grids);
         let sums = |(probes, samples): (&Vec<Probe>, &Vec<Sample<DVec3>>)| {
             let mut sums = Sums::default();
             for (probe, sample) in probes.iter().zip(samples) {

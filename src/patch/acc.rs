@@ -6,7 +6,7 @@
 //! along u; then for each corner k the vectors `t_k+, t_k-` (derivatives at the corner along its plus and minus edge)
 //! and `x_k+, x_k-` (inner control vectors, near corner k, of the derivative across those edges, pointing inwards).
 
-use crate::blend::bicubic::CORNER_SLOTS;
+use crate::blend::bicubic::{self, CORNER_SLOTS};
 use crate::blend::{
     Basis, Blend, Frame, PatchCorner, Point, RingValues, Sample, cubic, scalar, tangent_scale, unit_normal,
 };
@@ -32,6 +32,14 @@ pub fn acc_frame<T: Blend>(ring: &RingValues<T>) -> Frame<T> {
 pub fn corner_slots(k: usize) -> [usize; 8] {
     let [corner, plus, minus, inner] = CORNER_SLOTS[k];
     [corner, plus, minus, inner, 16 + 4 * k, 17 + 4 * k, 18 + 4 * k, 19 + 4 * k]
+}
+
+/// The name of a control point.
+pub(super) fn point_name(number: usize) -> String {
+    match number.checked_sub(16) {
+        None => bicubic::point_name(number),
+        Some(k) => format!("{}{}{}", if k % 4 < 2 { 't' } else { 'x' }, k / 4, if k % 2 == 0 { '+' } else { '-' }),
+    }
 }
 
 /// The control points of the quad with these corners, whose frames are [`acc_frame`]s.

@@ -48,6 +48,20 @@ pub fn gregory_points<T: Blend>(
     points
 }
 
+/// The name of a control point of a patch with `n` corners.
+pub(super) fn point_name(n: usize, number: usize) -> String {
+    match number {
+        k if k < n => format!("p{k}"),
+        k if k < 3 * n => format!("e{}", edge_name(k - n)),
+        k => format!("f{}", edge_name(k - 3 * n)),
+    }
+}
+
+/// The name of an edge's end: corner and side.
+pub(super) fn edge_name(number: usize) -> String {
+    format!("{}{}", number / 2, if number.is_multiple_of(2) { '+' } else { '-' })
+}
+
 /// A quad patch at (u, v), with the de Casteljau normal of section 3.5: the derivative that takes the blended face points
 /// as constant. It is exact on the boundary, and inside closer to Catmull-Clark than the true one.
 ///

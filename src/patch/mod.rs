@@ -14,6 +14,8 @@ pub mod edge;
 mod fallback;
 mod fallback_rings;
 pub mod fitted;
+#[allow(dead_code, reason = "what is left is for the shaders")]
+mod form;
 pub mod gregory;
 pub mod pm;
 mod scheme;
@@ -22,4 +24,5 @@ pub(crate) use crate::blend::unit_normal;
 pub use crate::blend::{Blend, Frame, PatchCorner, Point, RingShape, RingValues, Row, Sample, bicubic};
 pub use fallback::Fallback;
 pub use fallback_rings::FallbackRings;
+pub(crate) use form::PatchForm;
 pub use scheme::{Scheme, Undefined};

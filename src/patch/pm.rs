@@ -11,6 +11,7 @@
 //!
 //! There is no rule at boundaries, creases and corners.
 
+use super::gregory::edge_name;
 use crate::blend::{Blend, Frame, PatchCorner, Point, RingValues, Sample, scalar, tangent_scale, unit_normal};
 use crate::topology::RingKind;
 use std::f64::consts::TAU;
@@ -18,6 +19,15 @@ use std::f64::consts::TAU;
 /// Where the points that corner k of n owns stand: `v`, `t+`, `t-`, `b211_k`, `b121_{k-1}` and `b112_k`.
 pub fn corner_slots(n: usize, k: usize) -> [usize; 6] {
     [k, n + 2 * k, n + 2 * k + 1, 3 * n + k, 4 * n + (k + n - 1) % n, 5 * n + k]
+}
+
+/// The name of a control point of a patch with `n` corners.
+pub(super) fn point_name(n: usize, number: usize) -> String {
+    match number {
+        k if k < n => format!("v{k}"),
+        k if k < 3 * n => format!("t{}", edge_name(k - n)),
+        k => format!("{}_{}", ["b211", "b121", "b112"][k / n - 3], k % n),
+    }
 }
 
 /// The corner point and the frame of the edge points t. For rings without a rule, the frame of Gregory patches, which

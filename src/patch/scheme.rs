@@ -1,10 +1,11 @@
 //! The schemes, each a way to approximate the Catmull-Clark surface by patches, one a face.
 //!
 //! A scheme is three things: a file beside this one with its construction and evaluation, a folder `glsl/schemes/NAME` with the same
-//! as shaders, and its registration: its arms in this file, its patches in `renderer/shader/axes.rs`, and in
-//! `renderer/shader/key.rs` which of them each kind of face has. Regular faces are bicubic patches in every scheme.
+//! as shaders, and its registration: its arms in this file, and its forms of patches in `form.rs` beside it. Regular faces are bicubic
+//! patches in every scheme.
 
 use super::fitted::Fit;
+use super::form::{FormFacts, PatchForm};
 use super::{FallbackRings, acc, fitted, gregory, pm};
 use crate::blend::{Blend, CornerRings, Frame, Point, RingShape, RingValues, Sample, bicubic};
 use crate::named::named;
@@ -53,13 +54,14 @@ impl Scheme {
         let kind = topology.patch_kind(face);
         let what = match (kind, self) {
             (None, _) => Some("faces of six or more corners"),
-            (Some(PatchKind::Pentagon), Self::Gregory | Self::GregoryFitted | Self::Acc | Self::CPatch) => {
-                Some("faces of five corners")
-            }
-            (Some(PatchKind::Regular), _) | (_, Self::Gregory | Self::GregoryFitted) => None,
-            (Some(PatchKind::Triangle), Self::Acc | Self::CPatch) => Some("triangles"),
-            (_, Self::Acc) => None,
+            (Some(kind), _) if self.form(kind).is_none() => Some(match kind {
+                PatchKind::Regular | PatchKind::IrregularQuad => "quads",
+                PatchKind::Triangle => "triangles",
+                PatchKind::Pentagon => "faces of five corners",
+            }),
+            (Some(PatchKind::Regular), _) => None,
             (_, Self::Pm | Self::CPatch) => pm_lacks(topology, face),
+            _ => None,
         };
         match (kind, what) {
             (Some(kind), None) => Ok(kind),
@@ -67,25 +69,39 @@ impl Scheme {
         }
     }
 
+    /// The form of the scheme's patches for faces of a kind, if it has any.
+    pub(crate) fn form(self, kind: PatchKind) -> Option<PatchForm> {
+        Some(match (kind, self) {
+            (PatchKind::Regular, _) => PatchForm::Bicubic,
+            (PatchKind::IrregularQuad, Self::Gregory | Self::GregoryFitted) => PatchForm::GregoryQuad,
+            (PatchKind::Triangle, Self::Gregory | Self::GregoryFitted) => PatchForm::GregoryTriangle,
+            (PatchKind::IrregularQuad, Self::Acc) => PatchForm::AccQuad,
+            (PatchKind::IrregularQuad, Self::Pm | Self::CPatch) => PatchForm::PmQuad,
+            (PatchKind::Triangle, Self::Pm) => PatchForm::PmTriangle,
+            (PatchKind::Pentagon, Self::Pm) => PatchForm::PmPentagon,
+            _ => return None,
+        })
+    }
+
+    /// What sets the forms of all its patches apart.
+    fn facts(self) -> impl Iterator<Item = FormFacts> {
+        PatchKind::ALL.into_iter().filter_map(move |kind| self.form(kind)).map(PatchForm::facts)
+    }
+
     /// Whether the scheme has patches for faces of five corners; the others have such meshes refined.
     pub fn has_pentagons(self) -> bool {
-        self == Self::Pm
+        self.form(PatchKind::Pentagon).is_some()
     }
 
     /// Whether the scheme has patches that end adaptive subdivision around what is irregular:
     /// [`adaptive`](crate::adaptive).
     pub fn has_caps(self) -> bool {
-        matches!(self, Self::Gregory | Self::GregoryFitted)
+        self.facts().any(|form| form.may_be_adaptive)
     }
 
-    /// Control points that each corner of a patch owns.
+    /// Control points that each corner of a patch owns; 0 if the scheme has no patches of the kind.
     pub fn owned(self, kind: PatchKind) -> usize {
-        match (kind, self) {
-            (PatchKind::Regular, _) => 4,
-            (_, Self::Gregory | Self::GregoryFitted) => 5,
-            (_, Self::Acc) => 8,
-            (_, Self::Pm | Self::CPatch) => 6,
-        }
+        self.form(kind).map_or(0, |form| form.facts().owned)
     }
 
     /// Control points of a patch. One corner owns each.
@@ -107,6 +123,17 @@ impl Scheme {
         }
     }
 
+    /// The name of a control point in the scheme's paper.
+    pub fn point_name(self, kind: PatchKind, number: usize) -> String {
+        let n = kind.corners();
+        match (kind, self) {
+            (PatchKind::Regular, _) => bicubic::point_name(number),
+            (_, Self::Gregory | Self::GregoryFitted) => gregory::point_name(n, number),
+            (_, Self::Acc) => acc::point_name(number),
+            (_, Self::Pm | Self::CPatch) => pm::point_name(n, number),
+        }
+    }
+
     /// Values that the shaders keep of the control points that a corner of a patch owns ([`Scheme::corner_slots`]). Where the scheme
     /// [shares the frame](Scheme::shares_frame), after the limit point: the edge points as seen from there; of quads, the inner
     /// point as seen from where these two lead to one after the other, of triangles as seen from the limit point; of Gregory
@@ -117,14 +144,15 @@ impl Scheme {
         if !self.shares_frame(kind) {
             return owned.to_vec();
         }
-        let [p, plus, minus, inner] = [0, 1, 2, 3].map(|i| &owned[i]);
+        let [p, plus, minus] = [0, 1, 2].map(|i| &owned[i]);
         let seen = |x: &T| T::sum([(1.0, x), (-1.0, p)]);
-        let first = match kind {
+        let inner = |inner: &T| match kind {
             PatchKind::Triangle => seen(inner),
             _ => T::sum([(1.0, inner), (1.0, p), (-1.0, plus), (-1.0, minus)]),
         };
-        let last = owned.get(4).map(|last| T::sum([(1.0, last), (-1.0, inner)]));
-        [p.clone(), seen(plus), seen(minus), first].into_iter().chain(last).collect()
+        let first = owned.get(3).map(inner);
+        let last = owned.get(4).map(|last| T::sum([(1.0, last), (-1.0, &owned[3])]));
+        [p.clone(), seen(plus), seen(minus)].into_iter().chain(first).chain(last).collect()
     }
 
     /// Tangent frame that the first stage of the two-stage construction makes of a one-ring. Regular rings have the same in all
@@ -160,12 +188,12 @@ impl Scheme {
     /// the edge points at its plus and its minus edge ([`RingValues::edge_point`]): the boundary is then the same
     /// on both sides of an edge.
     pub fn shares_frame(self, kind: PatchKind) -> bool {
-        kind == PatchKind::Regular || matches!(self, Self::Gregory | Self::GregoryFitted)
+        self.form(kind).is_some_and(|form| form.facts().keeps_frame)
     }
 
     /// Whether patches of all kinds share what they have in common along edges to the last bit ([`Scheme::shares_frame`]).
     pub fn is_watertight(self) -> bool {
-        PatchKind::ALL.into_iter().all(|kind| self.shares_frame(kind))
+        self.facts().all(|form| form.keeps_frame)
     }
 
     /// The control points of the patch of one face, `vertex(v)` being the value at mesh vertex `v`. Orders are those of
@@ -251,4 +279,40 @@ fn pm_lacks(topology: &Topology, face: u32) -> Option<&'static str> {
             _ => Some("irregular faces at a boundary, crease or corner"),
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_own_every_point_once() {
+        for scheme in Scheme::ALL {
+            let forms = PatchKind::ALL.into_iter().filter_map(|kind| Some((kind, scheme.form(kind)?.facts())));
+            for (kind, form) in forms {
+                assert_eq!(form.corners, kind.corners(), "{scheme:?} {kind:?}");
+                let mut slots: Vec<usize> = (0..form.corners).flat_map(|k| scheme.corner_slots(kind, k)).collect();
+                slots.sort_unstable();
+                assert!(slots.into_iter().eq(0..scheme.points(kind)), "{scheme:?} {kind:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn points_have_the_names_of_the_paper() {
+        let of = |scheme, kind| (0..Scheme::points(scheme, kind)).map(move |i| scheme.point_name(kind, i));
+        let names = |scheme, kind| of(scheme, kind).collect::<Vec<_>>().join(" ");
+        assert_eq!(
+            names(Scheme::Gregory, PatchKind::Triangle),
+            "p0 p1 p2 e0+ e0- e1+ e1- e2+ e2- f0+ f0- f1+ f1- f2+ f2-"
+        );
+        assert!(names(Scheme::Gregory, PatchKind::IrregularQuad).ends_with("e3+ e3- f0+ f0- f1+ f1- f2+ f2- f3+ f3-"));
+        assert!(names(Scheme::Pm, PatchKind::Regular).starts_with("b00 b01 b02 b03 b10"));
+        assert!(
+            names(Scheme::Acc, PatchKind::IrregularQuad)
+                .ends_with("b33 t0+ t0- x0+ x0- t1+ t1- x1+ x1- t2+ t2- x2+ x2- t3+ t3- x3+ x3-")
+        );
+        let pm = names(Scheme::Pm, PatchKind::Pentagon);
+        assert!(pm.starts_with("v0 v1 v2 v3 v4 t0+ t0- t1+") && pm.ends_with("b112_3 b112_4"), "{pm}");
+    }
 }

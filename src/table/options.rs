@@ -28,7 +28,7 @@ named! {
 named! {
     /// What evaluates the patches.
     ///
-    /// All but the tessellation stages and subdivision evaluate on a lattice with the same number of segments along every edge,
+    /// All but the tessellation stages and subdivision evaluate on a uniform grid with the same number of segments along every edge,
     /// from 1 to 1024, or with factors of edges ([`TableOptions::edge_factors`]) of which the largest holds inside patches: they are for
     /// [`Spacing::Equal`], and for [`Factor::Segments`](crate::tessellate::Factor::Segments) where [`Evaluation::needs_segments`]. Where patches share positions to the last bit, they
     /// do so here; for normals and displacement see [`Evaluation::shares`], for culling [`Evaluation::culls`].
@@ -42,7 +42,7 @@ named! {
         /// (`Renderer::set_segments`). Draws are of indexed triangles. Takes memory for the vertices,
         /// and pays where a model is drawn in several passes or stands still.
         Compute = "compute",
-        /// The vertex shader, in each draw anew: one lattice of indexed triangles is instanced over the patches (the Direct3D 10
+        /// The vertex shader, in each draw anew: one uniform grid of indexed triangles is instanced over the patches (the Direct3D 10
         /// path of Loop et al. 2009). Its segments are those of `Renderer::set_segments`.
         Instanced = "instanced",
         /// The geometry shader, in each draw anew: it makes the control points and emits the patch as strips of triangles.

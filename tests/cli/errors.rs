@@ -1,11 +1,13 @@
 //! What the program says and leaves behind when something is wrong.
 
 use crate::{fails, folder, json, run, subdiv};
+use ash_subdiv::Scheme;
 use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+// Longer than a screen: a list of cases.
 #[test]
 fn wrong_usage_is_said_in_one_line() {
     fails("", 2, "no command is given: try 'subdiv --help'");
@@ -81,7 +83,10 @@ fn wrong_usage_is_said_in_one_line() {
     fails(
         "info --shape cube --scheme loop",
         2,
-        "invalid value 'loop' for '--scheme <SCHEME>' [possible values: gregory, gregory-fitted, acc, pm, c-patch]",
+        &format!(
+            "invalid value 'loop' for '--scheme <SCHEME>' [possible values: {}]",
+            Scheme::ALL.map(Scheme::name).join(", ")
+        ),
     );
 }
 

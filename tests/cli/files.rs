@@ -24,6 +24,7 @@ fn written(test: &str, text: impl AsRef<[u8]>) -> PathBuf {
     path
 }
 
+// Longer than a screen: a list of cases.
 #[test]
 fn what_is_odd_about_a_file_is_said_once_and_refused_when_strict() {
     let cases = [

@@ -36,6 +36,7 @@ fn watertight_compares_every_way_to_draw() {
     );
 }
 
+// Longer than a screen: pictures that are compared with each other.
 #[test]
 fn pictures_are_displaced_and_cut_as_asked() {
     let folder = folder("displaced");

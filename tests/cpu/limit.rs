@@ -165,6 +165,7 @@ fn regular_faces_are_the_limit_surface() {
     }
 }
 
+// Longer than a screen: one sweep over all meshes, and the bounds of what it found.
 #[test]
 fn corners_are_limit_points_with_limit_normals() {
     // By exception (or none): corners, largest position error (of the diagonal), largest normal error.

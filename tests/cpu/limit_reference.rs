@@ -63,6 +63,7 @@ impl Exception {
     }
 }
 
+// Longer than a screen: one sweep over all files, and the bounds of what it found.
 #[test]
 fn agrees_with_the_reference() {
     let mut found = BTreeMap::new();

@@ -245,6 +245,7 @@ fn factors_are_kept_within_limits() {
     headless.finish_silent();
 }
 
+// Longer than a screen: a list of cases.
 #[test]
 fn wrong_displacement_is_told() {
     let headless = common::headless();

@@ -17,6 +17,7 @@ fn target(stage: &Stage) -> Target {
     Target::dynamic(desc.color, desc.depth, desc.samples)
 }
 
+// Longer than a screen: a list of cases.
 #[test]
 fn what_a_device_lacks_is_named_at_once() {
     let stage = Stage::new();

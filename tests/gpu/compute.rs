@@ -183,6 +183,7 @@ fn factors_of_edges_wait_for_their_frame() {
     stage.finish();
 }
 
+// Longer than a screen: a list of cases on one renderer.
 #[test]
 fn wrong_use_is_told() {
     let stage = Stage::new();

@@ -85,6 +85,7 @@ struct Expected {
 
 /// Whatever is added, moved and removed in whichever frames, a third of which are thrown away: what is drawn is what a renderer
 /// draws that was told it at once.
+// Longer than a screen: one course of random frames.
 #[test]
 fn lost_frames_change_nothing() {
     let stage = Stage::new();
@@ -215,6 +216,7 @@ fn what_models_share_is_sent_after_all() {
 
 /// Other tables in a model's place, also while those of before are on their way: it is drawn as a new one would be. A crease
 /// sharpens, and faces change.
+// Longer than a screen: one course of frames.
 #[test]
 fn a_model_takes_another_mesh() {
     let stage = Stage::new();

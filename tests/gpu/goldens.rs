@@ -4,20 +4,18 @@
 //! rewrites the pictures.
 #![cfg(feature = "png")]
 
+mod studio;
+
 use crate::common;
 use crate::common::golden;
-use crate::common::passes::{Moment, PassTarget};
 use ash::vk;
 use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy};
 use ash_subdiv::glam::{DVec3, Vec3};
 use ash_subdiv::gpu::{Blend, DepthBias, DepthState};
-use ash_subdiv::headless::{Headless, Offscreen, OffscreenDesc, Texels, Texture};
 use ash_subdiv::mesh::Crease;
-use ash_subdiv::renderer::{Cull, Evaluation, Factor, Fragment, Geometry};
-use ash_subdiv::{
-    Construction, ControlMesh, DrawItem, Fallback, MeshData, ModelOptions, Options, Renderer, Scheme, Spacing, Style,
-    Target, View, shape, shapes,
-};
+use ash_subdiv::renderer::{Evaluation, Factor, Fragment, Geometry};
+use ash_subdiv::{Construction, ControlMesh, MeshData, Scheme, Spacing, Style, View, shape, shapes};
+use studio::{Studio, draw_in_pass};
 
 const SIDE: u32 = 192;
 const EXTENT: vk::Extent2D = vk::Extent2D { width: SIDE, height: SIDE };
@@ -131,6 +129,7 @@ impl Picture {
     }
 }
 
+// Longer than a screen: a list.
 pub fn pictures() -> Vec<Picture> {
     let mut pictures: Vec<Picture> = shapes().iter().map(|info| Picture::lit(info.name)).collect();
     let kinds = [[0.9, 0.5, 0.05, 1.0], [0.25, 0.1, 0.5, 1.0], [0.05, 0.4, 0.1, 1.0], [0.5, 0.05, 0.05, 1.0]];
@@ -300,100 +299,21 @@ fn close_up(point: Vec3, towards: Vec3, half: f32) -> View {
     View::perspective(eye.into(), point.into(), [0.0, 1.0, 0.0], 0.6, 1.0, [half, 60.0 * half])
 }
 
-fn draw(headless: &Headless, picture: &Picture, construction: Construction, in_render_pass: bool) -> Vec<u8> {
-    let mesh = match picture.shape {
-        "pentagons" => common::pentagons(),
-        "semi-sharp" => semi_sharp(),
-        "ridges" => ridges(),
-        "sharpness" => sharpness(),
-        name => shape(name).expect("built in"),
-    };
-    let styles = picture.layers.iter().map(|layer| layer.style.clone()).collect();
-    let options = Options { styles, evaluations: vec![picture.evaluation], ..Options::default() };
-    let towards = [-0.6, 0.5, 1.0];
-    let view = match picture.around {
-        None => View::framing(mesh.bounds(), towards, 1.0),
-        Some(half) => close_up(extraordinary_vertex(&mesh).as_vec3(), Vec3::from(towards).normalize(), half),
-    };
-    let view = view.sized(SIDE, SIDE);
-    let view = match picture.culled {
-        true => View::framing(mesh.bounds(), [0.9, 0.3, -0.7], 1.0).measured_from(&view),
-        false => view,
-    };
-    let desc = OffscreenDesc { samples: picture.samples, color: picture.format, ..OffscreenDesc::new(SIDE, SIDE) };
-    let pass = in_render_pass.then(|| PassTarget::new(headless, EXTENT));
-    let target = match &pass {
-        Some(pass) => pass.target(),
-        None => Target::dynamic(desc.color, desc.depth, desc.samples),
-    };
-    // SAFETY: the render pass outlives the renderer, and every submission is waited for.
-    let mut renderer = unsafe { Renderer::new(headless.context(), &target, &options) }.expect("a renderer");
-    let fallback = Fallback::Gregory;
-    let texture = picture.displacement.map(|_| {
-        let texels = Texels::open("assets/scales.png", false).expect("the built-in height map");
-        Texture::new(headless, "scales", &texels.tiled(4)).expect("a texture")
-    });
-    // SAFETY: the texture outlives the renderer.
-    let displacement = texture.as_ref().map(|texture| unsafe { renderer.add_displacement(texture.into()) });
-    let Picture { scheme, spacing, mut factor, evaluation, .. } = *picture;
-    let adaptive = picture.adaptive;
-    let model_options = ModelOptions {
-        construction,
-        fallback,
-        scheme,
-        spacing,
-        displacement,
-        evaluation,
-        adaptive,
-        ..ModelOptions::default()
-    };
-    let model = renderer.add_model(&mesh, &model_options).expect("a model");
-    if evaluation.needs_segments() {
-        renderer.set_segments(model, factor.value() as u32).expect("segments");
-        factor = Factor::Segments;
-    }
-    let [low, high] = mesh.bounds();
-    let scale = picture.displacement.unwrap_or(0.0) * (high - low).length() as f32;
-    let item = |(style, layer): (usize, &Layer)| DrawItem {
-        style,
-        colors: layer.colors,
-        displacement: [scale, 0.0],
-        cull: if picture.culled { Cull { small: false, ..Cull::ALL } } else { Cull::NONE },
-        ..DrawItem::new(model, factor)
-    };
-    let items: Vec<_> = picture.layers.iter().enumerate().map(item).collect();
-    // SAFETY: there was no frame before.
-    let frame = unsafe { renderer.begin_frame() };
-    let mut record = |cmd: vk::CommandBuffer, moment| match moment {
-        // SAFETY: outside rendering, and inside what the renderer was made for.
-        Moment::Before => unsafe { renderer.cmd_prepare(cmd, frame) },
-        Moment::Inside => unsafe { renderer.cmd_draw(cmd, frame, &view, &items) },
-    };
-    match &pass {
-        Some(pass) => pass.draw(picture.clear, record),
-        None => {
-            let target = Offscreen::new(headless, &desc).expect("a target");
-            headless.try_submit(|cmd| record(cmd, Moment::Before)).expect("prepared");
-            target.draw(headless, picture.clear, |cmd| record(cmd, Moment::Inside)).expect("a picture")
-        }
-    }
-}
-
 #[test]
 fn pictures_are_as_they_were() {
     let headless = common::headless();
     if let Some(goldens) = golden::of(&headless) {
-        let mut wrong = Vec::new();
+        let (mut studio, mut wrong) = (Studio::new(&headless), Vec::new());
         for picture in pictures().into_iter().filter(|picture| !picture.of_lattice) {
             for construction in Construction::ALL {
-                let pixels = draw(&headless, &picture, construction, false);
+                let pixels = studio.draw(&picture, construction);
                 let writes = construction == Construction::TwoStage;
                 wrong.extend(goldens.check(&picture.name, construction.name(), [SIDE; 2], pixels, writes).err());
             }
         }
         // In a render pass the picture is the one of dynamic rendering.
         for shape in ["creature-mixed", "tetrahedron"] {
-            let pixels = draw(&headless, &Picture::lit(shape), Construction::TwoStage, true);
+            let pixels = draw_in_pass(&headless, &Picture::lit(shape));
             wrong.extend(goldens.check(&format!("lit-{shape}"), "render-pass", [SIDE; 2], pixels, false).err());
         }
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -415,7 +335,7 @@ fn lattice_ways() -> impl Iterator<Item = (Evaluation, Construction)> {
 fn pictures_evaluated_on_lattices_are_the_same() {
     let headless = common::headless();
     if let Some(goldens) = golden::of(&headless) {
-        let mut wrong = Vec::new();
+        let (mut studio, mut wrong) = (Studio::new(&headless), Vec::new());
         let mut compared = 0;
         for picture in pictures() {
             let fits = picture.displacement.is_none()
@@ -427,7 +347,7 @@ fn pictures_evaluated_on_lattices_are_the_same() {
                 continue;
             }
             for (evaluation, construction) in lattice_ways() {
-                let pixels = draw(&headless, &Picture { evaluation, ..picture.clone() }, construction, false);
+                let pixels = studio.draw(&Picture { evaluation, ..picture.clone() }, construction);
                 let variant = format!("{}-{}", evaluation.name(), construction.name());
                 let writes = picture.of_lattice && evaluation == Evaluation::Compute;
                 wrong.extend(goldens.check(&picture.name, &variant, [SIDE; 2], pixels, writes).err());
@@ -450,6 +370,7 @@ fn quads_only(name: &str) -> bool {
 fn goldens_of_schemes_fail_with_other_schemes() {
     let headless = common::headless();
     if golden::of(&headless).is_some() {
+        let mut studio = Studio::new(&headless);
         for picture in pictures().into_iter().filter(|p| p.scheme != Scheme::Gregory && !p.of_lattice) {
             let golden = golden::load(&golden::folder().join(&picture.name).with_extension("png"));
             let others: &[_] = match (picture.shape, picture.scheme) {
@@ -459,7 +380,7 @@ fn goldens_of_schemes_fail_with_other_schemes() {
             };
             for &scheme in others {
                 let name = &picture.name;
-                let pixels = draw(&headless, &Picture { scheme, ..picture.clone() }, Construction::TwoStage, false);
+                let pixels = studio.draw(&Picture { scheme, ..picture.clone() }, Construction::TwoStage);
                 let other = image::RgbaImage::from_raw(SIDE, SIDE, pixels).expect("four bytes a pixel");
                 let differ = golden::pixels_that_differ(&golden, &other);
                 assert!(differ > 1000, "{name} and the same picture of {scheme:?} differ in {differ} pixels only");

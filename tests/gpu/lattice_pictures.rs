@@ -171,8 +171,8 @@ fn items_do_not_depend_on_those_before() {
     kinds.push(DrawItem { style: 1, ..kinds[0] });
     let kind_count = kinds.len();
     // Each after each, itself too, and again what was there before.
-    let order = (0..kind_count).flat_map(|step| (0..kind_count).map(move |i| (i, (i + step) % kind_count)));
-    let order: Vec<usize> = order.flat_map(|(first, second)| [first, second, first]).collect();
+    let pairs = (0..kind_count).flat_map(|first| (first..kind_count).map(move |second| (first, second)));
+    let order: Vec<usize> = pairs.flat_map(|(first, second)| [first, second, first, second]).collect();
     let side = (order.len() as f32).sqrt().ceil();
     let items = order.iter().enumerate().map(|(place, &kind)| {
         let at = [place as f32 % side, (place as f32 / side).floor()].map(|x| (2.0 * x + 1.0) / side - 1.0);

@@ -278,6 +278,7 @@ fn instances_are_of_the_patches_that_are_left() {
 
 /// More patches than a list has room for, and more lists than there was room for at first; items that are not looked through;
 /// one search for several draws.
+// Longer than a screen: one course of frames.
 #[test]
 fn lists_grow_with_what_is_drawn() {
     let stage = Stage::new();
@@ -373,6 +374,7 @@ fn copies_come_before_the_search() {
     stage.finish();
 }
 
+// Longer than a screen: a list of cases on one renderer.
 #[test]
 fn wrong_use_is_told() {
     let stage = Stage::new();

@@ -95,14 +95,17 @@ vec3 from_corner(vec3 p, vec3 vector) {
     return point;
 }
 
-// Control point i of those that a corner owns, other than the corner itself, out of all that is kept of them. Bicubic and Gregory
-// patches, with 4 and 5, keep other things, of which positions and normals are made with the fewest operations. Rust twin:
+// Control point i of those that a corner owns, other than the corner itself, out of all that is kept of them. Patches that share
+// frames keep other things, of which positions and normals are made with the fewest operations. Rust twin:
 // `Scheme::kept` in src/patch/scheme.rs.
 // - the points along the plus and the minus edge, as seen from the corner;
-// - of quads, the inner point as seen from where these two lead to one after the other; of triangles, as seen from the corner;
+// - the inner point, if there is one: of quads as seen from where these two lead to one after the other, of triangles as seen from
+//   the corner;
 // - of Gregory patches, the way from there (f+) to f-.
 #ifndef KEEPS_FRAME
 #define POINT_OF(kept, i) kept[i]
+#elif OWNED == 3
+#define POINT_OF(kept, i) from_corner(kept[0], kept[i])
 #else
 #ifdef TRIANGLE
 #define INNER_OF(kept) kept[3]

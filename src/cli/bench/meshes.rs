@@ -37,7 +37,7 @@ impl BenchArgs {
                     1 => (of.clone(), mesh.clone()),
                     _ => {
                         let name = format!("{of} x{copies}");
-                        let copied = replicate(mesh, lattice(copies), 1.25);
+                        let copied = replicate(mesh, block_of(copies), 1.25);
                         let copied = copied.map_err(|error| CliError::Work(format!("{name}: {error}")))?;
                         (name, copied)
                     }
@@ -107,7 +107,7 @@ fn sharpened(mut data: MeshData, sharpness: f32) -> Result<ControlMesh, CliError
 }
 
 /// Copies as a block that is as near to a cube as the count allows.
-fn lattice(copies: u32) -> [u32; 3] {
+fn block_of(copies: u32) -> [u32; 3] {
     let divisor = |n: u32, root: f64| (1..=root.round() as u32).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
     let x = divisor(copies, f64::from(copies).cbrt());
     let rest = copies / x;
@@ -122,8 +122,8 @@ mod tests {
     #[test]
     fn copies_are_as_many_as_asked_for() {
         for (copies, block) in [(1, [1, 1, 1]), (8, [2, 2, 2]), (9, [3, 3, 1]), (64, [4, 4, 4]), (7, [7, 1, 1])] {
-            assert_eq!(lattice(copies), block);
+            assert_eq!(block_of(copies), block);
         }
-        assert!((1..500).all(|n| lattice(n).iter().product::<u32>() == n));
+        assert!((1..500).all(|n| block_of(n).iter().product::<u32>() == n));
     }
 }

@@ -244,28 +244,11 @@ impl Builder {
         primitive: &Primitive,
         places: &mut HashMap<[u64; 3], u32>,
     ) -> Result<(), MeshError> {
-        let Checked::Valid(mode) = primitive.mode else {
-            return Err(format_error("a primitive has an unknown mode: it must be 0 to 6"));
-        };
-        let attribute = |semantic: Semantic, kind| {
-            let index = primitive.attributes.get(&Checked::Valid(semantic));
-            index.map(|index| Accessor::open(root, buffers, index.value(), kind)).transpose()
-        };
-        let Some(positions) = attribute(Semantic::Positions, Type::Vec3)? else {
+        let Some(corners) = Corners::open(root, buffers, primitive)? else {
             // Allowed, and nothing is to be drawn.
             return Ok(());
         };
-        let texcoords = attribute(Semantic::TexCoords(0), Type::Vec2)?;
-        let normals = attribute(Semantic::Normals, Type::Vec3)?;
-        for (name, accessor) in [("TEXCOORD_0", &texcoords), ("NORMAL", &normals)] {
-            accessor.as_ref().map_or(Ok(()), |accessor| check_count(name, accessor, &positions))?;
-        }
-        let has = |name| primitive.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(name));
-        if has(DRACO) && !positions.is_backed() {
-            return Err(unsupported(DRACO));
-        }
-        let indices = indices(root, buffers, primitive, &positions)?;
-        let ngons = has(NGONS);
+        let Corners { mode, ngons, positions, texcoords, normals, indices } = corners;
 
         let linear = DMat3::from_mat4(instance.transform);
         let mirrored = linear.determinant() < 0.0;
@@ -335,6 +318,42 @@ impl Builder {
             self.data.normals = Some(FaceVarying { values: self.normals, indices: self.attributes });
         }
         (self.data, sources)
+    }
+}
+
+/// The corners of a primitive's faces.
+struct Corners<'a> {
+    mode: json::mesh::Mode,
+    /// Whether triangles are parts of larger faces.
+    ngons: bool,
+    positions: Accessor<'a>,
+    texcoords: Option<Accessor<'a>>,
+    normals: Option<Accessor<'a>>,
+    indices: Vec<u32>,
+}
+
+impl<'a> Corners<'a> {
+    /// None without positions.
+    fn open(root: &json::Root, buffers: &'a [Cow<'_, [u8]>], primitive: &Primitive) -> Result<Option<Self>, MeshError> {
+        let Checked::Valid(mode) = primitive.mode else {
+            return Err(format_error("a primitive has an unknown mode: it must be 0 to 6"));
+        };
+        let attribute = |semantic: Semantic, kind| {
+            let index = primitive.attributes.get(&Checked::Valid(semantic));
+            index.map(|index| Accessor::open(root, buffers, index.value(), kind)).transpose()
+        };
+        let Some(positions) = attribute(Semantic::Positions, Type::Vec3)? else { return Ok(None) };
+        let texcoords = attribute(Semantic::TexCoords(0), Type::Vec2)?;
+        let normals = attribute(Semantic::Normals, Type::Vec3)?;
+        for (name, accessor) in [("TEXCOORD_0", &texcoords), ("NORMAL", &normals)] {
+            accessor.as_ref().map_or(Ok(()), |accessor| check_count(name, accessor, &positions))?;
+        }
+        let has = |name| primitive.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(name));
+        if has(DRACO) && !positions.is_backed() {
+            return Err(unsupported(DRACO));
+        }
+        let indices = indices(root, buffers, primitive, &positions)?;
+        Ok(Some(Self { mode, ngons: has(NGONS), positions, texcoords, normals, indices }))
     }
 }
 

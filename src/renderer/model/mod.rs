@@ -147,6 +147,7 @@ pub(crate) struct Surroundings<'r> {
 }
 
 impl Model {
+    // Longer than a screen: one buffer or set after another, each once.
     pub(crate) fn new(
         Surroundings { context, pipelines, options }: Surroundings,
         id: ModelId,

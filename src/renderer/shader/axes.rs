@@ -1,30 +1,13 @@
 //! The shaders of the renderer: the axes along which their sources vary, and which combinations there are. Compiled into
 //! `build.rs`, too, which multiplies them, and writes [`ShaderId`](super::ShaderId).
 
-use super::Sharing;
+use super::{PatchForm, Sharing};
+use crate::named::named;
 
-/// An enum with all its values in order, and a word for each.
-macro_rules! axis {
-    ($(#[$doc:meta])* $name:ident { $($(#[$of_value:meta])* $value:ident = $word:literal,)* }) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub enum $name { $($(#[$of_value])* $value,)* }
-
-        impl $name {
-            /// All values, in order.
-            pub const ALL: &'static [Self] = &[$(Self::$value,)*];
-
-            /// The word of a value.
-            pub const fn word(self) -> &'static str {
-                match self { $(Self::$value => $word,)* }
-            }
-        }
-    };
-}
-
-axis! {
+named! {
     /// A source, by its path below `glsl/`.
-    Source {
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum Source {
         ControlMeshVert = "construct/control_mesh.vert",
         PatchNumberVert = "construct/patch_number.vert",
         TwoStageVert = "construct/two_stage.vert",
@@ -50,23 +33,10 @@ axis! {
     }
 }
 
-axis! {
-    /// The patches that a shader is compiled for. A scheme registers one for each kind that it has; regular faces are bicubic in
-    /// every scheme.
-    Patch {
-        Bicubic = "bicubic",
-        GregoryQuad = "gregory-quad",
-        GregoryTriangle = "gregory-triangle",
-        AccQuad = "acc-quad",
-        PmQuad = "pm-quad",
-        PmTriangle = "pm-triangle",
-        PmPentagon = "pm-pentagon",
-    }
-}
-
-axis! {
+named! {
     /// What a shader hands on, besides positions and normals.
-    Output {
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum Output {
         Surface = "surface",
         /// Texture coordinates.
         Texcoords = "texcoords",
@@ -76,60 +46,6 @@ axis! {
         CaptureVertices = "capture-vertices",
         /// The samples of a grid, written down.
         CaptureGrid = "capture-grid",
-    }
-}
-
-/// What the shaders of a patch are compiled with.
-pub struct PatchShaders {
-    /// The folder below `glsl/schemes`.
-    pub scheme: &'static str,
-    pub corners: usize,
-    /// Control points that each corner owns.
-    pub owned: usize,
-    /// How many of those enclose the patch, with those of the other corners: what culling looks at; 0 if they need not.
-    pub hull: usize,
-    /// Whether corners keep points as seen from their limit points, which they share with their neighbours: such patches are
-    /// watertight.
-    pub keeps_frame: bool,
-    /// Whether a corner has two inner points, one for each of its edges.
-    pub two_face_points: bool,
-    /// Whether faces may be refined, with such patches for end caps: then leaves are evaluated.
-    pub may_be_adaptive: bool,
-}
-
-impl Patch {
-    /// The registration.
-    pub const fn shaders(self) -> PatchShaders {
-        let quad = PatchShaders {
-            scheme: "bicubic",
-            corners: 4,
-            owned: 4,
-            hull: 4,
-            keeps_frame: true,
-            two_face_points: false,
-            may_be_adaptive: false,
-        };
-        let gregory =
-            PatchShaders { scheme: "gregory", owned: 5, hull: 5, two_face_points: true, may_be_adaptive: true, ..quad };
-        let pm = PatchShaders { scheme: "pm", owned: 6, hull: 0, keeps_frame: false, ..quad };
-        match self {
-            Self::Bicubic => quad,
-            Self::GregoryQuad => gregory,
-            Self::GregoryTriangle => PatchShaders { corners: 3, ..gregory },
-            Self::AccQuad => PatchShaders { scheme: "acc", owned: 8, keeps_frame: false, ..quad },
-            Self::PmQuad => pm,
-            Self::PmTriangle => PatchShaders { corners: 3, ..pm },
-            Self::PmPentagon => PatchShaders { corners: 5, ..pm },
-        }
-    }
-
-    /// The first patch of the same scheme.
-    const fn of_scheme(self) -> Self {
-        match self {
-            Self::GregoryTriangle => Self::GregoryQuad,
-            Self::PmTriangle | Self::PmPentagon => Self::PmQuad,
-            first => first,
-        }
     }
 }
 
@@ -183,7 +99,7 @@ impl Source {
 
     /// The stage, as its files end.
     pub fn stage(self) -> &'static str {
-        self.word().rsplit('.').next().unwrap_or_default()
+        self.name().rsplit('.').next().unwrap_or_default()
     }
 }
 
@@ -191,7 +107,7 @@ impl Source {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ShaderKey {
     pub source: Source,
-    pub patch: Patch,
+    pub patch: PatchForm,
     pub sharing: Sharing,
     pub output: Output,
     /// Whether instances have their control points as vertex attributes.
@@ -203,7 +119,7 @@ pub struct ShaderKey {
 impl ShaderKey {
     /// The first along all axes.
     pub const fn of(source: Source) -> Self {
-        let (patch, sharing, output) = (Patch::Bicubic, Sharing::Positions, Output::Surface);
+        let (patch, sharing, output) = (PatchForm::Bicubic, Sharing::Positions, Output::Surface);
         Self { source, patch, sharing, output, attributes: false, level: 0 }
     }
 
@@ -232,7 +148,7 @@ impl ShaderKey {
 
     /// Whether there is such a shader.
     pub fn exists(self) -> bool {
-        let (axes, patch) = (self.source.axes(), self.patch.shaders());
+        let (axes, patch) = (self.source.axes(), self.patch.facts());
         if self != self.canonical() || self.level >= axes.levels {
             return false;
         }
@@ -260,10 +176,10 @@ impl ShaderKey {
     /// All that there are, in order.
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
-        for &source in Source::ALL {
-            for &patch in Patch::ALL {
+        for source in Source::ALL {
+            for patch in PatchForm::ALL {
                 for sharing in [Sharing::Positions, Sharing::Normals, Sharing::Displacement] {
-                    for &output in Output::ALL {
+                    for output in Output::ALL {
                         for attributes in [false, true] {
                             let levels = 0..source.axes().levels;
                             let keys = levels.map(|level| Self { source, patch, sharing, output, attributes, level });
@@ -282,8 +198,8 @@ impl ShaderKey {
         let mut words = Vec::new();
         match axes.patch {
             ByPatch::No => {}
-            ByPatch::Scheme => words.push(self.patch.shaders().scheme.to_owned()),
-            ByPatch::Yes => words.push(self.patch.word().to_owned()),
+            ByPatch::Scheme => words.push(self.patch.facts().scheme.to_owned()),
+            ByPatch::Yes => words.push(self.patch.name().to_owned()),
         }
         match self.sharing {
             Sharing::Positions => {}
@@ -291,7 +207,7 @@ impl ShaderKey {
             Sharing::Displacement => words.push("displaced".to_owned()),
         }
         if self.output != Output::Surface {
-            words.push(self.output.word().to_owned());
+            words.push(self.output.name().to_owned());
         }
         if self.attributes {
             words.push("attributes".to_owned());
@@ -304,7 +220,7 @@ impl ShaderKey {
 
     /// What the compiler is told: folders of includes, and macros.
     pub fn arguments(self) -> Vec<String> {
-        let (axes, patch) = (self.source.axes(), self.patch.shaders());
+        let (axes, patch) = (self.source.axes(), self.patch.facts());
         let mut arguments = vec!["-Iglsl/lib".to_owned()];
         let mut define = |name: &str| arguments.push(format!("-D{name}"));
         if axes.patch == ByPatch::Yes {

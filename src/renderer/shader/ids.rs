@@ -1,7 +1,7 @@
 //! The shaders of the renderer, compiled.
 
-use super::Sharing;
-use super::axes::{Output, Patch, ShaderKey, Source};
+use super::axes::{Output, ShaderKey, Source};
+use super::{PatchForm, Sharing};
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 

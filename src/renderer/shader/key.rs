@@ -1,11 +1,11 @@
 //! The shaders and the pipelines of a patch, by what tells them apart.
 
-use super::axes::{Output, Patch, ShaderKey, Source};
+use super::axes::{Output, ShaderKey, Source};
 use super::cut::Cut;
 use crate::adaptive::DrawnBy;
 use crate::constants;
 use crate::gpu::{DeviceProperties, Spacing, Specialization};
-use crate::patch::Scheme;
+use crate::patch::{PatchForm, Scheme};
 use crate::table::{Construction, Evaluation, Sharing, TEXEL_BYTES};
 use crate::topology::PatchKind;
 
@@ -67,19 +67,6 @@ pub(crate) struct PatchStages {
     pub adaptive: Option<DrawnBy>,
 }
 
-/// The patch that a scheme's shaders are compiled for.
-fn patch(scheme: Scheme, kind: PatchKind) -> Patch {
-    match (kind, scheme) {
-        (PatchKind::Regular, _) => Patch::Bicubic,
-        (PatchKind::IrregularQuad, Scheme::Gregory | Scheme::GregoryFitted) => Patch::GregoryQuad,
-        (PatchKind::Triangle, Scheme::Gregory | Scheme::GregoryFitted) => Patch::GregoryTriangle,
-        (_, Scheme::Acc) => Patch::AccQuad,
-        (PatchKind::IrregularQuad, Scheme::Pm | Scheme::CPatch) => Patch::PmQuad,
-        (PatchKind::Triangle, Scheme::Pm | Scheme::CPatch) => Patch::PmTriangle,
-        (PatchKind::Pentagon, _) => Patch::PmPentagon,
-    }
-}
-
 impl Capture {
     /// Output of the shader that evaluates.
     pub(crate) fn evaluated(self, texcoords: bool) -> Output {
@@ -105,6 +92,11 @@ impl PatchStages {
     /// Whether patches are leaves, whose control points the control shader looks up.
     pub(crate) fn is_by_leaves(self) -> bool {
         self.adaptive == Some(DrawnBy::Leaves)
+    }
+
+    /// The patch that shaders are compiled for.
+    fn form(self) -> PatchForm {
+        self.scheme.form(self.kind).expect("plans have patches that their schemes have")
     }
 
     /// Control points that go into the control shader: one a corner, or one a patch that only says which patch it is.
@@ -140,7 +132,7 @@ impl PatchStages {
 
     /// The key of one of its shaders.
     pub(crate) fn shader(self, source: Source, output: Output) -> ShaderKey {
-        let (patch, sharing, attributes) = (patch(self.scheme, self.kind), self.sharing, self.attributes);
+        let (patch, sharing, attributes) = (self.form(), self.sharing, self.attributes);
         ShaderKey { source, patch, sharing, output, attributes, level: 0 }.canonical()
     }
 
@@ -165,7 +157,7 @@ impl PatchStages {
     /// Whether its control points enclose it, or its hull does of a face that is refined, so that they tell whether it can be seen. See
     /// `glsl/lib/edges/culling.glsl`.
     pub(crate) fn has_hull(self) -> bool {
-        patch(self.scheme, self.kind).shaders().hull > 0
+        self.form().facts().hull > 0
     }
 
     /// What tells apart the pipelines that list which patches can be seen.
@@ -240,24 +232,6 @@ pub(crate) fn reads_texels(device: &DeviceProperties) -> Specialization {
 #[cfg(all(test, feature = "headless"))]
 mod tests {
     use super::*;
-
-    #[test]
-    fn shaders_are_of_the_scheme_that_is_registered() {
-        for scheme in Scheme::ALL {
-            for kind in PatchKind::ALL {
-                let lacks = matches!((scheme, kind), (Scheme::Acc | Scheme::CPatch, PatchKind::Triangle));
-                if lacks || kind == PatchKind::Pentagon && !scheme.has_pentagons() {
-                    continue;
-                }
-                let shaders = patch(scheme, kind).shaders();
-                assert_eq!(
-                    (shaders.corners, shaders.owned, shaders.keeps_frame),
-                    (kind.corners(), scheme.owned(kind), scheme.shares_frame(kind)),
-                    "{scheme:?} {kind:?}"
-                );
-            }
-        }
-    }
 
     #[test]
     fn instances_have_attributes_where_there_are_enough() {

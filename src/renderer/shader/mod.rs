@@ -1,5 +1,6 @@
 //! The border to the shaders: which one draws a patch, what it reads, and the bytes of that.
 
+use crate::patch::PatchForm;
 use crate::table::Sharing;
 
 #[allow(dead_code, reason = "what is left is for build.rs")]

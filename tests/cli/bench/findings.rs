@@ -84,6 +84,7 @@ fn bench_finds_how_time_and_bytes_grow() {
     assert_eq!(results.get("growth"), None);
 }
 
+// Longer than a screen: one run of the program, and what follows from its results.
 #[test]
 fn bench_tells_what_changed_by_more_than_the_machine_did() {
     let folder = folder("bench-compare");
@@ -194,6 +195,7 @@ fn bench_compares_what_can_be_compared_and_says_so_before_it_measures() {
     }
 }
 
+// Longer than a screen: one part a preset.
 #[test]
 fn presets_set_published_figures_beside() {
     let results = json(&format!("bench {SMALL} --shape cube --preset loop2009-table1"));

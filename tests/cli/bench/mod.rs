@@ -18,6 +18,7 @@ fn measured(folder: &Path, arguments: &str) -> (PathBuf, Value) {
     (path, results)
 }
 
+// Longer than a screen: every claim is about the same costly run.
 #[test]
 fn bench_measures_every_path_on_every_kind_of_patch() {
     let results =
@@ -230,6 +231,7 @@ fn bench_draws_subsets_and_files() {
     fails("bench --shape torus --patches irregular", 1, "torus: it has no irregular patches: choose others");
 }
 
+// Longer than a screen: a list of cases.
 #[test]
 fn bench_says_what_is_left_out_once() {
     let told = |arguments: &str| {
@@ -294,6 +296,7 @@ fn bench_says_what_is_left_out_once() {
     assert!(shared.starts_with("note: --normals shared changes nothing here: shared normals go with"), "{shared}");
 }
 
+// Longer than a screen: a list of cases.
 #[test]
 fn bench_says_what_is_wrong() {
     fails(

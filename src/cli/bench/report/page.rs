@@ -1,16 +1,17 @@
 //! The page itself.
 
 use super::super::super::error::CliError;
-use super::super::change::machine;
+use super::super::change::{Change, machine};
 use super::super::facts::{MeshOut, left_out_by_reason};
-use super::super::findings::Findings;
+use super::super::findings::{Finding, Findings};
+use super::super::presets::Beside;
 use super::super::recorded::Recorded;
 use super::super::results::Results;
 use super::super::row::{Interval, Row, Times};
 use super::{figures, front};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
 const STYLE: &str = include_str!("style.css");
 
@@ -98,6 +99,44 @@ fn picture(mesh: &MeshOut) -> Markup {
     }
 }
 
+/// A column of a table: its head, and the cell of a row.
+type Column<R> = (&'static str, fn(&R) -> Markup);
+
+/// Rows with their classes; the first cell of each heads it.
+fn table<R>(rows: &[R], class: fn(&R) -> Option<String>, columns: &[Column<R>]) -> Markup {
+    html! {
+        div.wide { table {
+            thead { tr { @for (head, _) in columns { th scope="col" { (head) } } } }
+            tbody { @for row in rows { tr class=[class(row)] { @for (_, cell) in columns { (cell(row)) } } } }
+        } }
+    }
+}
+
+fn no_class<R>(_: &R) -> Option<String> {
+    None
+}
+
+fn head(text: impl Render) -> Markup {
+    html! { th scope="row" { (text) } }
+}
+
+fn cell(text: impl Render) -> Markup {
+    html! { td { (text) } }
+}
+
+/// A number with two digits after the point.
+fn hundredths(x: f64) -> Markup {
+    cell(format!("{x:.2}"))
+}
+
+fn count(count: Option<u64>) -> Markup {
+    cell(count.map_or_else(String::new, |n| n.to_string()))
+}
+
+fn kibibytes(bytes: u64) -> Markup {
+    cell(format!("{:.1}", bytes as f64 / 1024.0))
+}
+
 fn time(times: Times) -> Markup {
     spread(times, 1.0)
 }
@@ -121,98 +160,108 @@ fn ratio(interval: Option<Interval>) -> Markup {
     }
 }
 
+const TIMES: [Column<Row>; 7] = [
+    ("", |row| head(row.who.label())),
+    ("gpu ms", |row| time(row.gpu_ms)),
+    ("× base", |row| ratio(row.gpu_ratio)),
+    ("geometry ms", |row| time(row.geometry_ms)),
+    ("× base", |row| ratio(row.geometry_ratio)),
+    ("fence ms", |row| time(row.fence_ms.gpu)),
+    ("construction ms", |row| cell(row.construction_ms.map_or_else(String::new, |i| format!("{:.2}", i.value)))),
+];
+
+const COSTS: [Column<Row>; 11] = [
+    ("", |row| head(row.who.label())),
+    ("tables ms", |row| hundredths(row.tables_ms)),
+    ("upload ms", |row| hundredths(row.upload_ms)),
+    ("first use ms", |row| hundredths(row.first_use_ms())),
+    ("KiB", |row| kibibytes(row.total_bytes())),
+    ("traffic KiB", |row| kibibytes(row.traffic_total())),
+    ("patches", |row| cell(row.patches)),
+    ("evaluations", |row| count(row.tes_invocations)),
+    ("compute", |row| count(row.compute_invocations)),
+    ("triangles", |row| count(row.triangles)),
+    ("visible", |row| count(row.visible_triangles)),
+];
+
 fn rows(results: &Results) -> Markup {
-    let milliseconds = |ms: f64| html! { td { (format!("{ms:.2}")) } };
-    let count = |count: Option<u64>| html! { td { (count.map_or_else(String::new, |n| n.to_string())) } };
     html! {
         @for group in results.rows.chunk_by(Row::is_beside) {
             h3 { (group[0].setting.mesh) ", factor " (group[0].factor) ", " (group[0].setting.title()) }
-            div.wide { table {
-                thead { tr {
-                    @for head in [
-                        "", "gpu ms", "× base", "geometry ms", "× base", "fence ms", "construction ms",
-                    ] { th scope="col" { (head) } }
-                } }
-                tbody { @for row in group { tr {
-                    th scope="row" { (row.who.label()) }
-                    (time(row.gpu_ms)) (ratio(row.gpu_ratio))
-                    (time(row.geometry_ms)) (ratio(row.geometry_ratio))
-                    (time(row.fence_ms.gpu))
-                    td { (row.construction_ms.map_or_else(String::new, |i| format!("{:.2}", i.value))) }
-                } } }
-            } }
-            div.wide { table {
-                thead { tr {
-                    @for head in [
-                        "", "tables ms", "upload ms", "first use ms", "KiB", "traffic KiB", "patches", "evaluations", "compute",
-                        "triangles", "visible",
-                    ] { th scope="col" { (head) } }
-                } }
-                tbody { @for row in group { tr {
-                    th scope="row" { (row.who.label()) }
-                    (milliseconds(row.tables_ms)) (milliseconds(row.upload_ms)) (milliseconds(row.first_use_ms()))
-                    td { (format!("{:.1}", row.total_bytes() as f64 / 1024.0)) }
-                    td { (format!("{:.1}", row.traffic_total() as f64 / 1024.0)) }
-                    td { (row.patches) }
-                    (count(row.tes_invocations)) (count(row.compute_invocations)) (count(row.triangles))
-                    (count(row.visible_triangles))
-                } } }
-            } }
+            (table(group, no_class, &TIMES))
+            (table(group, no_class, &COSTS))
         }
     }
 }
+
+const FINDINGS: [Column<Finding>; 6] = [
+    ("", |f| head(html! { (f.setting.mesh) ", " (f.setting.title()) })),
+    ("", |f| cell(f.who.label())),
+    ("factor", |f| cell(f.factor)),
+    ("geometry", |f| cell(f.geometry.to_string())),
+    ("gpu", |f| cell(f.gpu.to_string())),
+    ("bytes", |f| cell(f.bytes.map_or_else(String::new, |power| format!("{power:.2}")))),
+];
 
 fn findings(findings: &Findings) -> Markup {
     html! {
         @for (title, list) in findings.lists().into_iter().filter(|(_, list)| !list.is_empty()) {
             h3 { (title) }
-            div.wide { table {
-                thead { tr { @for head in ["", "", "factor", "geometry", "gpu", "bytes"] { th scope="col" { (head) } } } }
-                tbody { @for f in list { tr {
-                    th scope="row" { (f.setting.mesh) ", " (f.setting.title()) }
-                    td { (f.who.label()) } td { (f.factor) } td { (f.geometry) } td { (f.gpu) }
-                    td { (f.bytes.map_or_else(String::new, |power| format!("{power:.2}"))) }
-                } } }
-            } }
+            (table(list, no_class, &FINDINGS))
         }
     }
 }
+
+const RECORDING: [Column<Recorded>; 7] = [
+    ("", |r| head(&r.mesh)),
+    ("", |r| cell(r.who.label())),
+    ("crowd", |r| cell(&r.crowd)),
+    ("models", |r| cell(r.models)),
+    ("prepare µs", |r| microseconds(r.prepare_ms)),
+    ("draw µs", |r| microseconds(r.draw_ms)),
+    ("frame µs", |r| microseconds(r.frame_ms)),
+];
 
 fn recording(recording: &[Recorded]) -> Markup {
     html! {
         @if !recording.is_empty() {
             h2 { "What the host takes to record a frame" }
-            div.wide { table {
-                thead { tr {
-                    @for head in ["", "", "crowd", "models", "prepare µs", "draw µs", "frame µs"] { th scope="col" { (head) } }
-                } }
-                tbody { @for r in recording { tr {
-                    th scope="row" { (r.mesh) }
-                    td { (r.who.label()) } td { (r.crowd) } td { (r.models) }
-                    (microseconds(r.prepare_ms)) (microseconds(r.draw_ms)) (microseconds(r.frame_ms))
-                } } }
-            } }
+            (table(recording, no_class, &RECORDING))
         }
     }
 }
+
+const CHANGES: [Column<Change>; 8] = [
+    ("", |c| head(html! { (c.setting.mesh) ", " (c.setting.title()) ": " (c.who.label()) })),
+    ("factor", |c| cell(c.factor)),
+    ("", |c| cell(&c.what)),
+    ("old ms", |c| hundredths(c.old_ms)),
+    ("new ms", |c| hundredths(c.new_ms)),
+    ("new / old", |c| ratio(Some(c.ratio))),
+    ("sure", |c| cell(format!("{:.1} %", 100.0 * c.confidence))),
+    ("", |c| cell(c.verdict())),
+];
 
 fn changes(results: &Results) -> Markup {
     let Some(changes) = &results.changes else { return html! {} };
     html! {
         h2 { "What changed" }
         @if let Some(machine) = machine(changes) { p { (machine) } }
-        div.wide { table {
-            thead { tr { @for head in ["", "factor", "", "old ms", "new ms", "new / old", "sure", ""] { th scope="col" { (head) } } } }
-            tbody { @for c in changes { tr class=(c.verdict().replace(' ', "-")) {
-                th scope="row" { (c.setting.mesh) ", " (c.setting.title()) ": " (c.who.label()) }
-                td { (c.factor) } td { (c.what) }
-                td { (format!("{:.2}", c.old_ms)) } td { (format!("{:.2}", c.new_ms)) }
-                (ratio(Some(c.ratio)))
-                td { (format!("{:.1} %", 100.0 * c.confidence)) } td { (c.verdict()) }
-            } } }
-        } }
+        (table(changes, |change| Some(change.verdict().replace(' ', "-")), &CHANGES))
     }
 }
+
+const PUBLISHED: [Column<Beside>; 9] = [
+    ("published", |line| head(&line.published_mesh)),
+    ("scheme", |line| cell(&line.scheme)),
+    ("construction", |line| cell(&line.construction)),
+    ("factor", |line| cell(line.factor)),
+    ("figure", |line| cell(html! { (line.figure) " " (line.unit) })),
+    ("ratio", |line| cell(format!("{:.3}", line.published_ratio))),
+    ("measured", |line| cell(&line.mesh)),
+    ("ms", |line| hundredths(line.ms)),
+    ("ratio", |line| cell(format!("{:.3}", line.ratio))),
+];
 
 fn published(results: &Results) -> Markup {
     let Some(preset) = &results.preset else { return html! {} };
@@ -221,19 +270,7 @@ fn published(results: &Results) -> Markup {
         p { b { (preset.title) } br; (preset.note) }
         @if !results.published.is_empty() {
             p { "Ratios of times, each to the first line of its mesh." }
-            div.wide { table {
-                thead { tr {
-                    @for head in ["published", "scheme", "construction", "factor", "figure", "ratio", "measured", "ms", "ratio"] {
-                        th scope="col" { (head) }
-                    }
-                } }
-                tbody { @for line in &results.published { tr {
-                    th scope="row" { (line.published_mesh) }
-                    td { (line.scheme) } td { (line.construction) } td { (line.factor) }
-                    td { (line.figure) " " (line.unit) } td { (format!("{:.3}", line.published_ratio)) }
-                    td { (line.mesh) } td { (format!("{:.2}", line.ms)) } td { (format!("{:.3}", line.ratio)) }
-                } } }
-            } }
+            (table(&results.published, no_class, &PUBLISHED))
         }
     }
 }
