@@ -35,6 +35,7 @@ axis! {
         FramesComp = "compute/frames.comp",
         ControlPointsComp = "compute/control_points.comp",
         CullComp = "compute/cull.comp",
+        GatherComp = "compute/gather.comp",
         RefineComp = "compute/refine.comp",
         TessellationTese = "evaluate/tessellation.tese",
         LatticeComp = "evaluate/lattice.comp",
