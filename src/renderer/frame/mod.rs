@@ -58,6 +58,8 @@ enum RetiredObject {
 
 /// Draws subdivision surfaces into the caller's command buffers.
 ///
+/// It is `Send` and `Sync`, as [`Frame`] is; what records or sets something takes it mutably.
+///
 /// Dropping it destroys its Vulkan objects: the device must be done with every frame they were recorded in.
 pub struct Renderer {
     context: Arc<DeviceContext>,
@@ -280,6 +282,13 @@ impl Renderer {
         self.models.get(&id).ok_or(Error::NoSuchModel { id })
     }
 }
+
+// Renderers and frames go from thread to thread.
+const _: () = {
+    const fn goes_between_threads<T: Send + Sync>() {}
+    goes_between_threads::<Renderer>();
+    goes_between_threads::<Frame>();
+};
 
 impl std::fmt::Debug for Renderer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
