@@ -167,8 +167,8 @@ pub use mesh::{
 };
 pub use patch::{Fallback, Scheme};
 pub use renderer::{
-    Construction, DrawItem, Error, Frame, ModelId, ModelOptions, Options, Renderer, Style, Target, View, check,
-    requirements,
+    Construction, DevicePositions, DrawItem, Error, Frame, ModelId, ModelOptions, Options, Renderer, Style, Target,
+    View, check, requirements,
 };
 
 /// The examples of the README and of the pages under `docs/`, compiled as tests.

@@ -53,7 +53,7 @@ impl Captured<'_> {
             let per_patch = bytes(kind);
             for window in self.windows(kind, per_patch) {
                 let bytes = window.len() as u64 * per_patch;
-                take(kind, watcher.watch(headless, mode, &draw.view, item, head(&window), bytes)?)?;
+                take(kind, watcher.watch(headless, mode, &draw.view, (item, self.given), head(&window), bytes)?)?;
             }
         }
         if self.shaders.is_empty() {

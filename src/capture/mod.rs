@@ -11,8 +11,8 @@ use crate::gpu::{Domain, PatchBatch, tessellated_vertices};
 use crate::headless::Headless;
 use crate::mesh::ControlMesh;
 use crate::renderer::{
-    Capture, Cull, DisplacementId, DisplacementMap, Error, Evaluation, Factor, ModelOptions, ModelTables, ShaderId,
-    View,
+    Capture, Cull, DevicePositions, DisplacementId, DisplacementMap, Error, Evaluation, Factor, ModelOptions,
+    ModelTables, ShaderId, View,
 };
 #[cfg(doc)]
 use crate::renderer::{Options, Renderer};
@@ -96,6 +96,7 @@ pub struct Captured<'h> {
     options: ModelOptions,
     tables: ModelTables,
     positions: Vec<[f32; 3]>,
+    given: Option<DevicePositions>,
     displacement: Option<DisplacementMap>,
     shaders: Vec<(ShaderId, Vec<u32>)>,
 }
@@ -116,7 +117,8 @@ impl<'h> Captured<'h> {
         let by_leaves = options.adaptive.is_some_and(|adaptive| adaptive.drawn_by == DrawnBy::Leaves);
         let options = ModelOptions { edge_factors: options.edge_factors || by_leaves, ..options.clone() };
         let tables = ModelTables::new(mesh, &options)?;
-        Ok(Self { headless, options, tables, positions: mesh.positions_f32(), displacement: None, shaders: Vec::new() })
+        let positions = mesh.positions_f32();
+        Ok(Self { headless, options, tables, positions, given: None, displacement: None, shaders: Vec::new() })
     }
 
     /// A model with a displacement map.
@@ -140,6 +142,14 @@ impl<'h> Captured<'h> {
     /// Replaces shaders of the crate: see [`Options::shaders`].
     pub fn with_shaders(self, shaders: Vec<(ShaderId, Vec<u32>)>) -> Self {
         Self { shaders, ..self }
+    }
+
+    /// With positions of the device.
+    ///
+    /// # Safety
+    /// As [`Renderer::set_device_positions`]; the buffer lives as long as this, and nothing writes it any more.
+    pub unsafe fn with_device_positions(self, positions: DevicePositions) -> Self {
+        Self { given: Some(positions), ..self }
     }
 
     /// The arrays that the shaders read, with the order of the patches.

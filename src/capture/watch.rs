@@ -4,7 +4,8 @@ use super::buffer::{HEAD_BYTES, Head, RECORD_BYTES, capture_buffer};
 use crate::gpu::{Buffer, DescriptorPool, DescriptorSet, SetLayout, descriptor_set_layout};
 use crate::headless::{Headless, Offscreen, OffscreenDesc};
 use crate::renderer::{
-    Capture, DrawItem, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, ShaderId, Style, Target, View,
+    Capture, DevicePositions, DrawItem, Error, Evaluation, ModelOptions, Options, Renderer, STAGES, ShaderId, Style,
+    Target, View,
 };
 use ash::vk;
 use bytemuck::Zeroable;
@@ -99,7 +100,7 @@ impl Watcher {
         headless: &Headless,
         mode: Capture,
         view: &View,
-        item: DrawItem,
+        (item, given): (DrawItem, Option<DevicePositions>),
         head: Head,
         bytes: u64,
     ) -> Result<Vec<f32>, Error> {
@@ -116,6 +117,7 @@ impl Watcher {
         // SAFETY: the command buffer is being recorded; rendering is begun and ended in it, and fits the target.
         headless.try_submit(|cmd| unsafe {
             let frame = renderer.begin_frame();
+            given.map_or(Ok(()), |given| renderer.set_device_positions(item.model, frame, given))?;
             renderer.cmd_prepare(cmd, frame)?;
             target.cmd_begin(cmd, [0.0; 4]);
             let point = vk::PipelineBindPoint::GRAPHICS;

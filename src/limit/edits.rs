@@ -29,6 +29,11 @@ struct Frame {
 }
 
 impl VertexEdits {
+    /// Whether nothing is changed.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.edits.is_empty()
+    }
+
     /// Gives a mesh its edits. Those at its level, made as far as they are about vertices, are found again in what is given back.
     pub(super) fn make(data: &mut MeshData, edits: Vec<Edit>) -> Result<Self, MeshError> {
         let now = edits.iter().filter(|edit| edit.level() == 0);

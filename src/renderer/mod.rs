@@ -6,7 +6,8 @@
 //!
 //! 1. The caller waits until the submission of the frame that began [`Options::frames_in_flight`] frames ago is done, as always before
 //!    using again what belongs to a frame in flight; then [`Renderer::begin_frame`].
-//! 2. [`Renderer::set_positions`] writes this frame's control vertices, if they move.
+//! 2. [`Renderer::set_positions`] writes this frame's control vertices, if they move; or [`Renderer::set_device_positions`] says where
+//!    the device wrote them.
 //! 3. [`Renderer::cmd_prepare`], outside rendering, records the copies and barriers.
 //! 4. [`Renderer::cmd_draw`], inside rendering, records the draws of one view: for every model its regular patches,
 //!    irregular quads and triangles. As often as there are views. Or, to draw only what can be seen,
@@ -20,6 +21,8 @@
 //! | pass | reads | writes |
 //! |---|---|---|
 //! | copies | staging buffers | tables, positions; indices of the control mesh if a style draws it |
+//! | compute, positions of the device | the caller's buffer | positions, if the device gives them |
+//! | compute, refinement | positions, sums | vertices of adaptive surfaces and, if the device is to, of refined meshes, if the vertices moved |
 //! | compute, cached | rings and their weights, positions | a frame for each ring, if the vertices moved |
 //! | compute, cached | those, patch corners, rings, positions | control points, and what corners share |
 //! | compute, evaluation | control points, what corners share | vertices of models that are [`Evaluation::Compute`]: of those, the draws have only VS and FS |
@@ -56,8 +59,8 @@ pub use frame::segments::EvaluatedVertices;
 pub use frame::visible::VisibleItems;
 pub use frame::{Frame, Renderer};
 pub use options::{
-    ColorEncoding, Cull, DisplacementId, DisplacementMap, DrawItem, Error, Factor, Fragment, Geometry, MeasuredFrom,
-    MemoryUsage, ModelId, ModelOptions, Options, Pass, Style, Target, View,
+    ColorEncoding, Cull, DevicePositions, DisplacementId, DisplacementMap, DrawItem, Error, Factor, Fragment, Geometry,
+    MeasuredFrom, MemoryUsage, ModelId, ModelOptions, Options, Pass, Style, Target, View,
 };
 pub use pipelines::{Requirements, check, requirements};
 pub use shader::ShaderId;

@@ -34,6 +34,9 @@ pub enum TableError {
         /// The scheme that was asked for.
         scheme: Scheme,
     },
+    /// Refinement by the device of a mesh that has edits of vertices.
+    #[error("refine_on_device: the mesh has edits of vertices at finer levels, which the host makes: let it refine")]
+    EditsOnDevice,
     /// Displacement of a mesh without texture coordinates.
     #[error(
         "the mesh has no texture coordinates, which displacement looks up: give it some (vt in OBJ, TEXCOORD_0 in glTF)"

@@ -42,11 +42,12 @@ pub struct LeafTable {
     pub refinement: Refinement,
 }
 
-/// The vertices of adaptive subdivision as weighted sums: [`adaptive::Rows`]. What is counted in fours is filled up with weights of
+/// The vertices of adaptive subdivision as weighted sums: [`adaptive::Rows`]; before them those of steps of refinement, with
+/// [`TableOptions::refine_on_device`](super::TableOptions::refine_on_device). What is counted in fours is filled up with weights of
 /// zero. GLSL twin: `glsl/compute/refine.comp`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refinement {
-    /// The vertex that the first row makes: the last that are read.
+    /// The vertex that row 0 makes: vertices from this one on are made.
     pub first_vertex: u32,
     /// What can be made all at once, in the order in which the vertices read each other.
     pub steps: Vec<RefinementStep>,
@@ -106,7 +107,7 @@ impl Refinement {
 
     /// Number of vertices that are made.
     pub fn vertices(&self) -> usize {
-        self.steps.last().map_or(0, |step| step.rows.end as usize)
+        self.steps.iter().map(|step| step.rows.end as usize).max().unwrap_or(0)
     }
 }
 

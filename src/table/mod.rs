@@ -24,6 +24,7 @@ mod rings;
 mod shared;
 mod sharing;
 mod stencils;
+mod steps;
 mod subdivision;
 mod wedges;
 

@@ -25,6 +25,8 @@ pub struct ModelTables {
     shared: Option<SharedTable>,
     /// Of adaptive subdivision.
     leaves: Option<LeafTable>,
+    /// Of steps that the device makes, and what is in the leaves' besides.
+    refined_steps: Option<Refinement>,
     pub(crate) texcoords: Option<Vec<[f32; 2]>>,
     edges: Option<EdgeTable>,
     /// Pairs of control vertices: the edges of the caller's mesh.
@@ -77,6 +79,11 @@ impl ModelTables {
             return Err(TableError::NothingShared { scheme: options.scheme });
         }
         let leaves = adaptive.map(|adaptive| LeafTable::new(&prepared, &plan, adaptive));
+        let refines = options.refine_on_device && !prepared.steps.is_empty();
+        let refined_steps = refines.then(|| {
+            let of_leaves = leaves.as_ref().map(|leaves| &leaves.refinement);
+            Refinement::of_steps(&prepared.steps, mesh.vertex_count() as u32, of_leaves)
+        });
         let rings = (stencils.is_none() && !subdivides || shared.is_some()) && !by_leaves;
         let rings = rings.then(|| RingTable::new(topology, &plan));
         Ok(Self {
@@ -90,6 +97,7 @@ impl ModelTables {
             fans,
             shared,
             leaves,
+            refined_steps: refined_steps.transpose()?,
             control_edges: control_edges(mesh),
             control_faces: control_faces(mesh),
             control_vertices: mesh.vertex_count(),
@@ -126,16 +134,17 @@ impl ModelTables {
     /// adaptive subdivision.
     pub(crate) fn stored_vertices(&self) -> usize {
         let control = if self.steps.is_empty() { 0 } else { self.control_vertices };
-        control + self.patch_vertices + self.refinement().map_or(0, Refinement::vertices)
+        let made = |refinement: &Refinement| refinement.first_vertex as usize + refinement.vertices();
+        self.refinement().map_or(control + self.patch_vertices, made)
     }
 
-    /// Puts the stored vertices but those of adaptive subdivision, for these positions of the control vertices in the place of what is in `stored`: with a fourth
-    /// number each, as texel buffers have them.
+    /// Puts the stored vertices but those that the device makes, for these positions of the control vertices in the place of what is in
+    /// `stored`: with a fourth number each, as texel buffers have them.
     pub(crate) fn store_positions(&self, control: &[[f32; 3]], stored: &mut Vec<[f32; 4]>) {
         let wide = |&[x, y, z]: &[f32; 3]| [x, y, z, 0.0];
         stored.clear();
         stored.extend(control.iter().map(wide));
-        if self.steps.is_empty() {
+        if !self.refines_on_host() {
             return;
         }
         let wide = |p: DVec3| p.as_vec3().extend(0.0).to_array();
@@ -144,9 +153,14 @@ impl ModelTables {
         stored.extend(refined.into_iter().map(wide));
     }
 
-    /// Sums by which the device makes the vertices of adaptive subdivision.
+    /// Whether the host refines the whole mesh each time that its positions are set.
+    pub(crate) fn refines_on_host(&self) -> bool {
+        !self.steps.is_empty() && self.refined_steps.is_none()
+    }
+
+    /// Sums by which the device makes vertices.
     pub(crate) fn refinement(&self) -> Option<&Refinement> {
-        self.leaves.as_ref().map(|leaves| &leaves.refinement)
+        self.refined_steps.as_ref().or(self.leaves.as_ref().map(|leaves| &leaves.refinement))
     }
 
     /// The leaves of faces that are refined, with [`TableOptions::adaptive`].
@@ -230,6 +244,7 @@ impl ModelTables {
             table.as_ref().map_or(&[], |table| bytemuck::cast_slice(array(table)))
         }
         let (rings, stencils, fans) = (&self.rings, &self.stencils, &self.fans);
+        let sums = |array: fn(&Refinement) -> &[u8]| self.refinement().map_or(&[][..], array);
         // Shaders read rings or fans, never both.
         let around = match fans {
             None => [
@@ -253,9 +268,9 @@ impl ModelTables {
             corners,
             ("quadtrees", array(&self.leaves, |t| &t.quadtrees)),
             ("leaves", array(&self.leaves, |t| t.leaves.as_flattened())),
-            ("blocks", array(&self.leaves, |t| t.refinement.blocks.as_flattened())),
-            ("block_vertices", array(&self.leaves, |t| t.refinement.vertices.as_flattened())),
-            ("mask_weights", array(&self.leaves, |t| t.refinement.weights.as_flattened())),
+            ("blocks", sums(|t| bytemuck::cast_slice(&t.blocks))),
+            ("block_vertices", sums(|t| bytemuck::cast_slice(&t.vertices))),
+            ("mask_weights", sums(|t| bytemuck::cast_slice(&t.weights))),
             ("stencil_patches", array(stencils, |t| &t.patches)),
             ("stencil_vertices", array(stencils, |t| &t.vertices)),
             ("stencil_types", array(stencils, |t| &t.types)),

@@ -110,6 +110,8 @@ pub struct TableOptions {
     pub edge_factors: bool,
     /// Steps of Catmull-Clark refinement before patches are made.
     pub refine: u32,
+    /// Whether the device refines, where the whole mesh is.
+    pub refine_on_device: bool,
     /// Depth of adaptive subdivision, if irregular faces are refined where they have to be.
     pub adaptive: Option<AdaptiveOptions>,
 }

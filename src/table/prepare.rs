@@ -159,8 +159,8 @@ struct Cut {
 /// A step of refinement.
 #[derive(Debug, Clone)]
 pub struct Step {
-    stencils: Stencils,
-    edits: VertexEdits,
+    pub(super) stencils: Stencils,
+    pub(super) edits: VertexEdits,
 }
 
 impl Step {

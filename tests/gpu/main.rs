@@ -10,6 +10,7 @@ mod common;
 mod compute;
 mod culled_pictures;
 mod device_limits;
+mod device_positions;
 mod example;
 mod frames;
 mod golden_files;

@@ -6,6 +6,7 @@
 
 layout(local_size_x = GROUP_INVOCATIONS) in;
 
+#ifndef OWN_INVOCATIONS
 // Rust twin: `Invocations` in src/renderer/construct/cached.rs.
 layout(push_constant, std430) uniform Invocations {
     uint count;
@@ -14,8 +15,9 @@ layout(push_constant, std430) uniform Invocations {
     uint first_block;   // that of the first row
     uint rows_of_block;
 } invocations;
+#endif
 
-// Of those below `count`; groups are laid out in rows, as there are no more than 65 535 along an axis.
+// Those from `count` on have nothing to do; groups are laid out in rows, as there are no more than 65 535 along an axis.
 uint invocation_number() {
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     return group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;

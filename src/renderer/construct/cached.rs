@@ -1,8 +1,7 @@
 //! The cached construction: frames of rings, and from these control points, by compute.
 
-use crate::constants::GROUP_INVOCATIONS;
-use crate::gpu::{DeviceContext, GpuError, MAX_WORKGROUPS};
-use crate::renderer::pipelines::ComputePipelines;
+use crate::gpu::{DeviceContext, GpuError};
+use crate::renderer::pipelines::{ComputePipelines, workgroups};
 use crate::renderer::shader::{Cut, PatchStages, ShaderCode, reads_texels};
 use crate::renderer::shader::{ShaderKey, Source};
 use crate::table::{PatchPlan, Refinement, RefinementStep};
@@ -137,9 +136,7 @@ impl CachedPipelines {
     }
 
     unsafe fn cmd_dispatch(&self, cmd: vk::CommandBuffer, step: Step, invocations: Invocations) {
-        let groups = invocations.count.div_ceil(GROUP_INVOCATIONS);
-        let rows = groups.div_ceil(MAX_WORKGROUPS);
         // SAFETY: as the caller promises.
-        unsafe { self.0.cmd_dispatch(cmd, &step, &invocations, [groups.div_ceil(rows), rows]) };
+        unsafe { self.0.cmd_dispatch(cmd, &step, &invocations, workgroups(invocations.count)) };
     }
 }

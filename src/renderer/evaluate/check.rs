@@ -25,6 +25,7 @@ pub(crate) fn check_evaluation(
         ("displacement", displaced, options.displacement.is_some()),
         // Displacement shares normals in any case.
         ("shared_normals", tables.sharing() != Sharing::Positions, displaced || options.shared_normals),
+        ("refine_on_device", tables.options().refine_on_device, options.refine_on_device),
         ("edge_factors", tables.edges().is_some(), options.edge_factors),
     ] {
         if built != asked {

@@ -1,9 +1,10 @@
 //! The frame that is being recorded.
 
+use super::positions::Moved;
 use super::{Renderer, RetiredObject};
-use crate::gpu::Buffer;
-use crate::renderer::model::Sent;
+use crate::renderer::model::{Given, Sent, Used};
 use crate::renderer::options::{Error, ModelId};
+use rustc_hash::FxHashMap;
 
 /// A frame that [`Renderer::begin_frame`] began, until the next one begins or it is [lost](Renderer::frame_lost): what is set and
 /// recorded for it names it, and nothing else is accepted.
@@ -31,17 +32,33 @@ pub(crate) struct Begun {
     pub(super) is_prepared: bool,
     /// What was recorded to be sent to the device, in order.
     pub(super) sent: Vec<(Option<ModelId>, Sent)>,
+    /// Whose positions were set, and by whom.
+    pub(super) moved: FxHashMap<ModelId, Moved>,
 }
 
 impl Begun {
+    /// Whether positions of the device are to be recorded.
+    pub(super) fn are_given(&self) -> bool {
+        self.moved.values().any(|moved| matches!(moved, Moved::Device(Some(_))))
+    }
+
+    /// The positions of a model that the device gives, if any are to be recorded.
+    pub(super) fn take_given(&mut self, id: ModelId) -> Option<Given> {
+        match self.moved.get_mut(&id) {
+            Some(Moved::Device(given)) => given.take(),
+            _ => None,
+        }
+    }
+
     /// None yet.
     pub(super) fn new(renderer: u64, frames_in_flight: u32) -> Self {
         let frame = Frame { renderer, number: 0, index: frames_in_flight - 1 };
-        Self { frame, is_open: false, is_prepared: false, sent: Vec::new() }
+        Self { frame, is_open: false, is_prepared: false, sent: Vec::new(), moved: FxHashMap::default() }
     }
 
-    /// Has what was sent of a model be nobody's: it has other tables now.
+    /// Has what was sent of a model be nobody's, and its positions those of its mesh: it has other tables now.
     pub(super) fn forget(&mut self, id: ModelId) {
+        self.moved.remove(&id);
         for (of, _) in self.sent.iter_mut().filter(|(of, _)| *of == Some(id)) {
             *of = None;
         }
@@ -59,15 +76,15 @@ impl Renderer {
     pub unsafe fn begin_frame(&mut self) -> Frame {
         let Frame { renderer, number, index } = self.begun.frame;
         let sent = std::mem::take(&mut self.begun.sent);
-        let staged: Vec<Buffer> = sent.into_iter().flat_map(|(_, sent)| sent.into_staged()).collect();
-        if !staged.is_empty() {
-            self.retire(Some(index), RetiredObject::Staging(staged));
+        let used: Vec<Used> = sent.into_iter().flat_map(|(_, sent)| sent.into_used()).collect();
+        if !used.is_empty() {
+            self.retire(Some(index), RetiredObject::Used(used));
         }
         // The frame in place of a lost one has its index: nothing of that is on the device.
         let is_lost = number > 0 && !self.begun.is_open;
         let index = if is_lost { index } else { (index + 1) % self.options.frames_in_flight };
         let frame = Frame { renderer, number: number + 1, index };
-        self.begun = Begun { frame, is_open: true, is_prepared: false, sent: Vec::new() };
+        self.begun = Begun { frame, is_open: true, ..Begun::new(renderer, self.options.frames_in_flight) };
         self.views_drawn[index as usize] = 0;
         self.lists[index as usize].clear();
         for retired in &mut self.retired {

@@ -86,6 +86,9 @@ impl Renderer {
             let level = path(model.options.evaluation).level(factor);
             if !model.made.iter().any(|made| made.is_of(each, level)) {
                 let made = self.pipelines.make(&model.stages, each, factor)?;
+                if model.tables.refinement().is_some() {
+                    self.pipelines.cached.make_refinement(&self.pipelines.draws.shaders)?;
+                }
                 model.made.push(made);
             }
         }

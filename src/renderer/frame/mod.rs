@@ -6,6 +6,7 @@ mod begun;
 mod cull;
 mod draw;
 mod lists;
+mod positions;
 mod prepare;
 mod replace;
 mod resolved;
@@ -18,7 +19,7 @@ use crate::gpu::{Buffer, BufferDesc, DeviceContext, MemoryLocation};
 use crate::mesh::ControlMesh;
 use crate::renderer::evaluate::Lattice;
 use crate::renderer::model::ModelPipelines;
-use crate::renderer::model::{Displacements, Model};
+use crate::renderer::model::{Displacements, Model, Used};
 use crate::renderer::options::{
     Cull, DisplacementId, DisplacementMap, Error, Factor, MemoryUsage, ModelId, ModelOptions, Options, Target,
 };
@@ -50,12 +51,14 @@ struct Retired {
 #[expect(dead_code, reason = "kept only to be dropped later")]
 enum RetiredObject {
     Model(Box<Model>),
-    Staging(Vec<Buffer>),
+    Used(Vec<Used>),
     Lattice(Box<Lattice>),
     Lists(Box<FrameLists>),
 }
 
 /// Draws subdivision surfaces into the caller's command buffers.
+///
+/// It is `Send` and `Sync`, as [`Frame`] is; what records or sets something takes it mutably.
 ///
 /// Dropping it destroys its Vulkan objects: the device must be done with every frame they were recorded in.
 pub struct Renderer {
@@ -246,16 +249,6 @@ impl Renderer {
         Ok(self.model(id)?.tables.notices())
     }
 
-    /// Moves the control vertices of a model, from the next [`Renderer::cmd_prepare`] of `frame` on until other positions are set. Object space, one position a vertex of the mesh, in its order. The numbers are not looked
-    /// at: patches around a vertex that is NaN or infinite are missing.
-    ///
-    /// # Errors
-    /// [`Error::NoSuchModel`], [`Error::OldFrame`], [`Error::PositionCount`].
-    pub fn set_positions(&mut self, id: ModelId, frame: Frame, positions: &[[f32; 3]]) -> Result<(), Error> {
-        self.check_frame(frame)?;
-        self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?.set_positions(frame.index(), positions)
-    }
-
     /// Sets the tessellation factors of a model's edges, for [`Factor::Edges`], from the next [`Renderer::cmd_prepare`] of
     /// `frame` on until others are set. In the order of [`ModelTables::edges`].
     ///
@@ -289,6 +282,13 @@ impl Renderer {
         self.models.get(&id).ok_or(Error::NoSuchModel { id })
     }
 }
+
+// Renderers and frames go from thread to thread.
+const _: () = {
+    const fn goes_between_threads<T: Send + Sync>() {}
+    goes_between_threads::<Renderer>();
+    goes_between_threads::<Frame>();
+};
 
 impl std::fmt::Debug for Renderer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

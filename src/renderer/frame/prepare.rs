@@ -18,7 +18,8 @@ impl Renderer {
     /// [`Error::OldFrame`]; failed Vulkan calls, after which the frame is [lost](Renderer::frame_lost).
     ///
     /// # Safety
-    /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if a model is
+    /// `cmd` is being recorded, outside rendering, for a queue that can copy and draw, and compute if
+    /// [positions of the device](Renderer::set_device_positions) were set for the frame, or a model is
     /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or [adaptive](crate::renderer::ModelOptions::adaptive), has
     /// faces of five and more corners ([`ModelOptions::refine`](crate::renderer::ModelOptions::refine)) or, with
     /// [`Options::visible_lists`](crate::renderer::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). It is
@@ -28,34 +29,39 @@ impl Renderer {
         self.check_frame(frame)?;
         self.begun.is_prepared = true;
         let frame_index = frame.index();
-        if self.models.values().all(|model| model.is_at_rest()) {
+        let are_given = self.begun.are_given();
+        if !are_given && self.models.values().all(|model| model.is_at_rest()) {
             return Ok(());
         }
         let device = self.context.device();
-        let readers = vk::PipelineStageFlags::VERTEX_INPUT | self.shader_readers();
-        let transfer = vk::PipelineStageFlags::TRANSFER;
+        use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
+        let readers = Stage::VERTEX_INPUT | self.shader_readers();
+        // Positions that the device gives are put there by compute, which reads what compute and copies of the caller's wrote.
+        let (writers, written, read) = match are_given {
+            true => (Stage::TRANSFER | Stage::COMPUTE_SHADER, Access::SHADER_WRITE, Access::SHADER_READ),
+            false => (Stage::TRANSFER, Access::empty(), Access::empty()),
+        };
         let none = vk::DependencyFlags::empty();
+        let writes = Access::TRANSFER_WRITE | written;
         let after_copies = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .src_access_mask(writes)
             // Computation writes control points and vertices again, too.
-            .dst_access_mask(
-                vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE | vk::AccessFlags::INDEX_READ,
-            )];
-        let after_writes = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)];
+            .dst_access_mask(Access::SHADER_READ | Access::SHADER_WRITE | Access::INDEX_READ)];
+        let after_writes = [vk::MemoryBarrier::default().src_access_mask(writes).dst_access_mask(writes | read)];
         // SAFETY: as the caller promises; the copied ranges are of live buffers.
         unsafe {
             // The frame before may still read what is overwritten here.
-            device.cmd_pipeline_barrier(cmd, readers | transfer, transfer, none, &after_writes, &[], &[]);
+            device.cmd_pipeline_barrier(cmd, readers | writers, writers, none, &after_writes, &[], &[]);
             for (&id, model) in &mut self.models {
                 let mut sent = model.before();
-                model.mark_stale();
-                let copied = model.needs_copies().then(|| model.cmd_copy(device, cmd, frame_index, &mut sent));
+                let given = self.begun.take_given(id).map(|given| (&self.pipelines.gather, given));
+                model.mark_stale(given.is_some());
+                let copies = given.is_some() || model.needs_copies();
+                let copied = copies.then(|| model.cmd_copy(device, cmd, frame_index, given, &mut sent));
                 self.begun.sent.push((Some(id), sent));
                 copied.transpose()?;
             }
-            device.cmd_pipeline_barrier(cmd, transfer, readers, none, &after_copies, &[], &[]);
+            device.cmd_pipeline_barrier(cmd, writers, readers, none, &after_copies, &[], &[]);
             self.cmd_compute(cmd);
         }
         Ok(())

@@ -4,6 +4,7 @@ mod bindings;
 mod displacements;
 mod drawn;
 mod edge_factors;
+mod gather;
 mod pipelines;
 mod positions;
 mod sent;
@@ -11,9 +12,10 @@ mod streamed;
 mod tables;
 
 pub(crate) use displacements::Displacements;
+pub(crate) use gather::{GatherPipeline, Given};
 use pipelines::MadeCut;
 pub(crate) use pipelines::ModelPipelines;
-pub(crate) use sent::Sent;
+pub(crate) use sent::{Sent, Used};
 
 use crate::gpu::{Buffer, DeviceContext, DeviceProperties, GpuError};
 use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, path};
@@ -138,6 +140,10 @@ fn stages(tables: &ModelTables, options: &ModelOptions, pipelines: &ModelPipelin
     tables.plan.groups().iter().map(of_group).collect()
 }
 
+fn name(options: &ModelOptions) -> &str {
+    if options.name.is_empty() { "model" } else { &options.name }
+}
+
 /// What a model needs of its renderer.
 #[derive(Clone, Copy)]
 pub(crate) struct Surroundings<'r> {
@@ -157,7 +163,7 @@ impl Model {
         map: DisplacementMap,
     ) -> Result<Self, Error> {
         check_evaluation(id, model_options, &tables, context.features())?;
-        let name = if model_options.name.is_empty() { "model" } else { &model_options.name };
+        let name = name(model_options);
         let (table_buffer, staged_tables) = table_buffer(context, (id, name), &tables, options.texcoords)?;
         let mut uploads = vec![(staged_tables, table_buffer.buffer.raw())];
 
@@ -216,14 +222,6 @@ impl Model {
         })
     }
 
-    pub(crate) fn set_positions(&mut self, frame: u32, control: &[[f32; 3]]) -> Result<(), Error> {
-        let needed = self.tables.control_vertices;
-        if control.len() != needed {
-            return Err(Error::PositionCount { id: self.id, given: control.len(), needed });
-        }
-        Ok(self.positions.write(frame, &self.tables, control)?)
-    }
-
     pub(crate) fn set_edge_factors(&mut self, frame: u32, factors: &[f32]) -> Result<(), Error> {
         match (self.tables.edges(), &mut self.edge_factors) {
             (Some(edges), Some(own)) => own.write(self.id, frame, edges, factors),
@@ -280,9 +278,10 @@ impl Model {
         self.lattice.replace(lattice)
     }
 
-    /// Has what follows from the copies of this frame computed after them; before they are recorded.
-    pub(crate) fn mark_stale(&mut self) {
-        let moved = !self.prepared || self.positions.is_due();
+    /// Has what follows from the copies of this frame, or from positions that the device gives, computed after them; before they are
+    /// recorded.
+    pub(crate) fn mark_stale(&mut self, are_given: bool) {
+        let moved = are_given || !self.prepared || self.positions.is_due();
         self.stale_refinement |= moved && self.tables.refinement().is_some();
         if self.control_points.is_some() {
             self.stale_points |= moved;
@@ -350,7 +349,7 @@ impl Model {
         }
     }
 
-    /// Records the copies that are due, and gives the staging buffers to `sent`, to be kept until the frame is done.
+    /// Records the copies that are due, and the dispatch for positions that the device gives, and gives the staging buffers to `sent`, to be kept until the frame is done.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering.
@@ -359,6 +358,7 @@ impl Model {
         device: &ash::Device,
         cmd: vk::CommandBuffer,
         frame: u32,
+        given: Option<(&GatherPipeline, Given)>,
         sent: &mut Sent,
     ) -> Result<(), Error> {
         let copy = |staged: &Buffer, target: vk::Buffer| {
@@ -372,6 +372,10 @@ impl Model {
         sent.indices.iter().for_each(|(staged, indices)| copy(staged, indices.buffer.raw()));
         // SAFETY: as the caller promises; both buffers hold the whole range.
         unsafe {
+            if let Some((pipeline, given)) = given {
+                sent.given = Some(pipeline.cmd_gather(cmd, self.set.raw, given));
+                self.positions.supersede();
+            }
             self.positions.cmd_send(device, cmd, frame)?;
             if let Some(factors) = &mut self.edge_factors {
                 factors.cmd_send(device, cmd, frame)?;

@@ -1,5 +1,6 @@
 //! Every pipeline that the models of a renderer need.
 
+use super::gather::GatherPipeline;
 use crate::gpu::{DeviceContext, GpuError};
 use crate::renderer::construct::{CachedPipelines, Conversion};
 use crate::renderer::evaluate::{LatticePipelines, path};
@@ -44,6 +45,8 @@ pub(crate) struct ModelPipelines {
     pub conversion: Option<Conversion>,
     /// For evaluation by compute.
     pub lattice: LatticePipelines,
+    /// For positions that the device wrote.
+    pub gather: GatherPipeline,
 }
 
 impl ModelPipelines {
@@ -58,7 +61,8 @@ impl ModelPipelines {
         let cached = CachedPipelines::new(context, sets.shared(), cache)?;
         let wireframe = options.styles.iter().any(|style| style.wireframe);
         let lattice = LatticePipelines::new(context, &sets, cache, options.texcoords, wireframe)?;
-        Ok(Self { context: context.clone(), cache, sets, draws, cached, conversion: None, lattice })
+        let gather = GatherPipeline::new(context, &sets, cache)?;
+        Ok(Self { context: context.clone(), cache, sets, draws, cached, conversion: None, lattice, gather })
     }
 
     /// Makes what draws of these groups of patches need in every style, and what comes before.
@@ -77,9 +81,6 @@ impl ModelPipelines {
             self.draws.make(key, |key, made_for| path.recipe(stages, cut, key, made_for))?;
             let of_style = |style| self.draws.get(PipelineKey { style, geometry: key }).unwrap_or_default();
             pipelines.extend((0..styles).map(of_style));
-            if stages.adaptive.is_some() {
-                self.cached.make_refinement(&self.draws.shaders)?;
-            }
             match (stages.construction, stages.evaluation) {
                 (_, Evaluation::Subdivision) => {}
                 (Construction::Cached, Evaluation::GeometryTwoPass) => self.convert(stages)?,

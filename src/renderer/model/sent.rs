@@ -1,27 +1,37 @@
 //! What a frame sends of a model to the device, for it to be taken back if the frame is lost.
 
 use super::Model;
-use crate::gpu::Buffer;
+use crate::gpu::{Buffer, DescriptorSet};
 use crate::renderer::evaluate::SharedIndices;
 use ash::vk;
 use std::sync::Arc;
+
+/// What the device reads in a frame, and nobody after.
+#[expect(dead_code, reason = "kept only to be dropped later")]
+pub(crate) enum Used {
+    Staging(Buffer),
+    Set(DescriptorSet),
+}
 
 /// What a frame's preparation records for a model, and how the model was before.
 pub(crate) struct Sent {
     /// Copied, and whereto.
     pub(super) uploads: Vec<(Buffer, vk::Buffer)>,
     pub(super) indices: Option<(Buffer, Arc<SharedIndices>)>,
+    /// Of the buffer whose positions are gathered.
+    pub(super) given: Option<DescriptorSet>,
     was_prepared: bool,
     was_lattice_prepared: bool,
-    /// Positions, and factors of edges.
+    /// Positions that the host wrote, and factors of edges.
     were_due: [bool; 2],
 }
 
 impl Sent {
-    /// The staging buffers, to be kept until the frame is done.
-    pub(crate) fn into_staged(self) -> impl Iterator<Item = Buffer> {
+    /// What is to be kept until the frame is done.
+    pub(crate) fn into_used(self) -> impl Iterator<Item = Used> {
         let indices = self.indices.map(|(staged, _)| staged);
-        self.uploads.into_iter().map(|(staged, _)| staged).chain(indices)
+        let staged = self.uploads.into_iter().map(|(staged, _)| staged).chain(indices);
+        staged.map(Used::Staging).chain(self.given.map(Used::Set))
     }
 
     /// Has the model, if it is still there, send all of it again, the copies of the frame with this index among it.
@@ -52,6 +62,7 @@ impl Model {
         Sent {
             uploads: Vec::new(),
             indices: None,
+            given: None,
             was_prepared: self.prepared,
             was_lattice_prepared: self.lattice.as_ref().is_some_and(|lattice| lattice.prepared),
             were_due: [self.positions.is_due(), self.edge_factors.as_ref().is_some_and(|factors| factors.is_due())],

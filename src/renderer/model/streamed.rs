@@ -66,6 +66,11 @@ impl Streamed {
         self.pending = Some(frame);
     }
 
+    /// Has the device keep what it has of its own, whatever was written before.
+    pub(crate) fn supersede(&mut self) {
+        (self.pending, self.sent) = (None, true);
+    }
+
     pub(crate) fn is_due(&self) -> bool {
         self.pending.is_some() || !self.sent
     }

@@ -28,6 +28,16 @@ pub enum Error {
     DisplacementInUse { id: DisplacementId, model: ModelId },
     #[error("model {}: {given} positions are given, but its control mesh has {needed} vertices", id.number)]
     PositionCount { id: ModelId, given: usize, needed: usize },
+    #[error("model {}: its positions are given by the host and by the device in one frame: give one of them", id.number)]
+    PositionsTwice { id: ModelId },
+    #[error("model {}: DevicePositions::buffer is null: give the buffer that your shader writes, or ask for one by device_positions", id.number)]
+    NoPositionBuffer { id: ModelId },
+    #[error("model {}: DevicePositions: the offset {offset} and the stride {stride} are in bytes, multiples of 4, the stride from 12 up", id.number)]
+    BadPositionLayout { id: ModelId, offset: u64, stride: u32 },
+    #[error("model {}: DevicePositions: the buffer has {size} bytes, but its positions end after {needed}", id.number)]
+    PositionBufferTooSmall { id: ModelId, size: u64, needed: u64 },
+    #[error("model {}: its mesh is refined before patches are made, by the host: set ModelOptions::refine_on_device when you add it", id.number)]
+    RefinedOnHost { id: ModelId },
     #[error("model {}: {} take {bytes} bytes, but a shader can see {max} at once on this device: {}", id.number, table.replace('_', " "), smaller(table))]
     TableTooLarge { id: ModelId, table: &'static str, bytes: u64, max: u64 },
     #[error("model {}: it was not yet prepared: record cmd_prepare after add_model and set_segments, and before cmd_draw", id.number)]

@@ -8,6 +8,7 @@ mod memory;
 mod model_options;
 #[expect(clippy::module_inception, reason = "the struct that the folder is named after")]
 mod options;
+mod positions;
 mod style;
 mod target;
 mod view;
@@ -19,6 +20,7 @@ pub use item::DrawItem;
 pub use memory::MemoryUsage;
 pub use model_options::ModelOptions;
 pub use options::Options;
+pub use positions::DevicePositions;
 pub use style::{Fragment, Geometry, Style};
 pub use target::{ColorEncoding, Pass, Target};
 pub use view::{MeasuredFrom, View};

@@ -37,6 +37,10 @@ pub struct ModelOptions {
     /// end caps are patches of the scheme ([`Scheme::has_caps`](crate::Scheme::has_caps)): there they and the faces around them are drawn
     /// by their leaves, which needs a queue that computes.
     pub refine: u32,
+    /// Let the device do the whole mesh's steps of refinement, which the host does otherwise each time that positions are set: in
+    /// single precision, as all that follows. Needs a queue that computes, and memory for the weights; no edits of vertices at finer levels. It is for
+    /// [positions of the device](crate::renderer::Renderer::set_device_positions), and costs nothing where no steps are needed.
+    pub refine_on_device: bool,
     /// Refine irregular faces where they have to be, and draw the limit surface itself but for end caps at this depth: see
     /// [`adaptive`](crate::adaptive). Still one patch a face, or a triangle an edge where faces are no quads. Needs a queue
     /// that computes.
@@ -61,10 +65,22 @@ impl From<&ModelOptions> for TableOptions {
             shared_normals,
             edge_factors,
             refine,
+            refine_on_device,
             adaptive,
             ..
         } = options;
         let displaced = options.displacement.is_some();
-        Self { scheme, fallback, construction, evaluation, shared_normals, displaced, edge_factors, refine, adaptive }
+        Self {
+            scheme,
+            fallback,
+            construction,
+            evaluation,
+            shared_normals,
+            displaced,
+            edge_factors,
+            refine,
+            refine_on_device,
+            adaptive,
+        }
     }
 }

@@ -1,6 +1,9 @@
 //! Compute pipelines of one layout, made when they are needed.
 
-use crate::gpu::{ComputePipelineDesc, DeviceContext, GpuError, Owned, Shader, Specialization, pipeline_layout};
+use crate::constants::GROUP_INVOCATIONS;
+use crate::gpu::{
+    ComputePipelineDesc, DeviceContext, GpuError, MAX_WORKGROUPS, Owned, Shader, Specialization, pipeline_layout,
+};
 use crate::renderer::shader::ShaderCode;
 use crate::renderer::shader::{ShaderId, ShaderKey};
 use ash::vk;
@@ -9,6 +12,13 @@ use rustc_hash::FxHashMap;
 use std::hash::Hash;
 use std::marker::PhantomData;
 use std::sync::Arc;
+
+/// Workgroups for so many invocations, in rows. GLSL twin: `glsl/lib/draw/invocation.glsl`.
+pub(crate) fn workgroups(invocations: u32) -> [u32; 2] {
+    let groups = invocations.div_ceil(GROUP_INVOCATIONS);
+    let rows = groups.div_ceil(MAX_WORKGROUPS).max(1);
+    [groups.div_ceil(rows), rows]
+}
 
 /// Compute pipelines by what they are for, with push constants of type `P`.
 pub(crate) struct ComputePipelines<K, P> {

@@ -6,7 +6,7 @@ mod recipe;
 mod requirements;
 mod vertex_input;
 
-pub(crate) use compute::ComputePipelines;
+pub(crate) use compute::{ComputePipelines, workgroups};
 pub(crate) use draw::DrawPipelines;
 pub(crate) use recipe::{MadeFor, Recipe, RecipeStage};
 pub use requirements::{Requirements, check, requirements};

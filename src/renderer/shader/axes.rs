@@ -18,6 +18,7 @@ named! {
         FramesComp = "compute/frames.comp",
         ControlPointsComp = "compute/control_points.comp",
         CullComp = "compute/cull.comp",
+        GatherComp = "compute/gather.comp",
         RefineComp = "compute/refine.comp",
         TessellationTese = "evaluate/tessellation.tese",
         LatticeComp = "evaluate/lattice.comp",
