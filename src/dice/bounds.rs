@@ -8,6 +8,7 @@ use super::sums::Sums;
 use crate::mesh::MeshError;
 use crate::topology::Topology;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Levels of refinement within the last cells around extraordinary vertices and sharp features. What is left after them counts
 /// with its whole size, about a thousandth of the cell's.
@@ -16,8 +17,22 @@ const LEVELS: u32 = 10;
 /// Facets whose bounds are made together, at most.
 pub(super) const PIECE: usize = 1 << 19;
 
-/// How often B-spline patches are split to know their normals better.
-const SPLITS: u32 = 3;
+/// How much work a bound is: what it says is right in any case, and less with more work.
+#[derive(Clone, Copy)]
+pub(super) struct Effort {
+    /// How often B-spline patches are split to know their normals better.
+    splits: u32,
+    /// As [`LEVELS`].
+    levels: u32,
+}
+
+impl Effort {
+    pub(super) const SMALL: Self = Self { splits: 0, levels: 3 };
+    pub(super) const FULL: Self = Self { splits: 3, levels: LEVELS };
+}
+
+/// Facets whose full bounds are made together.
+const TOGETHER: usize = 256;
 
 /// The quarters of a cell, and its corners.
 const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
@@ -140,18 +155,40 @@ impl<'f> Bounds<'f> {
     }
 
     /// The bound of a facet, by its index, that is halved so often.
-    pub(super) fn bound(&self, index: usize, depth: u32) -> f64 {
+    pub(super) fn bound(&self, index: usize, depth: u32, effort: Effort) -> f64 {
         match self.finer.node(self.facets[index]) {
-            Some(node) => self.of_part(Part::Node(node), depth),
-            None => self.faces.bound(index, depth),
+            Some(node) => self.of_part(Part::Node(node), depth, effort),
+            None => self.faces.bound(index, depth, effort),
         }
     }
 
-    fn of_part(&self, part: Part, depth: u32) -> f64 {
+    /// Whether a facet that is halved so often is as near as this.
+    pub(super) fn is_within(&self, distance: f64, index: usize, depth: u32) -> bool {
+        [Effort::SMALL, Effort::FULL].into_iter().any(|effort| self.bound(index, depth, effort) <= distance)
+    }
+
+    /// The greatest bound of all facets, each halved as often as `depth` says.
+    pub(super) fn greatest(&self, depth: impl Fn(usize) -> u32 + Sync) -> f64 {
+        let small = |index| (self.bound(index, depth(index), Effort::SMALL), index);
+        let mut facets: Vec<(f64, usize)> = (0..self.facets.len()).into_par_iter().map(small).collect();
+        facets.par_sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+        let mut greatest = 0.0f64;
+        // Of those whose bound is below the greatest of others with less work, too, no more is asked.
+        for some in facets.chunks(TOGETHER) {
+            if some[0].0 <= greatest {
+                break;
+            }
+            let full = |&(small, index): &(f64, usize)| self.bound(index, depth(index), Effort::FULL).min(small);
+            greatest = some.par_iter().map(full).reduce(|| greatest, f64::max);
+        }
+        greatest
+    }
+
+    fn of_part(&self, part: Part, depth: u32, effort: Effort) -> f64 {
         match part {
-            Part::Face { level, index } => self.levels[level as usize].bound(index as usize, depth),
+            Part::Face { level, index } => self.levels[level as usize].bound(index as usize, depth, effort),
             Part::Node(node) if depth > 0 => {
-                let of_quarter = |quarter| self.of_part(quarter, depth - 1);
+                let of_quarter = |quarter| self.of_part(quarter, depth - 1, effort);
                 self.finer.quarters(node).map(of_quarter).into_iter().fold(0.0, f64::max)
             }
             // One face for several of a finer level: both are among the control points of these.
@@ -181,32 +218,34 @@ impl<'f> Faces<'f> {
     }
 
     /// The bound of a face that is halved so often.
-    fn bound(&self, index: usize, depth: u32) -> f64 {
+    fn bound(&self, index: usize, depth: u32, effort: Effort) -> f64 {
         let kind = self.patches.facet(index).0;
         let points: Vec<Vector<f64>> = self.points(index).collect();
         if kind == PLAIN {
-            return bend(&std::array::from_fn(|i| points[i].into()), depth, SPLITS);
+            return bend(&std::array::from_fn(|i| points[i].into()), depth, effort.splits);
         }
-        self.of_cell(Cell { kind, points: &points }, depth)
+        self.of_cell(Cell { kind, points: &points }, depth, effort)
     }
 
-    fn of_cell(&self, cell: Cell, depth: u32) -> f64 {
+    fn of_cell(&self, cell: Cell, depth: u32, effort: Effort) -> f64 {
         match &self.patches.kinds[cell.kind as usize].shape {
-            Shape::Regular(rows) => bend(&std::array::from_fn(|i| rows.get(i, cell.points).into()), depth, SPLITS),
-            Shape::Irregular { corners: Some(rows), .. } if depth == 0 => self.of_last(cell, rows),
+            Shape::Regular(rows) => {
+                bend(&std::array::from_fn(|i| rows.get(i, cell.points).into()), depth, effort.splits)
+            }
+            Shape::Irregular { corners: Some(rows), .. } if depth == 0 => self.of_last(cell, rows, effort),
             _ => {
                 let mut most = 0.0f64;
-                self.for_each_quarter(cell, |quarter, _| most = most.max(self.of_cell(quarter, depth - 1)));
+                self.for_each_quarter(cell, |quarter, _| most = most.max(self.of_cell(quarter, depth - 1, effort)));
                 most
             }
         }
     }
 
     /// Of a cell that is one face, or cut into triangles.
-    fn of_last(&self, cell: Cell, rows: &Sums<f64>) -> f64 {
+    fn of_last(&self, cell: Cell, rows: &Sums<f64>, effort: Effort) -> f64 {
         let [a, b, c, d] = [0, 3, 6, 9].map(|i| DVec3::from(rows.get(i, cell.points)));
         let flat = Bilinear::new([a, b, c, d]);
-        let stray = self.stray(cell, &flat, [0.0, 0.0], 1.0, LEVELS);
+        let stray = self.stray(cell, &flat, ([0.0, 0.0], 1.0), effort, effort.levels);
         // Corners of triangles may be on the surface anywhere along the cell's edges: it counts how far these and what is between
         // them are from the bilinear surface, and a quarter of the twist, which is how far this is from triangles.
         let distance = 2.0 * stray.distance + flat.twist.length() / 4.0;
@@ -218,8 +257,8 @@ impl<'f> Faces<'f> {
         distance.min(height / flat.cosine(normals))
     }
 
-    /// How far the surface of a cell, which begins at `at`, is from a bilinear one.
-    fn stray(&self, cell: Cell, flat: &Bilinear, at: [f64; 2], size: f64, levels: u32) -> Stray {
+    /// How far the surface of a cell, by where it begins and its size, is from a bilinear one; `levels` are left.
+    fn stray(&self, cell: Cell, flat: &Bilinear, (at, size): ([f64; 2], f64), effort: Effort, levels: u32) -> Stray {
         let from = |point: Vector<f64>, u: f64, v: f64| {
             flat.measure(DVec3::from(point) - flat.at(at[0] + size * u, at[1] + size * v))
         };
@@ -227,14 +266,14 @@ impl<'f> Faces<'f> {
             Shape::Regular(rows) => {
                 let points = std::array::from_fn(|i| rows.get(i, cell.points).into());
                 // Cells become smaller towards the vertex, and are split less.
-                flat.stray(&points, at, size, (SPLITS + levels).saturating_sub(LEVELS - 1))
+                flat.stray(&points, at, size, (effort.splits + levels).saturating_sub(effort.levels - 1))
             }
             Shape::Irregular { refined: Some(_), .. } if levels > 0 => {
                 let mut most = Stray::default();
                 let half = size / 2.0;
                 self.for_each_quarter(cell, |quarter, [i, j]| {
                     let at = [at[0] + half * i, at[1] + half * j];
-                    most = most.with(self.stray(quarter, flat, at, half, levels - 1));
+                    most = most.with(self.stray(quarter, flat, (at, half), effort, levels - 1));
                 });
                 most
             }

@@ -48,7 +48,7 @@ pub(super) fn halvings(
             let mut depths = vec![0; mesh.face_count()];
             for piece in facets.chunks(PIECE) {
                 let bounds = Bounds::new(topology, finer, piece, deepest)?;
-                let least = |index| (0..deepest).find(|&n| bounds.bound(index, n) <= *distance).unwrap_or(deepest);
+                let least = |index| (0..deepest).find(|&n| bounds.is_within(*distance, index, n)).unwrap_or(deepest);
                 let of_facets: Vec<u32> = (0..piece.len()).into_par_iter().map(least).collect();
                 piece.iter().zip(of_facets).for_each(|(&facet, depth)| depths[facet as usize] = depth);
             }

@@ -151,8 +151,7 @@ impl<T: Real> Plan<T> {
         let of_piece = |piece: &[Facet]| -> Result<f64, DiceError> {
             let facets: Vec<u32> = piece.iter().map(|facet| facet.facet).collect();
             let bounds = Bounds::new(&self.refined, &self.finer, &facets, deepest)?;
-            let of_facet = |(index, facet): (usize, &Facet)| bounds.bound(index, facet.depth);
-            Ok(piece.par_iter().enumerate().map(of_facet).reduce(|| 0.0, f64::max))
+            Ok(bounds.greatest(|index| piece[index].depth))
         };
         self.facets().chunks(bounds::PIECE).map(of_piece).try_fold(0.0, |most, bound| Ok(f64::max(most, bound?)))
     }
