@@ -5,7 +5,7 @@
 //! * To draw: a [`ControlMesh`] from a file ([`read()`]), from arrays ([`MeshData`]) or built in ([`shape`]); a [`Renderer`] beside your
 //!   own, to which it becomes a model ([`Renderer::add_model`], [`ModelOptions`]); then a frame after the other: see [`renderer`].
 //! * The limit surface as a mesh, without a device: [`dice`].
-//! * Buffers for a renderer of your own: [`table`]. Control points and samples on the CPU: [`Scheme`],
+//! * Tables for shaders of your own: [`table`]. Control points and samples on the CPU: [`Scheme`],
 //!   [`table::CpuSurface`].
 //!
 //! # The way of a mesh to the picture
@@ -27,21 +27,22 @@
 //!    The code that makes them is written once, over values that can be summed: points give control points, rows of
 //!    weights give stencils.
 //! 5. [`table`]: connectivity and weights, as plain arrays for the GPU. They do not depend on positions.
-//! 6. [`renderer`]: the arrays become buffers of a model. Every frame the shaders make the control points anew
-//!    from this frame's vertices (vertex and control stage) and evaluate them (evaluation stage), so vertices may
-//!    move freely.
+//! 6. [`renderer`]: the arrays become buffers of a model. The shaders make the control points from this frame's vertices, in each draw
+//!    (vertex and control stage) or once when vertices moved, and evaluate them (evaluation stage), so vertices may move freely.
 //!
 //! Each module knows only those below it:
 //!
 //! | floor | module | holds | knows nothing of |
 //! |---|---|---|---|
-//! | 10 | `bench` (features `measure` and `headless`) | how long each way to draw takes | files, printing |
-//! | 9 | `measure` (feature `measure`) | how far schemes, and triangles on the screen, are from the limit surface; whether patches meet; statistics | files, printing |
-//! | 8 | [`triangles`](mod@triangles) (feature `headless`) | triangles of the CPU, drawn as the renderer shades | files, windows |
-//! | 8 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
-//! | 7 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
-//! | 6 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
-//! | 5 | [`table`] | what the GPU reads | Vulkan |
+//! | 11 | `bench` (features `measure` and `headless`) | how long each way to draw takes | files, printing |
+//! | 10 | `measure` (feature `measure`) | how far schemes, and triangles on the screen, are from the limit surface; whether patches meet; statistics | files, printing |
+//! | 9 | [`triangles`](mod@triangles) (feature `headless`) | triangles of the CPU, drawn as the renderer shades | files, windows |
+//! | 9 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
+//! | 8 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
+//! | 7 | [`tessellate`] | tessellation factors, edges and culling, as the shaders have them | Vulkan, models |
+//! | 7 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
+//! | 6 | [`table`] | what the GPU reads | Vulkan |
+//! | 5 | [`adaptive`] | feature-adaptive subdivision: which cells are refined, and the sums that make their vertices | Vulkan, positions |
 //! | 5 | [`dice`] | the limit surface as a mesh, on the CPU | Vulkan, files |
 //! | 4 | [`limit`] | Catmull-Clark refinement and its limit surface | patch schemes |
 //! | 4 | [`patch`] | construction and evaluation of patches, generic over the value | Vulkan |

@@ -122,7 +122,7 @@ impl fmt::Display for Notice {
             ),
             Self::SemiSharp { sharp, smooth } => write!(
                 f,
-                "{} creases and corners have finite sharpness: {sharp} (from {SHARP_FROM} up) are drawn infinitely sharp, {smooth} smooth; refine the mesh first to come closer",
+                "{} creases and corners have finite sharpness: {sharp} (from {SHARP_FROM} up) are drawn infinitely sharp, {smooth} smooth; adaptive surfaces have it as it is",
                 sharp + smooth
             ),
         }
