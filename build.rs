@@ -151,7 +151,7 @@ impl ShaderKey {{
     ))
 }
 
-/// `evaluate_lattice_vert` as the name of an enum's variant.
+/// `evaluate_uniform_grid_vert` as the name of an enum's variant.
 fn variant_name(name: &str) -> String {
     let capital = |word: &str| word[..1].to_ascii_uppercase() + &word[1..];
     name.split('_').filter(|word| !word.is_empty()).map(capital).collect()

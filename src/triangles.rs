@@ -195,7 +195,7 @@ fn pipeline(
     target: &OffscreenDesc,
     style: &Style,
 ) -> Result<Owned<vk::Pipeline>, GpuError> {
-    let mut stages = vec![Shader::vertex(ShaderId::EvaluateLatticeVert.code())];
+    let mut stages = vec![Shader::vertex(ShaderId::EvaluateUniformGridVert.code())];
     let dynamic_states: &[_] =
         if style.rasterizer_discard { &[vk::DynamicState::RASTERIZER_DISCARD_ENABLE] } else { &[] };
     if !style.rasterizer_discard {

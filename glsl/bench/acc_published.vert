@@ -15,7 +15,7 @@ float cosines[CORNERS];
 #include "scheme_evaluate.glsl"
 // A kind of patch of its own.
 #define KINDS_GLSL
-#include "evaluate/lattice.glsl"
+#include "evaluate/uniform_grid.glsl"
 // And the cosine.
 #define KEPT (3 * OWNED + 1)
 // Of ours, which are eight vectors a corner.
@@ -35,8 +35,8 @@ void main() {
         }
         cosines[k] = kept_number(texels, 3 * OWNED);
     }
-    vec3 at = lattice_parameter(uint(gl_VertexIndex), item.segments, first_corner);
-    Sample surface = lattice_sample(at);
+    vec3 at = uniform_grid_parameter(uint(gl_VertexIndex), item.segments, first_corner);
+    Sample surface = uniform_grid_sample(at);
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);
     gl_Position = to_clip(world_position);

@@ -24,7 +24,7 @@ layout(location = 0) in uint in_patch_number[];
 #ifdef SHARED
 float level_of_map(uint corner, FramedRing own) {
 #ifdef DISPLACED
-    return corner_lod(corner, corner_speaker(corner, own));
+    return corner_lod(corner, corner_owner(corner, own));
 #else
     return 0.0;
 #endif
@@ -36,12 +36,12 @@ void sum_corner(uint corner) {
     stencil_points(draw.first_patch + in_patch_number[0], uint(gl_InvocationID), CORNERS, own);
 #ifdef SHARED
     uvec2 place = patch_corner(corner);
-    FramedRing ring = framed_ring(place.x), speaker = ring;
+    FramedRing ring = framed_ring(place.x), owner = ring;
 #ifdef DISPLACED
-    speaker = corner_speaker(corner, ring);
+    owner = corner_owner(corner, ring);
 #endif
     SharedEdge plus = shared_edge(ring, place.y), minus = shared_edge(ring, edge_after(ring.ring, place.y));
-    write_shared(corner, share_corner(corner, ring, speaker, plus, minus), corner_sharp(corner), level_of_map(corner, ring));
+    write_shared(corner, share_corner(corner, ring, owner, plus, minus), corner_sharp(corner), level_of_map(corner, ring));
 #endif
 }
 

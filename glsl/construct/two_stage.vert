@@ -43,7 +43,7 @@ void main() {
     }
     numbers[RING_SHARP] = corner_sharp(number);
 #ifdef DISPLACED
-    numbers[RING_LOD] = corner_lod(number, corner.speaker);
+    numbers[RING_LOD] = corner_lod(number, corner.owner);
 #endif
 #endif
     for (int i = 0; i < RING_ROWS; ++i) {

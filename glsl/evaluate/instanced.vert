@@ -1,9 +1,9 @@
-// Instanced tessellation (the Direct3D 10 path of Loop et al. 2009): one lattice for all patches, an instance for each. A
+// Instanced tessellation (the Direct3D 10 path of Loop et al. 2009): one uniform grid for all patches, an instance for each. A
 // vertex of it is evaluated from the control points of the instance's patch.
 // With ATTRIBUTES the control points come as vertex attributes that every instance has anew.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "evaluate/lattice.glsl"
+#include "evaluate/uniform_grid.glsl"
 #include "construct/read_cached.glsl"
 #include "draw/draw.glsl"
 #include "draw/visible.glsl"
@@ -27,8 +27,8 @@ void main() {
     uint first_corner = draw.first_corner + patch_number * CORNERS;
     uint segments = item.segments;
     read_cached(draw.first_patch + patch_number, first_corner, segments);
-    vec3 at = lattice_parameter(uint(gl_VertexIndex), segments, first_corner);
-    LatticeSample surface = lattice_sample(at);
+    vec3 at = uniform_grid_parameter(uint(gl_VertexIndex), segments, first_corner);
+    UniformGridSample surface = uniform_grid_sample(at);
 #ifdef DISPLACED
     surface.position = displace(surface.position, surface.direction, surface.texcoord, surface.lod);
 #endif

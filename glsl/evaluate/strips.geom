@@ -1,10 +1,10 @@
-// The geometry shader evaluates: a point is a tile of a patch's lattice, which comes out as strips of triangles, as the indices
-// of src/table/lattice.rs have them. In one pass it makes the control points, too, with the weights of the stencil table; with
+// The geometry shader evaluates: a point is a tile of a patch's uniform grid, which comes out as strips of triangles, as the indices
+// of src/table/uniform_grid.rs have them. In one pass it makes the control points, too, with the weights of the stencil table; with
 // the cached construction they are there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "constants.glsl"
-#include "evaluate/lattice.glsl"
+#include "evaluate/uniform_grid.glsl"
 #include "draw/draw.glsl"
 #include "draw/construction.glsl"
 #include "construct/read_cached.glsl"
@@ -17,7 +17,7 @@
 #endif
 
 // Every Vulkan device lets an invocation write 1024 components: 16 a vertex, however they are counted. Rust twins:
-// src/table/lattice.rs.
+// src/table/uniform_grid.rs.
 
 layout(points) in;
 layout(triangle_strip, max_vertices = TILE_VERTICES) out;
@@ -57,8 +57,8 @@ uint segments;
 
 void emit(uint row, uint place) {
     uint first_corner = draw.first_corner + patch_number * CORNERS;
-    vec3 at = lattice_parameter(row, place, segments, first_corner);
-    LatticeSample surface = lattice_sample(at);
+    vec3 at = uniform_grid_parameter(row, place, segments, first_corner);
+    UniformGridSample surface = uniform_grid_sample(at);
 #ifdef DISPLACED
     surface.position = displace(surface.position, surface.direction, surface.texcoord, surface.lod);
 #endif

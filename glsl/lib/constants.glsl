@@ -10,7 +10,7 @@
 #define ID_DRAW_FLAGS 4u
 #define ID_MAY_BE_FITTED 5u
 #define ID_MAY_HAVE_PENTAGONS 6u
-#define ID_HAS_SPEAKERS 7u
+#define ID_HAS_FOREIGN_OWNERS 7u
 #define ID_HAS_EDGE_FACTORS 8u
 #define ID_READS_TEXELS 9u
 #define ID_LISTED 10u

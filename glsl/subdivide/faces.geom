@@ -2,8 +2,8 @@
 // Szécsi, Premecz, Csonka, Catmull-Clark subdivision for geometry shaders (2007): faces come in as points, and are refined
 // level by level with a row of vertices around them.
 //
-// The face is a lattice with corner 0 at (0, 0), corner 1 at (SIDE, 0), corner 2 at (SIDE, SIDE). The row around it is there
-// beside each edge; beyond the corners it is only where the lattice is regular, and not used: what the rules make of a corner
+// The face is a grid with corner 0 at (0, 0), corner 1 at (SIDE, 0), corner 2 at (SIDE, SIDE). The row around it is there
+// beside each edge; beyond the corners it is only where the grid is regular, and not used: what the rules make of a corner
 // and of the vertices next to it along edges comes from the fan around the corner.
 //
 #version 460
@@ -26,8 +26,8 @@
 #include "subdivide/subdivision.glsl"
 
 const int SIDE = 1 << LEVEL;
-// What is drawn of the lattice. Every device has room for 1024 numbers; at level 3 four invocations draw the quarter at corner 0
-// of a lattice that each turns to another corner. (GLSL lets no constants of its own in here.)
+// What is drawn of the grid. Every device has room for 1024 numbers; at level 3 four invocations draw the quarter at corner 0
+// of a grid that each turns to another corner. (GLSL lets no constants of its own in here.)
 #if LEVEL == 0
 #define DRAWN 1
 layout(points) in;
@@ -67,7 +67,7 @@ const int STRIDE = SIDE + 3;
 vec3 coarse[STRIDE * STRIDE];
 vec3 grid[STRIDE * STRIDE];
 
-// The corner of the face that is corner k of the lattice.
+// The corner of the face that is corner k of the grid.
 uint turned(int k) {
     return uint(k + gl_InvocationID) & 3u;
 }
@@ -76,7 +76,7 @@ int at(ivec2 place) {
     return (place.y + 1) * STRIDE + place.x + 1;
 }
 
-// Corner k of a lattice with sides of one, and the directions of its edges to the next corner and to the one before.
+// Corner k of a grid with sides of one, and the directions of its edges to the next corner and to the one before.
 const ivec2 CORNER[4] = { ivec2(0, 0), ivec2(1, 0), ivec2(1, 1), ivec2(0, 1) };
 const ivec2 PLUS[4] = { ivec2(1, 0), ivec2(0, 1), ivec2(-1, 0), ivec2(0, -1) };
 const ivec2 MINUS[4] = { ivec2(0, 1), ivec2(-1, 0), ivec2(0, -1), ivec2(1, 0) };

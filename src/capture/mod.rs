@@ -16,7 +16,7 @@ use crate::renderer::{
 };
 #[cfg(doc)]
 use crate::renderer::{Options, Renderer};
-use crate::table::{MAX_SEGMENTS, lattice_vertices};
+use crate::table::{MAX_SEGMENTS, uniform_grid_vertices};
 use crate::topology::PatchKind;
 use buffer::{CONTROL_POINT_WORDS, EDGES_ONLY, FACTOR_WORDS, Head, RECORD_BYTES};
 use bytemuck::{Pod, Zeroable};
@@ -258,7 +258,7 @@ impl<'h> Captured<'h> {
         let bytes = |kind: PatchKind| {
             let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
             let vertices = match which {
-                Which::All if !tessellated => lattice_vertices(kind, segments),
+                Which::All if !tessellated => uniform_grid_vertices(kind, segments),
                 Which::All => tessellated_vertices(domain, self.options.spacing, most, max).into(),
                 Which::OnEdges => 4 * (u64::from(segments) + 1),
             };

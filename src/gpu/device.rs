@@ -35,7 +35,7 @@ pub struct DeviceProperties {
     pub driver_info: String,
     /// Patches that a draw instance may hold.
     pub patch_batch: PatchBatch,
-    /// Indices of triangles that the driver takes at a time, making vertices anew after: lattices with more are drawn as strips,
+    /// Indices of triangles that the driver takes at a time, making vertices anew after: uniform grids with more are drawn as strips,
     /// which have a third. Mesa's draw module (lavapipe) takes 1023, looking each of them up, too; of others no such limit is known.
     pub indices_at_once: u32,
     /// Sample counts that colour and depth attachments both have.

@@ -12,7 +12,6 @@ mod cpu;
 mod edges;
 mod error;
 mod hulls;
-mod lattice;
 mod leaves;
 mod model;
 mod options;
@@ -26,6 +25,7 @@ mod sharing;
 mod stencils;
 mod steps;
 mod subdivision;
+mod uniform_grid;
 mod wedges;
 
 pub(crate) use bytes::bytes;
@@ -35,7 +35,6 @@ pub(crate) use cpu::in_wedge;
 pub use cpu::{CpuSurface, grid_parameters};
 pub use edges::{EdgeRecord, EdgeTable};
 pub use error::TableError;
-pub(crate) use lattice::{LatticeIndices, MAX_SEGMENTS, TILE_VERTICES, lattice_tiles, lattice_vertices};
 pub use leaves::{LeafTable, Refinement, RefinementStep};
 pub(crate) use model::TEXEL_BYTES;
 pub use model::{ModelTables, TableBytes};
@@ -50,3 +49,6 @@ pub use shared::{SharedTable, SharedTexcoord};
 pub(crate) use sharing::Sharing;
 pub use stencils::StencilTable;
 pub use subdivision::SubdivisionTable;
+pub(crate) use uniform_grid::{
+    MAX_SEGMENTS, TILE_VERTICES, UniformGridIndices, uniform_grid_tiles, uniform_grid_vertices,
+};

@@ -107,7 +107,7 @@ impl ModelTables {
     }
 
     /// Whether another ring than its own owns what some corner shares.
-    pub(crate) fn has_speakers(&self) -> bool {
+    pub(crate) fn has_foreign_owners(&self) -> bool {
         let (Some(shared), Some(rings)) = (&self.shared, &self.rings) else { return false };
         let own = |(&[ring, plus, _, minus, _], &[own, _]): (&[u32; SHARED_WORDS], &[u32; 2])| {
             [ring, plus, minus] == [own; 3]

@@ -235,7 +235,7 @@ fn samples_are_the_same_on_both_sides() {
 }
 
 #[test]
-fn corners_of_the_lattice_are_corners_of_the_face() {
+fn corners_of_the_uniform_grid_are_corners_of_the_face() {
     // A flat unit square with sharp corners is its own limit.
     let square = folder("square").join("square.obj");
     fs::write(&square, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n").unwrap();

@@ -60,9 +60,9 @@ fn pictures_are_displaced_and_cut_as_asked() {
     assert_eq!(near["statistics"]["factors_clamped"], true, "{near}");
     assert_ne!(std::fs::read(folder.join("plain.png")).unwrap(), std::fs::read(folder.join("adaptive.png")).unwrap());
     // Left out before the draws, for the same picture.
-    let lattice = |cull: &str, name: &str| json(&format!("{common} --evaluation instanced {cull} {}", to(name)));
-    assert!(lattice("", "all.png")["statistics"].is_null());
-    let culled = lattice("--cull back,frustum", "culled.png");
+    let uniform_grid = |cull: &str, name: &str| json(&format!("{common} --evaluation instanced {cull} {}", to(name)));
+    assert!(uniform_grid("", "all.png")["statistics"].is_null());
+    let culled = uniform_grid("--cull back,frustum", "culled.png");
     assert!(culled["statistics"]["patches_culled"].as_u64() > Some(0), "{culled}");
     assert_eq!(std::fs::read(folder.join("all.png")).unwrap(), std::fs::read(folder.join("culled.png")).unwrap());
 

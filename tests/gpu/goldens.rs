@@ -60,8 +60,8 @@ pub struct Picture {
     /// By the built-in height map, this part of the diagonal.
     displacement: Option<f32>,
     evaluation: Evaluation,
-    /// Of patches on lattices, which the tessellator draws otherwise.
-    of_lattice: bool,
+    /// Of patches on uniform grids, which the tessellator draws otherwise.
+    of_uniform_grid: bool,
     /// Of an adaptive surface.
     adaptive: Option<AdaptiveOptions>,
     /// Seen from behind: what is left out when it is seen from the front.
@@ -83,7 +83,7 @@ impl Picture {
             spacing: Spacing::Equal,
             displacement: None,
             evaluation: Evaluation::Tessellation,
-            of_lattice: false,
+            of_uniform_grid: false,
             adaptive: None,
             culled: false,
         }
@@ -211,17 +211,17 @@ pub fn pictures() -> Vec<Picture> {
         Picture::of_scheme(Scheme::CPatch, "creature", Some(0.2)),
         Picture::of_scheme(Scheme::Pm, "pentagons", None),
         Picture { layers: wire(), name: "wireframe-pentagons".into(), scheme: Scheme::Pm, ..Picture::lit("pentagons") },
-        Picture { of_lattice: true, name: "lattice-fan".into(), layers: wire(), ..Picture::lit("fan") },
+        Picture { of_uniform_grid: true, name: "uniform-grid-fan".into(), layers: wire(), ..Picture::lit("fan") },
         Picture {
-            of_lattice: true,
-            name: "lattice-polygons".into(),
+            of_uniform_grid: true,
+            name: "uniform-grid-polygons".into(),
             layers: wire(),
             factor: Factor::Uniform(2.0),
             ..Picture::lit("polygons")
         },
         Picture {
-            of_lattice: true,
-            name: "lattice-pentagons".into(),
+            of_uniform_grid: true,
+            name: "uniform-grid-pentagons".into(),
             layers: wire(),
             scheme: Scheme::Pm,
             ..Picture::lit("pentagons")
@@ -304,7 +304,7 @@ fn pictures_are_as_they_were() {
     let headless = common::headless();
     if let Some(goldens) = golden::of(&headless) {
         let (mut studio, mut wrong) = (Studio::new(&headless), Vec::new());
-        for picture in pictures().into_iter().filter(|picture| !picture.of_lattice) {
+        for picture in pictures().into_iter().filter(|picture| !picture.of_uniform_grid) {
             for construction in Construction::ALL {
                 let pixels = studio.draw(&picture, construction);
                 let writes = construction == Construction::TwoStage;
@@ -321,18 +321,18 @@ fn pictures_are_as_they_were() {
     headless.finish_silent();
 }
 
-/// Every evaluation on a lattice with every construction that it goes with.
-fn lattice_ways() -> impl Iterator<Item = (Evaluation, Construction)> {
-    let on_lattices = Evaluation::ALL
+/// Every evaluation on a uniform grid with every construction that it goes with.
+fn uniform_grid_ways() -> impl Iterator<Item = (Evaluation, Construction)> {
+    let on_uniform_grids = Evaluation::ALL
         .into_iter()
         .filter(|&evaluation| !matches!(evaluation, Evaluation::Tessellation | Evaluation::Subdivision));
-    on_lattices.flat_map(|evaluation| evaluation.constructions().iter().map(move |&c| (evaluation, c)))
+    on_uniform_grids.flat_map(|evaluation| evaluation.constructions().iter().map(move |&c| (evaluation, c)))
 }
 
-/// Within triangles the lattice has vertices elsewhere than the tessellator: these pictures are left out, but for those that
-/// are of lattices anyway.
+/// Within triangles the uniform grid has vertices elsewhere than the tessellator: these pictures are left out, but for those that
+/// are of uniform grids anyway.
 #[test]
-fn pictures_evaluated_on_lattices_are_the_same() {
+fn pictures_evaluated_on_uniform_grids_are_the_same() {
     let headless = common::headless();
     if let Some(goldens) = golden::of(&headless) {
         let (mut studio, mut wrong) = (Studio::new(&headless), Vec::new());
@@ -343,13 +343,13 @@ fn pictures_evaluated_on_lattices_are_the_same() {
                 && picture.evaluation == Evaluation::Tessellation
                 && picture.adaptive.is_none_or(|adaptive| adaptive.drawn_by == DrawnBy::Faces)
                 && !picture.culled;
-            if !fits || !(picture.of_lattice || quads_only(picture.shape)) {
+            if !fits || !(picture.of_uniform_grid || quads_only(picture.shape)) {
                 continue;
             }
-            for (evaluation, construction) in lattice_ways() {
+            for (evaluation, construction) in uniform_grid_ways() {
                 let pixels = studio.draw(&Picture { evaluation, ..picture.clone() }, construction);
                 let variant = format!("{}-{}", evaluation.name(), construction.name());
-                let writes = picture.of_lattice && evaluation == Evaluation::Compute;
+                let writes = picture.of_uniform_grid && evaluation == Evaluation::Compute;
                 wrong.extend(goldens.check(&picture.name, &variant, [SIDE; 2], pixels, writes).err());
             }
             compared += 1;
@@ -371,7 +371,7 @@ fn goldens_of_schemes_fail_with_other_schemes() {
     let headless = common::headless();
     if golden::of(&headless).is_some() {
         let mut studio = Studio::new(&headless);
-        for picture in pictures().into_iter().filter(|p| p.scheme != Scheme::Gregory && !p.of_lattice) {
+        for picture in pictures().into_iter().filter(|p| p.scheme != Scheme::Gregory && !p.of_uniform_grid) {
             let golden = golden::load(&golden::folder().join(&picture.name).with_extension("png"));
             let others: &[_] = match (picture.shape, picture.scheme) {
                 ("creature-mixed" | "pentagons", _) => &[Scheme::Gregory],

@@ -237,8 +237,8 @@ fn every_evaluation_draws_the_same_leaves() {
         let mesh = shape(name).expect("built in");
         let expected = vertices(&headless, &mesh, &adaptive(3, Construction::TwoStage));
         assert!(expected.len() > 500, "{name}");
-        let lattices = [Evaluation::Instanced, Evaluation::Geometry, Evaluation::GeometryTwoPass];
-        for evaluation in [Evaluation::Tessellation].into_iter().chain(lattices) {
+        let uniform_grids = [Evaluation::Instanced, Evaluation::Geometry, Evaluation::GeometryTwoPass];
+        for evaluation in [Evaluation::Tessellation].into_iter().chain(uniform_grids) {
             for &construction in evaluation.constructions() {
                 let options = ModelOptions { evaluation, ..adaptive(3, construction) };
                 let vertices = vertices(&headless, &mesh, &options);

@@ -177,7 +177,7 @@ fn adaptive_surfaces_are_watertight() {
 
 /// Without the tessellation stages, too: with factors of edges and with one for all, displaced or not.
 #[test]
-fn lattices_are_watertight() {
+fn uniform_grids_are_watertight() {
     let headless = common::headless();
     let texture = scales(&headless);
     let (mut samples, construction) = (0, Construction::Cached);

@@ -25,9 +25,9 @@ fn options() -> ModelOptions {
     ModelOptions { evaluation: Evaluation::Subdivision, ..ModelOptions::default() }
 }
 
-/// The vertices of a face that was refined, by their place in a lattice, each as a corner of the refined mesh: child `k` of a
+/// The vertices of a face that was refined, by their place in a uniform grid, each as a corner of the refined mesh: child `k` of a
 /// face is around its corner `k`.
-fn lattice(face: u32, levels: u32, origin: IVec2, [x, y]: [IVec2; 2], found: &mut HashMap<IVec2, u32>) {
+fn uniform_grid(face: u32, levels: u32, origin: IVec2, [x, y]: [IVec2; 2], found: &mut HashMap<IVec2, u32>) {
     let side = 1 << levels;
     for k in 0..4 {
         let (at, plus) = (CORNERS[k], PLUS[k]);
@@ -35,7 +35,7 @@ fn lattice(face: u32, levels: u32, origin: IVec2, [x, y]: [IVec2; 2], found: &mu
         let origin = origin + side * turned(at);
         match levels {
             0 => _ = found.entry(origin).or_insert(4 * face + k as u32),
-            _ => lattice(4 * face + k as u32, levels - 1, origin, [turned(plus), turned(plus.perp())], found),
+            _ => uniform_grid(4 * face + k as u32, levels - 1, origin, [turned(plus), turned(plus.perp())], found),
         }
     }
 }
@@ -76,7 +76,7 @@ fn check(headless: &Headless, name: &str, mesh: &ControlMesh, faces: u32) -> f64
         let grids = captured.grid((1 << level) + 1).expect("a capture");
         for (patch, grid) in plan.patches().iter().zip(&grids) {
             let mut corners = HashMap::new();
-            lattice(patch.face, level, IVec2::ZERO, [IVec2::X, IVec2::Y], &mut corners);
+            uniform_grid(patch.face, level, IVec2::ZERO, [IVec2::X, IVec2::Y], &mut corners);
             assert_eq!(corners.len(), grid.len());
             for (at, corner) in corners {
                 let vertex = &grid[(at.y * ((1 << level) + 1) + at.x) as usize];

@@ -412,12 +412,12 @@ fn wrong_use_is_told() {
 
     // What changed between.
     let options = ModelOptions { edge_factors: true, ..cached(Scheme::Gregory, Evaluation::Instanced) };
-    let lattice = renderer.add_model(&mesh, &options).expect("a model");
-    renderer.set_segments(lattice, 8).expect("segments");
+    let uniform_grid = renderer.add_model(&mesh, &options).expect("a model");
+    renderer.set_segments(uniform_grid, 8).expect("segments");
     let frame = stage.frame(&mut renderer);
-    let of_lattice = DrawItem { cull: BACK, ..DrawItem::new(lattice, Factor::Segments) };
-    let visible = cull(&stage, &mut renderer, frame, &view, &[item, of_lattice]);
-    renderer.set_segments(lattice, 2).expect("segments");
+    let of_uniform_grid = DrawItem { cull: BACK, ..DrawItem::new(uniform_grid, Factor::Segments) };
+    let visible = cull(&stage, &mut renderer, frame, &view, &[item, of_uniform_grid]);
+    renderer.set_segments(uniform_grid, 2).expect("segments");
     stage.prepare(&mut renderer, frame);
     let error = draw(&stage, &mut renderer, frame, &visible);
     assert!(matches!(error, Err(Error::OtherSegments { segments: 2, .. })), "{error:?}");

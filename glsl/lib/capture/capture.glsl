@@ -33,7 +33,7 @@ void capture_point(uint patch_index, uint number, vec3 x) {
     }
 }
 
-// The factors that its edges ask for, in order from the first corner's plus edge; its inner factors; whether it is left out.
+// The factors that its edges ask for, in order from the first corner's plus edge; its inner factors; whether it is culled.
 void capture_factors(uint patch_index, vec4 asked, vec2 inner, bool culled) {
     uint slot = patch_index - capture_first_patch;
     if (slot < capture_patches) {

@@ -21,7 +21,7 @@ struct Corner {
 #ifdef SHARED
     vec3 with[SHARED_VECTORS];
 #ifdef DISPLACED
-    FramedRing speaker;
+    FramedRing owner;
 #endif
 #endif
 };
@@ -55,11 +55,11 @@ Corner corner_of_patch(uint number) {
     vec3 e_after = edge_vector(ring, edge_after(ring, minus_edge), centre, faces.after, a, b);
     SharedEdge plus = SharedEdge(across(ring, place.y, e_before, corner.plus, corner.minus), r[0]);
     SharedEdge minus = SharedEdge(across(ring, minus_edge, corner.plus, corner.minus, e_after), r[1]);
-    FramedRing speaker = own;
+    FramedRing owner = own;
 #ifdef DISPLACED
-    corner.speaker = speaker = corner_speaker(number, own);
+    corner.owner = owner = corner_owner(number, own);
 #endif
-    corner.with = share_corner(number, own, speaker, plus, minus);
+    corner.with = share_corner(number, own, owner, plus, minus);
 #endif
     return corner;
 }

@@ -1,8 +1,8 @@
-// What the cached construction keeps of a patch, for shaders that evaluate a lattice.
+// What the cached construction keeps of a patch, for shaders that evaluate a uniform grid.
 #ifndef READ_CACHED_GLSL
 #define READ_CACHED_GLSL
 
-#include "evaluate/lattice_sample.glsl"
+#include "evaluate/uniform_grid_sample.glsl"
 #include "construct/cached.glsl"
 #ifdef DISPLACED
 #include "displace/map_lod.glsl"

@@ -7,9 +7,9 @@
 #include "displace/map_lod.glsl"
 #include "edges/shared_texcoords.glsl"
 
-// At which an edge at the corner has as many texels as segments; `speaker` is the ring that speaks for the corner.
-float corner_lod(uint corner, FramedRing speaker) {
-    return map_lod(shared_texcoord_of(corner).scale.x, vertex_factor(speaker.p, speaker.a, speaker.b));
+// At which an edge at the corner has as many texels as segments; `owner` is the ring that owns the corner.
+float corner_lod(uint corner, FramedRing owner) {
+    return map_lod(shared_texcoord_of(corner).scale.x, vertex_factor(owner.p, owner.a, owner.b));
 }
 
 #endif

@@ -3,7 +3,7 @@
 // The evaluation shaders call `displace` with what all patches at a point share, so whatever it makes of these alone is
 // without cracks. To have your own, write a file `own_displace.glsl` with a function like the one below. Then compile, of
 // `ShaderId::ALL` in the library, those that you draw with: of the source `glsl/evaluate/tessellation.tese` (or `instanced.vert`,
-// `lattice.vert` or `strips.geom` without the tessellation stages) those whose arguments have `-DDISPLACED`, such as
+// `uniform_grid.vert` or `strips.geom` without the tessellation stages) those whose arguments have `-DDISPLACED`, such as
 //
 //     glslangValidator -V --target-env vulkan1.2 -I. ARGUMENTS -DOWN_DISPLACE SOURCE -o shader.spv
 //

@@ -45,8 +45,8 @@ layout(push_constant, std430) uniform Draw {
     uint flags;
 #ifdef MAKES_LISTS
     uint count;        // of the patches
-    uint vertices;     // of a patch in a draw: the points of its corners, or the indices of a lattice
-    uint first_index;  // of a lattice
+    uint vertices;     // of a patch in a draw: the points of its corners, or the indices of a uniform grid
+    uint first_index;  // of a uniform grid
     uint copies;       // the word of the list where they start
 #endif
 } draw;

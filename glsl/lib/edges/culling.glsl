@@ -154,7 +154,7 @@ bool below_zero(mat3x4 q) {
 }
 
 // Whether all triangles of the patch face away from the eye, whose legs are at most `step` long in u and v: are seen clockwise, or
-// counter-clockwise if those are to be left out.
+// counter-clockwise if those are to be culled.
 //
 // The normal of a bicubic patch is a Bezier patch of degree (5, 5); its coefficients are sums of cross products of the
 // differences of control points along u and along v, and if all of them face away, so does the patch. (The convex hull of
@@ -179,7 +179,7 @@ bool faces_away(float step) {
     float away = length(to_eye);
     vec3 z = to_eye / away;
     vec3 x = unit(abs(z.x) < 0.6 ? vec3(0.0, z.z, -z.y) : vec3(-z.z, 0.0, z.x));
-    // Where it is the others that are left out, cross products are seen in a mirror.
+    // Where it is the others that are culled, cross products are seen in a mirror.
     vec3 y = (draw.flags & COUNTER_CLOCKWISE_FLAG) != 0u ? cross(x, z) : cross(z, x);
     // Columns are what the axes are in object space; the rows of the transform are its matrix transposed.
     mat3 axes = mat3(item.transform[0].xyz, item.transform[1].xyz, item.transform[2].xyz) * mat3(x, y, z);
@@ -236,7 +236,7 @@ bool faces_away(float step) {
 }
 #endif
 
-// Whether the patch can be left out, whose triangles are `step` long in its parameters at most.
+// Whether the patch is culled, whose triangles are `step` long in its parameters at most.
 bool is_culled(float step) {
     uint beyond = outside[0] & outside[1] & outside[2];
     vec4 box = vec4(min(min(pixel_box[0].xy, pixel_box[1].xy), pixel_box[2].xy),

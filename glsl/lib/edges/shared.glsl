@@ -8,7 +8,7 @@
 #include "edges/shared_bits.glsl"
 
 // Whether another ring than its own owns what a corner shares, as at creases.
-layout(constant_id = ID_HAS_SPEAKERS) const bool HAS_SPEAKERS = true;
+layout(constant_id = ID_HAS_FOREIGN_OWNERS) const bool HAS_FOREIGN_OWNERS = true;
 
 // An edge as the vertex of a ring sees it.
 struct SharedEdge {
@@ -41,22 +41,22 @@ SharedEdge shared_edge(FramedRing at, uint j) {
 }
 
 // The ring that owns what a corner shares, whose own ring this is; `corner` is its number among all corners.
-FramedRing corner_speaker(uint corner, FramedRing own) {
-    FramedRing speaker = own;
-    if (HAS_SPEAKERS) {
+FramedRing corner_owner(uint corner, FramedRing own) {
+    FramedRing owner = own;
+    if (HAS_FOREIGN_OWNERS) {
         uint of_corner = shared_word(corner, 0u);
         if (of_corner != own.index) {
-            speaker = framed_ring(of_corner);
+            owner = framed_ring(of_corner);
         }
     }
-    return speaker;
+    return owner;
 }
 
 // What a corner of a patch shares: see SHARED_VECTORS. `own` is its ring, with its plus and minus edge.
-vec3[SHARED_VECTORS] share_corner(uint corner, FramedRing own, FramedRing speaker, SharedEdge own_plus, SharedEdge own_minus) {
+vec3[SHARED_VECTORS] share_corner(uint corner, FramedRing own, FramedRing owner, SharedEdge own_plus, SharedEdge own_minus) {
     uint plus_edge = shared_word(corner, 2u);
     SharedEdge plus = own_plus, minus = own_minus;
-    if (HAS_SPEAKERS) {
+    if (HAS_FOREIGN_OWNERS) {
         uint of_plus = shared_word(corner, 1u);
         uint of_minus = shared_word(corner, 3u);
         if (of_plus != own.index) {
@@ -73,7 +73,7 @@ vec3[SHARED_VECTORS] share_corner(uint corner, FramedRing own, FramedRing speake
     with[3] = minus.transversal;
     with[4] = ring_normal(own);
 #ifdef DISPLACED
-    with[5] = ring_normal(speaker);
+    with[5] = ring_normal(owner);
 #endif
     return with;
 }

@@ -6,7 +6,7 @@ use crate::bench::drawable::{Drawable, Frame, Lane, Setup, timed};
 use crate::gpu::{Buffer, GpuError, Owned, Shader};
 use crate::patch::Scheme;
 use crate::renderer::{DrawConstants, ShaderId, TableBytes, topology};
-use crate::table::{CpuSurface, LatticeIndices, lattice_vertices};
+use crate::table::{CpuSurface, UniformGridIndices, uniform_grid_vertices};
 use crate::topology::PatchKind;
 use ash::vk;
 use glam::Vec3;
@@ -53,7 +53,7 @@ impl<'a> VertexBuffer<'a> {
         let attributes = [attribute(0, 0), attribute(1, 12)];
         let dynamic_states = &[vk::DynamicState::PRIMITIVE_TOPOLOGY];
         let input = Input { patch_control_points: 0, bindings: &bindings, attributes: &attributes, dynamic_states };
-        let stages = [Shader::vertex(ShaderId::EvaluateLatticeVert.code())];
+        let stages = [Shader::vertex(ShaderId::EvaluateUniformGridVert.code())];
         let (pipelines, pipelines_ms) = timed(|| kit.pipelines(lane, &stages, &input))?;
         let setup = Setup { pipelines: pipelines_ms, ..Setup::default() };
         Ok(Self { lane, kit, pipelines, surface, points, drawn: None, setup, _nothing: nothing })
@@ -64,7 +64,7 @@ impl<'a> VertexBuffer<'a> {
         let (mut vertices, mut indices) = (0, 0);
         for kind in PatchKind::ALL {
             let patches = u64::from(self.surface.plan().count(kind));
-            vertices += patches * lattice_vertices(kind, n);
+            vertices += patches * uniform_grid_vertices(kind, n);
             // Three more join strips.
             indices += patches * (of_kinds[kind as usize].len() as u64 + 3);
         }
@@ -78,7 +78,7 @@ impl<'a> VertexBuffer<'a> {
     }
 
     /// Vertices and indices of all patches with `n` segments an edge, and such indices of a patch of each kind.
-    fn triangles(&self, n: u32, of_patches: LatticeIndices, of_kinds: &[Vec<u32>]) -> (Vec<Vertex>, Vec<u32>) {
+    fn triangles(&self, n: u32, of_patches: UniformGridIndices, of_kinds: &[Vec<u32>]) -> (Vec<Vertex>, Vec<u32>) {
         let grids = self.surface.grid(&self.points, n + 1);
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
         for (patch, grid) in self.surface.plan().patches().iter().zip(grids) {
@@ -96,7 +96,7 @@ impl Drawable for VertexBuffer<'_> {
         let headless = self.lane.headless;
         let n = self.lane.spacing.segments(factor, headless.properties().max_tessellation_level);
         let kinds = PatchKind::ALL.into_iter().filter(|&kind| self.surface.plan().count(kind) > 0);
-        let of_patches = LatticeIndices::new(kinds, n, headless.properties().indices_at_once);
+        let of_patches = UniformGridIndices::new(kinds, n, headless.properties().indices_at_once);
         let of_kinds = PatchKind::ALL.map(|kind| of_patches.of(kind, n));
         self.check(n, &of_kinds)?;
         let ((vertices, indices), tables) = timed(|| Ok::<_, BenchError>(self.triangles(n, of_patches, &of_kinds)))?;

@@ -1,5 +1,5 @@
-//! A texture atlas for any all-quad mesh: every face becomes a square of a lattice, neighbours stay neighbours as far
-//! as the lattice allows, and the pieces are packed into the unit square.
+//! A texture atlas for any all-quad mesh: every face becomes a square of a grid, neighbours stay neighbours as far
+//! as the grid allows, and the pieces are packed into the unit square.
 
 use crate::mesh::{ControlMesh, FaceVarying, NO_TWIN};
 use std::collections::{HashMap, VecDeque};
@@ -9,19 +9,19 @@ const MAX_SIDE: i32 = 10;
 /// The gap around each piece, as a part of a face's side: room for texture filtering.
 const GAP: f32 = 0.25;
 
-/// Faces in squares of one lattice.
+/// Faces in squares of one grid.
 #[derive(Default)]
 struct Chart {
-    /// Each face, its square's lower left lattice point, and which of its corners lies there.
+    /// Each face, its square's lower left grid point, and which of its corners lies there.
     faces: Vec<(u32, [i32; 2], usize)>,
-    /// The vertex at each lattice point in use.
+    /// The vertex at each grid point in use.
     points: HashMap<[i32; 2], u32>,
     low: [i32; 2],
     high: [i32; 2],
 }
 
 impl Chart {
-    /// The lattice points of a square's corners, from the face's corner 0 on.
+    /// The grid points of a square's corners, from the face's corner 0 on.
     fn corners(square: [i32; 2], first: usize) -> [[i32; 2]; 4] {
         let [x, y] = square;
         let mut corners = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
@@ -29,7 +29,7 @@ impl Chart {
         corners
     }
 
-    /// Whether the face fits: no lattice point would get two vertices, and the chart stays small.
+    /// Whether the face fits: no grid point would get two vertices, and the chart stays small.
     fn fits(&self, mesh: &ControlMesh, face: u32, square: [i32; 2], first: usize) -> bool {
         let small = (0..2).all(|k| {
             let (low, high) = (self.low[k].min(square[k]), self.high[k].max(square[k] + 1));

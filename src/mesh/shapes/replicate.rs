@@ -1,7 +1,7 @@
 use crate::mesh::{ControlMesh, FaceVarying, MAX_CORNERS, MeshData, MeshError};
 use glam::DVec3;
 
-/// Repeats a mesh on a lattice, with its tags and attributes, centred where the mesh is.
+/// Repeats a mesh on a grid, with its tags and attributes, centred where the mesh is.
 ///
 /// `copies` counts along x, y and z; neighbours lie `spacing` times the size of the mesh's bounds apart (1: the bounds
 /// touch). The copies are separate components: copy by copy, x fastest, vertices, faces and corners follow one another

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-/// A lattice of vertices whose cells are faces of the model.
+/// A grid of vertices whose cells are faces of the model.
 ///
 /// The cells are counter-clockwise from outside: the column direction, the row direction and the outward normal are
 /// right-handed.
@@ -52,7 +52,7 @@ impl Patch {
             .map(|(i, j)| [self.vertex(i, j), self.vertex(i + 1, j), self.vertex(i + 1, j + 1), self.vertex(i, j + 1)])
     }
 
-    /// Lattice places along the rim, counter-clockwise from (0, 0): closed (the last is the first), or for a half
+    /// Grid places along the rim, counter-clockwise from (0, 0): closed (the last is the first), or for a half
     /// patch open, from the mirror plane to the mirror plane.
     pub(super) fn rim(&self) -> Vec<(usize, usize)> {
         let (c, r) = (self.columns, self.rows);
@@ -273,7 +273,7 @@ impl Sculpt {
     }
 }
 
-/// Where a lattice place lies in the unit disc: the square lattice, pulled round.
+/// Where a grid place lies in the unit disc: the square grid, pulled round.
 fn disc(patch: &Patch, column: usize, row: usize) -> [f64; 2] {
     let a = column as f64 / patch.columns as f64;
     let a = if patch.half { a } else { 2.0 * a - 1.0 };

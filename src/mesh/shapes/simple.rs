@@ -1,4 +1,4 @@
-//! Small shapes and sheets: a few faces each, or plain lattices.
+//! Small shapes and sheets: a few faces each, or plain grids.
 
 use crate::mesh::{FaceVarying, MeshData};
 use std::f64::consts::TAU;
@@ -47,7 +47,7 @@ pub(super) fn torus() -> MeshData {
     let (u, v) = (16, 8);
     let coordinate = |i: u32, count: u32| i as f32 / count as f32;
     let values = (0..=u).flat_map(|i| (0..=v).map(move |j| [coordinate(i, u), coordinate(j, v)])).collect();
-    // The seams are where the lattice closes: there the indices do not wrap round as the vertices do.
+    // The seams are where the grid closes: there the indices do not wrap round as the vertices do.
     let cell = |i, j| [[i, j], [i, j + 1], [i + 1, j + 1], [i + 1, j]];
     let cells = (0..u).flat_map(|i| (0..v).map(move |j| (i, j)));
     let indices = cells.flat_map(|(i, j)| cell(i, j).map(|[i, j]| i * (v + 1) + j)).collect();
@@ -104,7 +104,7 @@ pub(super) fn cloth() -> MeshData {
     })
 }
 
-/// The cells marked `#` of a lattice, first line topmost; `place` maps texture coordinates to the surface.
+/// The cells marked `#` of a grid, first line topmost; `place` maps texture coordinates to the surface.
 fn sheet(cells: &[&str], place: impl Fn(f64, f64) -> [f64; 3]) -> MeshData {
     let (rows, columns) = (cells.len(), cells[0].len());
     let mut numbers = vec![u32::MAX; (rows + 1) * (columns + 1)];

@@ -19,7 +19,7 @@ impl Path for Compute {
         let displaced = stages.sharing == Sharing::Displacement;
         let sharing = if displaced { Sharing::Displacement } else { Sharing::Positions };
         let output = if made_for.texcoords { Output::Texcoords } else { Output::Surface };
-        let vertex = ShaderKey { sharing, output, ..ShaderKey::of(Source::LatticeVert) };
+        let vertex = ShaderKey { sharing, output, ..ShaderKey::of(Source::UniformGridVert) };
         Recipe {
             topology_is_dynamic: true,
             input: VertexInput::of_vertices(made_for.texcoords, sharing),
@@ -29,15 +29,15 @@ impl Path for Compute {
     }
 
     fn drawn<'m>(&self, asked: &Asked<'m>) -> Result<Drawn<'m>, Error> {
-        asked.lattice()
+        asked.uniform_grid()
     }
 
     unsafe fn cmd_draw(&self, recorder: &mut Recorder, drawn: Drawn, group: &DrawnGroup) {
-        let Some(lattice) = drawn.lattice() else { return };
+        let Some(uniform_grid) = drawn.uniform_grid() else { return };
         // SAFETY: as the caller promises.
         unsafe {
             recorder.push();
-            lattice.cmd_draw(recorder.device, recorder.cmd, group.number);
+            uniform_grid.cmd_draw(recorder.device, recorder.cmd, group.number);
         }
     }
 }

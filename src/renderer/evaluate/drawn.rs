@@ -1,6 +1,6 @@
 //! What the surface of a model is drawn from.
 
-use super::lattice::Lattice;
+use super::uniform_grid::UniformGrid;
 use crate::renderer::options::{Error, Factor, ModelId};
 use crate::table::{Evaluation, MAX_SEGMENTS};
 
@@ -12,7 +12,7 @@ pub(crate) struct Asked<'m> {
     /// The largest factor of an edge, if edges have factors of their own.
     pub largest: Option<f32>,
     /// The uniform grid that is kept, if its segments were set.
-    pub lattice: Option<&'m Lattice>,
+    pub uniform_grid: Option<&'m UniformGrid>,
 }
 
 /// What the surface of a model is drawn from.
@@ -20,7 +20,7 @@ pub(crate) struct Asked<'m> {
 pub(crate) enum Drawn<'m> {
     /// Patches, for the tessellation stages.
     Patches,
-    Lattice(&'m Lattice),
+    UniformGrid(&'m UniformGrid),
     /// Tiles of patches, for the geometry shader.
     Tiles {
         segments: u32,
@@ -33,9 +33,9 @@ pub(crate) enum Drawn<'m> {
 
 impl<'m> Drawn<'m> {
     /// The uniform grid, if it is one.
-    pub(crate) fn lattice(self) -> Option<&'m Lattice> {
+    pub(crate) fn uniform_grid(self) -> Option<&'m UniformGrid> {
         match self {
-            Self::Lattice(lattice) => Some(lattice),
+            Self::UniformGrid(uniform_grid) => Some(uniform_grid),
             _ => None,
         }
     }
@@ -43,7 +43,7 @@ impl<'m> Drawn<'m> {
     /// Segments along every edge, if all have as many.
     pub(crate) fn segments(self) -> Option<u32> {
         match self {
-            Self::Lattice(lattice) => Some(lattice.segments),
+            Self::UniformGrid(uniform_grid) => Some(uniform_grid.segments),
             Self::Tiles { segments } => Some(segments),
             Self::Patches | Self::Subdivided { .. } => None,
         }
@@ -63,10 +63,10 @@ impl<'m> Asked<'m> {
     }
 
     /// The uniform grid that is kept.
-    pub(crate) fn lattice(&self) -> Result<Drawn<'m>, Error> {
+    pub(crate) fn uniform_grid(&self) -> Result<Drawn<'m>, Error> {
         let id = self.id;
-        let lattice = self.lattice.ok_or(Error::SegmentsNotSet { id })?;
-        if lattice.prepared { Ok(Drawn::Lattice(lattice)) } else { Err(Error::NotPrepared { id }) }
+        let uniform_grid = self.uniform_grid.ok_or(Error::SegmentsNotSet { id })?;
+        if uniform_grid.prepared { Ok(Drawn::UniformGrid(uniform_grid)) } else { Err(Error::NotPrepared { id }) }
     }
 
     /// Tiles with the segments that are asked for.

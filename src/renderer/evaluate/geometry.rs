@@ -7,7 +7,7 @@ use crate::gpu::Features;
 use crate::renderer::options::Error;
 use crate::renderer::pipelines::{MadeFor, Recipe, RecipeStage};
 use crate::renderer::shader::{Cut, GeometryKey, PatchStages, ShaderKey, Source, names};
-use crate::table::{Sharing, TILE_VERTICES, lattice_tiles};
+use crate::table::{Sharing, TILE_VERTICES, uniform_grid_tiles};
 use ash::vk;
 
 pub(super) struct Geometry;
@@ -35,7 +35,7 @@ impl Path for Geometry {
     unsafe fn cmd_draw(&self, recorder: &mut Recorder, drawn: Drawn, group: &DrawnGroup) {
         let Drawn::Tiles { segments } = drawn else { return };
         let &DrawnGroup { stages, group, .. } = group;
-        let (tiles, patches) = (lattice_tiles(segments), group.patches.len() as u32);
+        let (tiles, patches) = (uniform_grid_tiles(segments), group.patches.len() as u32);
         // No more than can be counted.
         let step = u32::MAX / tiles;
         for first in (0..patches).step_by(step as usize) {

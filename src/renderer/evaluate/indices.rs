@@ -1,23 +1,23 @@
-//! Indices of lattices: one buffer for all models with the same.
+//! Indices of uniform grids: one buffer for all models with the same.
 
 use crate::gpu::{Buffer, DeviceContext, GpuError};
 use crate::renderer::options::MemoryUsage;
-use crate::table::{LatticeIndices, lattice_vertices};
+use crate::table::{UniformGridIndices, uniform_grid_vertices};
 use crate::topology::PatchKind;
 use ash::vk;
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-/// What the indices of a lattice depend on.
+/// What the indices of a uniform grid depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct LatticeShape {
+pub(crate) struct UniformGridShape {
     pub segments: u32,
     /// Of how many quads, and of how many triangles, whose vertices follow each other, there are indices; 0 if none are drawn.
     pub blocks: [u32; 2],
 }
 
-impl LatticeShape {
-    /// Where in [`LatticeShape::blocks`] patches of a kind are.
+impl UniformGridShape {
+    /// Where in [`UniformGridShape::blocks`] patches of a kind are.
     pub(crate) fn place(kind: PatchKind) -> usize {
         usize::from(kind.is_triangular())
     }
@@ -44,18 +44,18 @@ pub(crate) struct SharedIndices {
 }
 
 impl SharedIndices {
-    fn new(context: &Arc<DeviceContext>, shape: LatticeShape, at_once: u32) -> Result<Self, GpuError> {
-        let LatticeShape { segments, blocks } = shape;
+    fn new(context: &Arc<DeviceContext>, shape: UniformGridShape, at_once: u32) -> Result<Self, GpuError> {
+        let UniformGridShape { segments, blocks } = shape;
         let kinds = [PatchKind::Regular, PatchKind::Triangle];
-        let drawn = kinds.into_iter().filter(|&kind| blocks[LatticeShape::place(kind)] > 0);
-        let of = LatticeIndices::new(drawn, segments, at_once);
+        let drawn = kinds.into_iter().filter(|&kind| blocks[UniformGridShape::place(kind)] > 0);
+        let of = UniformGridIndices::new(drawn, segments, at_once);
         let mut indices = Vec::new();
         let patches = kinds.map(|kind| {
-            let block = blocks[LatticeShape::place(kind)];
+            let block = blocks[UniformGridShape::place(kind)];
             let of_patch = if block > 0 { of.of(kind, segments) } else { Vec::new() };
             let (count, first) = (of_patch.len() as u32, indices.len() as u32);
             let mut of_block = Vec::new();
-            let vertices = lattice_vertices(kind, segments);
+            let vertices = uniform_grid_vertices(kind, segments);
             (0..block).for_each(|patch| of.append(&mut of_block, &of_patch, patch * vertices as u32));
             indices.extend(of_block);
             PatchIndices { count, first, joint: of.joint(count), block }
@@ -69,7 +69,7 @@ impl SharedIndices {
     }
 
     pub(crate) fn of_patch(&self, kind: PatchKind) -> PatchIndices {
-        self.patches[LatticeShape::place(kind)]
+        self.patches[UniformGridShape::place(kind)]
     }
 
     /// Gives away what is to be copied to the device: to the first that asks.
@@ -92,7 +92,7 @@ impl SharedIndices {
 pub(crate) struct IndexCache {
     /// Where a patch has more as a list, it is a strip.
     at_once: u32,
-    made: FxHashMap<LatticeShape, Weak<SharedIndices>>,
+    made: FxHashMap<UniformGridShape, Weak<SharedIndices>>,
 }
 
 impl IndexCache {
@@ -105,7 +105,7 @@ impl IndexCache {
     pub(crate) fn get(
         &mut self,
         context: &Arc<DeviceContext>,
-        shape: LatticeShape,
+        shape: UniformGridShape,
     ) -> Result<Arc<SharedIndices>, GpuError> {
         if let Some(indices) = self.made.get(&shape).and_then(Weak::upgrade) {
             return Ok(indices);
@@ -118,9 +118,9 @@ impl IndexCache {
 }
 
 /// What indices are drawn as.
-pub(crate) fn topology(of: LatticeIndices) -> vk::PrimitiveTopology {
+pub(crate) fn topology(of: UniformGridIndices) -> vk::PrimitiveTopology {
     match of {
-        LatticeIndices::List => vk::PrimitiveTopology::TRIANGLE_LIST,
-        LatticeIndices::Strip => vk::PrimitiveTopology::TRIANGLE_STRIP,
+        UniformGridIndices::List => vk::PrimitiveTopology::TRIANGLE_LIST,
+        UniformGridIndices::Strip => vk::PrimitiveTopology::TRIANGLE_STRIP,
     }
 }

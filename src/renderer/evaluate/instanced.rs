@@ -34,11 +34,11 @@ impl Path for Instanced {
     }
 
     fn drawn<'m>(&self, asked: &Asked<'m>) -> Result<Drawn<'m>, Error> {
-        asked.lattice()
+        asked.uniform_grid()
     }
 
     unsafe fn cmd_draw(&self, recorder: &mut Recorder, drawn: Drawn, group: &DrawnGroup) {
-        let Some(lattice) = drawn.lattice() else { return };
+        let Some(uniform_grid) = drawn.uniform_grid() else { return };
         let &DrawnGroup { number, stages, group, control_points, .. } = group;
         let (device, cmd) = (recorder.device, recorder.cmd);
         // SAFETY: as the caller promises.
@@ -47,9 +47,9 @@ impl Path for Instanced {
             if let Some(points) = control_points.filter(|_| stages.attributes) {
                 let of_corner = u64::from(stages.patch_bytes()) / stages.kind.corners() as u64;
                 let offset = of_corner * group.first_corner as u64;
-                recorder.bound.lattice.cmd_bind_vertices(device, cmd, points.raw(), offset);
+                recorder.bound.uniform_grid.cmd_bind_vertices(device, cmd, points.raw(), offset);
             }
-            lattice.cmd_draw(device, cmd, number);
+            uniform_grid.cmd_draw(device, cmd, number);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Recording draws: what is bound, and what is pushed.
 
-use super::lattice::BoundLattice;
+use super::uniform_grid::BoundUniformGrid;
 use crate::gpu::{Buffer, DeviceProperties};
 use crate::renderer::shader::{DrawConstants, PatchStages, STAGES};
 use crate::table::PatchGroup;
@@ -11,7 +11,7 @@ use ash::vk;
 pub(crate) struct Bound {
     pub pipeline: vk::Pipeline,
     pub set: vk::DescriptorSet,
-    pub lattice: BoundLattice,
+    pub uniform_grid: BoundUniformGrid,
     /// Whether the rasterizer was told to discard since the last pipeline that cannot be told.
     pub discards: bool,
 }

@@ -1,6 +1,6 @@
-//! Views of which compute leaves out the patches that cannot be seen, before they are drawn.
+//! Views of which compute culls the patches that cannot be seen, before they are drawn.
 //!
-//! A control shader can leave out a patch only when most of the work is done: the vertex shader ran, the control points are
+//! A control shader can cull a patch only when most of the work is done: the vertex shader ran, the control points are
 //! there. A compute shader finds out before, with all lanes at work, and lists the patches that are left for indirect draws: in
 //! their order, but of every 128 first those within the frustum, then those that cross it. Where control points are not cached it
 //! makes those of all patches, and the draws make those of the patches that are left again.
@@ -21,7 +21,7 @@ impl Renderer {
     /// Records the search for the patches of some items that can be seen in a view, by their
     /// [`DrawItem::cull`]: for [`Renderer::cmd_draw_visible`], as often as you like in this frame.
     ///
-    /// It is for models whose [evaluation leaves out patches](Evaluation::culls), whatever their construction: control points that
+    /// It is for models whose [evaluation culls patches](Evaluation::culls), whatever their construction: control points that
     /// are not [`Cached`](crate::renderer::Construction::Cached) are made for this, and again where patches are drawn. Others are drawn as by
     /// [`Renderer::cmd_draw`]. Takes memory, which is kept for later frames: a little more than four bytes a patch, and for
     /// instances what they read of it, 256 bytes of a Gregory patch. Binds compute pipelines, with sets 0 and 1, and counts as one
@@ -62,8 +62,8 @@ impl Renderer {
         for item in &items {
             let lists = self.take_lists(frame_index, view, item)?;
             let ResolvedItem { record, drawn, .. } = self.resolve(view, item)?;
-            let lattice = drawn.and_then(Drawn::lattice).filter(|_| !lists.is_empty());
-            let segments = lattice.map(|lattice| lattice.segments);
+            let uniform_grid = drawn.and_then(Drawn::uniform_grid).filter(|_| !lists.is_empty());
+            let segments = uniform_grid.map(|uniform_grid| uniform_grid.segments);
             let record = self.lists[frame_index as usize].records.push(&record)?;
             listed.push(VisibleItem { item: *item, record, lists, segments });
         }

@@ -3,7 +3,7 @@
 use super::resolved::ResolvedItem;
 use super::visible::ItemLists;
 use super::{Frame, Renderer};
-use crate::renderer::evaluate::{Bound, BoundLattice, Drawn, DrawnGroup, Place, Recorder, path};
+use crate::renderer::evaluate::{Bound, BoundUniformGrid, Drawn, DrawnGroup, Place, Recorder, path};
 use crate::renderer::options::{Cull, DrawItem, Error, Factor, Geometry, ModelId, Style, View};
 use crate::renderer::shader::{Cut, GeometryKey, PipelineKey, ViewData};
 #[cfg(doc)]
@@ -132,7 +132,7 @@ impl Renderer {
     unsafe fn cmd_draw_control(&self, recorder: &mut Recorder, resolved: &ResolvedItem) {
         let &ResolvedItem { item, model, style, .. } = resolved;
         let (device, cmd) = (recorder.device, recorder.cmd);
-        recorder.bound.lattice = BoundLattice::default();
+        recorder.bound.uniform_grid = BoundUniformGrid::default();
         let key = PipelineKey { style: item.style, geometry: GeometryKey::Control };
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
@@ -159,10 +159,12 @@ impl Renderer {
     ) -> Result<(), Error> {
         let &ResolvedItem { item, model, style, most, .. } = resolved;
         lists.map_or(Ok(()), |lists| lists.check(drawn))?;
-        match drawn.lattice() {
+        match drawn.uniform_grid() {
             // SAFETY: as the caller of `cmd_draw` promises.
-            Some(lattice) => unsafe { lattice.cmd_bind(recorder.device, recorder.cmd, &mut recorder.bound.lattice) },
-            None => recorder.bound.lattice = BoundLattice::default(),
+            Some(uniform_grid) => unsafe {
+                uniform_grid.cmd_bind(recorder.device, recorder.cmd, &mut recorder.bound.uniform_grid)
+            },
+            None => recorder.bound.uniform_grid = BoundUniformGrid::default(),
         }
         let path = path(model.options.evaluation);
         let level = path.level(item.factor);

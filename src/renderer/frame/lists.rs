@@ -80,9 +80,9 @@ pub(crate) struct ListConstants {
     pub of_draw: DrawConstants,
     /// Of the patches.
     pub count: u32,
-    /// Vertices of a patch in a draw: the points of its corners, or the indices of a lattice.
+    /// Vertices of a patch in a draw: the points of its corners, or the indices of a uniform grid.
     pub vertices: u32,
-    /// Of a lattice.
+    /// Of a uniform grid.
     pub first_index: u32,
     /// The word of the list where the copies start.
     pub copies: u32,
@@ -221,7 +221,7 @@ impl ListPipelines {
         ComputePipelines::new(context, "subdiv lists of patches", &sets, cache).map(Self)
     }
 
-    /// Makes what patches need that are left out by these rules.
+    /// Makes what patches need that are culled by these rules.
     pub(crate) fn make(&mut self, stages: PatchStages, cut: Cut, code: &ShaderCode) -> Result<(), GpuError> {
         let stages = stages.for_culling();
         let constants = stages.specialization(cut, self.0.context().properties());

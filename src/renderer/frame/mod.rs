@@ -17,7 +17,7 @@ pub(crate) mod visible;
 
 use crate::gpu::{Buffer, BufferDesc, DeviceContext, MemoryLocation};
 use crate::mesh::ControlMesh;
-use crate::renderer::evaluate::Lattice;
+use crate::renderer::evaluate::UniformGrid;
 use crate::renderer::model::ModelPipelines;
 use crate::renderer::model::{Displacements, Model, Used};
 use crate::renderer::options::{
@@ -52,7 +52,7 @@ struct Retired {
 enum RetiredObject {
     Model(Box<Model>),
     Used(Vec<Used>),
-    Lattice(Box<Lattice>),
+    UniformGrid(Box<UniformGrid>),
     Lists(Box<FrameLists>),
 }
 
@@ -271,9 +271,9 @@ impl Renderer {
         let records: u64 = self.lists.iter().map(|lists| lists.records.bytes()).sum();
         let mut usage = MemoryUsage { views: self.views.size() + records, lists, ..MemoryUsage::default() };
         self.models.values().for_each(|model| model.add_memory(&mut usage));
-        let lattices = self.models.values().filter_map(|model| model.lattice.as_ref());
+        let uniform_grids = self.models.values().filter_map(|model| model.uniform_grid.as_ref());
         let indices: FxHashMap<_, _> =
-            lattices.map(|lattice| (Arc::as_ptr(&lattice.indices), &lattice.indices)).collect();
+            uniform_grids.map(|uniform_grid| (Arc::as_ptr(&uniform_grid.indices), &uniform_grid.indices)).collect();
         indices.values().for_each(|indices| indices.add_memory(&mut usage));
         usage
     }

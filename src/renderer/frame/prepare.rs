@@ -22,7 +22,7 @@ impl Renderer {
     /// [positions of the device](Renderer::set_device_positions) were set for the frame, or a model is
     /// [`Construction::Cached`] (but for [`Evaluation::GeometryTwoPass`]) or [adaptive](crate::renderer::ModelOptions::adaptive), has
     /// faces of five and more corners ([`ModelOptions::refine`](crate::renderer::ModelOptions::refine)) or, with
-    /// [`Options::visible_lists`](crate::renderer::Options::visible_lists), its [evaluation leaves out patches](Evaluation::culls). It is
+    /// [`Options::visible_lists`](crate::renderer::Options::visible_lists), its [evaluation culls patches](Evaluation::culls). It is
     /// submitted before the next frame is, or [`Renderer::frame_lost`] is told: changes are recorded once, and later frames count on
     /// them.
     pub unsafe fn cmd_prepare(&mut self, cmd: vk::CommandBuffer, frame: Frame) -> Result<(), Error> {
@@ -101,7 +101,7 @@ impl Renderer {
         }
         for model in models.values_mut().filter(|model| model.is_stale()) {
             // SAFETY: as above, after the control points.
-            unsafe { model.cmd_evaluate(&pipelines.lattice, cmd) };
+            unsafe { model.cmd_evaluate(&pipelines.uniform_grid, cmd) };
         }
         let evaluated = [vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)

@@ -2,7 +2,7 @@
 
 use super::{Renderer, RetiredObject};
 use crate::mesh::ControlMesh;
-use crate::renderer::evaluate::Lattice;
+use crate::renderer::evaluate::UniformGrid;
 use crate::renderer::model::{Model, Surroundings};
 use crate::renderer::options::{Cull, DisplacementMap, Error, Factor, ModelId, ModelOptions};
 use crate::table::ModelTables;
@@ -30,13 +30,14 @@ impl Renderer {
         let before = self.model(id)?;
         let map = before.map;
         let options = ModelOptions { construction: tables.options().construction, ..before.options.clone() };
-        let segments = before.lattice.as_ref().map(|lattice| lattice.segments);
+        let segments = before.uniform_grid.as_ref().map(|uniform_grid| uniform_grid.segments);
         let factors = before.edge_factors_for(&tables);
         let mut model = self.new_model(id, tables, positions, &options, map)?;
         if let Some(segments) = segments {
             let (sharing, plan) = (model.tables.sharing(), &model.tables.plan);
-            let lattice = Lattice::new(&mut self.pipelines.lattice, id, options.evaluation, sharing, plan, segments)?;
-            model.set_lattice(lattice);
+            let uniform_grid =
+                UniformGrid::new(&mut self.pipelines.uniform_grid, id, options.evaluation, sharing, plan, segments)?;
+            model.set_uniform_grid(uniform_grid);
         }
         if let Some(factors) = factors {
             model.set_edge_factors(0, &factors)?;

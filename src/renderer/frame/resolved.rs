@@ -32,7 +32,7 @@ impl Renderer {
         let model = self.model(id)?;
         let evaluation = model.options.evaluation;
         match (item.factor, evaluation.needs_segments()) {
-            (Factor::Segments, true) if surface && model.lattice.is_none() => Err(Error::SegmentsNotSet { id }),
+            (Factor::Segments, true) if surface && model.uniform_grid.is_none() => Err(Error::SegmentsNotSet { id }),
             (Factor::Segments, true) => Ok(DrawItem { factor: model.own_factor(), ..*item }),
             (Factor::Segments, false) => Err(Error::NoSegments { id, evaluation }),
             (factor, true) if surface => Err(Error::OwnSegments { id, evaluation, factor }),
@@ -73,7 +73,7 @@ impl Renderer {
         };
         let drawn = (style.geometry == Geometry::Surface).then(|| model.drawn(factor)).transpose()?;
         let segments = drawn.and_then(Drawn::segments).unwrap_or(0);
-        let back = if style.leaves_out_counter_clockwise(&item.transform, view) { COUNTER_CLOCKWISE_FLAG } else { 0 };
+        let back = if style.culls_counter_clockwise(&item.transform, view) { COUNTER_CLOCKWISE_FLAG } else { 0 };
         let record = ItemRecord::of(item, &model.map, value, segments);
         let constants = DrawConstants::new(displacement_flags(&model.map) | back);
         Ok(ResolvedItem { item, model, style, drawn, most, record, constants })

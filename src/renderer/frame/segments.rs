@@ -1,7 +1,7 @@
 //! Models that are not evaluated by the tessellation stages: what they go with, and what the caller sees of them.
 
 use super::{Renderer, RetiredObject};
-use crate::renderer::evaluate::Lattice;
+use crate::renderer::evaluate::UniformGrid;
 use crate::renderer::options::{Error, ModelId};
 use crate::renderer::pipelines::vertex_bytes;
 #[cfg(doc)]
@@ -57,19 +57,19 @@ impl Renderer {
         if !(1..=MAX_SEGMENTS).contains(&segments) {
             return Err(Error::BadSegments { id, given: segments, max: MAX_SEGMENTS });
         }
-        if model.lattice.as_ref().is_some_and(|lattice| lattice.segments == segments) {
+        if model.uniform_grid.as_ref().is_some_and(|uniform_grid| uniform_grid.segments == segments) {
             return Ok(());
         }
-        let lattice = Lattice::new(
-            &mut self.pipelines.lattice,
+        let uniform_grid = UniformGrid::new(
+            &mut self.pipelines.uniform_grid,
             id,
             evaluation,
             model.tables.sharing(),
             &model.tables.plan,
             segments,
         )?;
-        if let Some(before) = model.set_lattice(lattice) {
-            self.retire(None, RetiredObject::Lattice(Box::new(before)));
+        if let Some(before) = model.set_uniform_grid(uniform_grid) {
+            self.retire(None, RetiredObject::UniformGrid(Box::new(before)));
         }
         Ok(())
     }
@@ -83,12 +83,13 @@ impl Renderer {
         if model.options.evaluation != Evaluation::Compute {
             return Err(Error::NotComputed { id });
         }
-        let kept = model.lattice.as_ref().and_then(|lattice| Some((lattice, lattice.vertices.as_ref()?)));
-        Ok(kept.map(|(lattice, vertices)| EvaluatedVertices {
+        let kept =
+            model.uniform_grid.as_ref().and_then(|uniform_grid| Some((uniform_grid, uniform_grid.vertices.as_ref()?)));
+        Ok(kept.map(|(uniform_grid, vertices)| EvaluatedVertices {
             buffer: vertices.buffer.raw(),
             size: vertices.buffer.size(),
             stride: vertex_bytes(self.options.texcoords, model.tables.sharing()),
-            segments: lattice.segments,
+            segments: uniform_grid.segments,
         }))
     }
 }

@@ -30,13 +30,13 @@ pub(crate) struct VisibleItem {
     /// Where its record is.
     pub record: u32,
     pub lists: Vec<List>,
-    /// Of the lattice whose indices the draws count, if it is one.
+    /// Of the uniform grid whose indices the draws count, if it is one.
     pub segments: Option<u32>,
 }
 
 impl VisibleItems {
     /// The same, all in another of [`Options::styles`](crate::renderer::Options::styles): such as for depth alone. With [`Cull::back`] in
-    /// one that leaves out the same faces.
+    /// one that culls the same faces.
     pub fn in_style(&self, style: usize) -> Self {
         let mut other = self.clone();
         other.items.iter_mut().for_each(|visible| visible.item.style = style);
@@ -60,7 +60,7 @@ impl ItemLists<'_> {
     /// Tells whether the lists are of what is drawn now.
     pub(crate) fn check(self, drawn: Drawn) -> Result<(), Error> {
         let &VisibleItem { item: DrawItem { model: id, .. }, segments, .. } = self.own;
-        match (drawn.lattice().map(|lattice| lattice.segments), segments) {
+        match (drawn.uniform_grid().map(|uniform_grid| uniform_grid.segments), segments) {
             (now, then) if now == then => Ok(()),
             (now, _) => Err(Error::OtherSegments { id, segments: now.unwrap_or(0) }),
         }
@@ -76,7 +76,7 @@ pub(crate) struct List {
     pub count: u32,
     /// In the buffer.
     pub offset: u32,
-    /// 0 on a lattice, of which each patch has an instance.
+    /// 0 on a uniform grid, of which each patch has an instance.
     pub patches_per_instance: u32,
 }
 
@@ -102,8 +102,8 @@ impl List {
     /// Of what makes it, where the item is drawn with these.
     pub(crate) fn constants(self, model: &Model, drawn: Drawn, of_draw: &DrawConstants) -> ListConstants {
         let (stages, group) = (model.stages[self.group], &model.tables.plan().groups()[self.group]);
-        let (vertices, first_index) = match drawn.lattice() {
-            Some(lattice) => lattice.indices_of_patch(self.group),
+        let (vertices, first_index) = match drawn.uniform_grid() {
+            Some(uniform_grid) => uniform_grid.indices_of_patch(self.group),
             None => (stages.input_points(), 0),
         };
         ListConstants {
@@ -144,7 +144,7 @@ impl Renderer {
                 if list.patches_per_instance == 0 {
                     if stages.attributes {
                         let copies = offset + ListLayout::new(stages).copies_start(list.count);
-                        recorder.bound.lattice.cmd_bind_vertices(device, cmd, visible.buffer, copies);
+                        recorder.bound.uniform_grid.cmd_bind_vertices(device, cmd, visible.buffer, copies);
                     }
                     let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
                     device.cmd_draw_indexed_indirect(cmd, visible.buffer, commands, regions, stride);

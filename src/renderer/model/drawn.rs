@@ -7,7 +7,7 @@ use crate::renderer::options::{Error, Factor};
 impl Model {
     /// What a draw with a factor is of.
     pub(crate) fn drawn(&self, factor: Factor) -> Result<Drawn<'_>, Error> {
-        let (id, evaluation, lattice) = (self.id, self.options.evaluation, self.lattice.as_ref());
-        path(evaluation).drawn(&Asked { id, evaluation, factor, largest: self.largest_edge_factor(), lattice })
+        let (id, evaluation, uniform_grid) = (self.id, self.options.evaluation, self.uniform_grid.as_ref());
+        path(evaluation).drawn(&Asked { id, evaluation, factor, largest: self.largest_edge_factor(), uniform_grid })
     }
 }

@@ -18,7 +18,7 @@ pub(crate) use pipelines::ModelPipelines;
 pub(crate) use sent::{Sent, Used};
 
 use crate::gpu::{Buffer, DeviceContext, DeviceProperties, GpuError};
-use crate::renderer::evaluate::{Lattice, LatticePipelines, check_evaluation, path};
+use crate::renderer::evaluate::{UniformGrid, UniformGridPipelines, check_evaluation, path};
 use crate::renderer::options::{DisplacementMap, Error, Factor, Geometry, MemoryUsage, ModelId, ModelOptions, Options};
 use crate::renderer::shader::{PatchStages, VECTOR_TEXEL};
 use crate::table::PatchGroup;
@@ -47,7 +47,7 @@ pub(crate) struct Model {
     pub control_points: Option<Buffer>,
     frames: Option<Buffer>,
     /// What is drawn instead of patches, once it is known how finely.
-    pub lattice: Option<Lattice>,
+    pub uniform_grid: Option<UniformGrid>,
     /// Whether control points are out of date.
     stale_points: bool,
     /// Whether the vertices of adaptive subdivision are.
@@ -128,7 +128,7 @@ fn stages(tables: &ModelTables, options: &ModelOptions, pipelines: &ModelPipelin
             evaluation,
             spacing,
             sharing: tables.sharing(),
-            has_speakers: tables.has_speakers(),
+            has_foreign_owners: tables.has_foreign_owners(),
             // The control shader knows by its flags.
             edge_factors: tables.edges().is_some() && evaluation != Evaluation::Tessellation,
             stride: tables.kept_texels(),
@@ -211,7 +211,7 @@ impl Model {
             edge_factors,
             control_points,
             frames,
-            lattice: None,
+            uniform_grid: None,
             stale_points: false,
             stale_refinement: false,
             stale_vertices: false,
@@ -245,12 +245,12 @@ impl Model {
 
     /// Factor that stands for [`Factor::Segments`]: of segments that are not set, 1.
     pub(crate) fn own_factor(&self) -> Factor {
-        let segments = self.lattice.as_ref().map_or(1, |lattice| lattice.segments);
+        let segments = self.uniform_grid.as_ref().map_or(1, |uniform_grid| uniform_grid.segments);
         if self.options.edge_factors { Factor::Edges(1.0) } else { Factor::Uniform(segments as f32) }
     }
 
     pub(crate) fn needs_copies(&self) -> bool {
-        let indices = self.lattice.as_ref().is_some_and(|lattice| !lattice.prepared);
+        let indices = self.uniform_grid.as_ref().is_some_and(|uniform_grid| !uniform_grid.prepared);
         let factors = self.edge_factors.as_ref().is_some_and(|factors| factors.is_due());
         !self.prepared || indices || factors || self.positions.is_due()
     }
@@ -273,9 +273,9 @@ impl Model {
         self.stale_refinement = self.tables.refinement().is_some();
     }
 
-    /// Takes a lattice in place of another, to be evaluated in the next frame.
-    pub(crate) fn set_lattice(&mut self, lattice: Lattice) -> Option<Lattice> {
-        self.lattice.replace(lattice)
+    /// Takes a uniform grid in place of another, to be evaluated in the next frame.
+    pub(crate) fn set_uniform_grid(&mut self, uniform_grid: UniformGrid) -> Option<UniformGrid> {
+        self.uniform_grid.replace(uniform_grid)
     }
 
     /// Has what follows from the copies of this frame, or from positions that the device gives, computed after them; before they are
@@ -285,7 +285,7 @@ impl Model {
         self.stale_refinement |= moved && self.tables.refinement().is_some();
         if self.control_points.is_some() {
             self.stale_points |= moved;
-            // They depend on the lattice and on the factors of edges, too.
+            // They depend on the uniform grid and on the factors of edges, too.
             self.stale_vertices = self.stale_points || self.needs_copies();
         }
     }
@@ -300,15 +300,15 @@ impl Model {
         self.stale_points || self.stale_vertices || self.stale_refinement
     }
 
-    /// Records the evaluation of the lattice, if there is one, which is the last of what was out of date.
+    /// Records the evaluation of the uniform grid, if there is one, which is the last of what was out of date.
     ///
     /// # Safety
-    /// As [`Lattice::cmd_evaluate`].
-    pub(crate) unsafe fn cmd_evaluate(&mut self, pipelines: &LatticePipelines, cmd: vk::CommandBuffer) {
+    /// As [`UniformGrid::cmd_evaluate`].
+    pub(crate) unsafe fn cmd_evaluate(&mut self, pipelines: &UniformGridPipelines, cmd: vk::CommandBuffer) {
         (self.stale_points, self.stale_vertices, self.stale_refinement) = (false, false, false);
-        if let Some(lattice) = &self.lattice {
+        if let Some(uniform_grid) = &self.uniform_grid {
             // SAFETY: as the caller promises.
-            unsafe { lattice.cmd_evaluate(pipelines, cmd, self.set.raw, &self.stages, &self.tables.plan) };
+            unsafe { uniform_grid.cmd_evaluate(pipelines, cmd, self.set.raw, &self.stages, &self.tables.plan) };
         }
     }
 
@@ -368,7 +368,7 @@ impl Model {
         };
         sent.uploads = std::mem::take(&mut self.uploads);
         sent.uploads.iter().for_each(|(staged, target)| copy(staged, *target));
-        sent.indices = self.lattice.as_mut().and_then(Lattice::take_upload);
+        sent.indices = self.uniform_grid.as_mut().and_then(UniformGrid::take_upload);
         sent.indices.iter().for_each(|(staged, indices)| copy(staged, indices.buffer.raw()));
         // SAFETY: as the caller promises; both buffers hold the whole range.
         unsafe {
@@ -394,8 +394,8 @@ impl Model {
         usage.control_meshes += self.control.as_ref().map_or(0, |c| c.buffer.size());
         let uploads: u64 = self.uploads.iter().map(|(buffer, _)| buffer.size()).sum();
         usage.staging += staged_positions + staged_factors + uploads;
-        if let Some(lattice) = &self.lattice {
-            lattice.add_memory(usage);
+        if let Some(uniform_grid) = &self.uniform_grid {
+            uniform_grid.add_memory(usage);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::gather::GatherPipeline;
 use crate::gpu::{DeviceContext, GpuError};
 use crate::renderer::construct::{CachedPipelines, Conversion};
-use crate::renderer::evaluate::{LatticePipelines, path};
+use crate::renderer::evaluate::{UniformGridPipelines, path};
 use crate::renderer::options::{Factor, Options, Target};
 use crate::renderer::pipelines::DrawPipelines;
 use crate::renderer::shader::{Capture, Cut, PatchStages, PipelineKey, SetLayouts};
@@ -44,7 +44,7 @@ pub(crate) struct ModelPipelines {
     /// For the first of two passes, once a model wants it.
     pub conversion: Option<Conversion>,
     /// For evaluation by compute.
-    pub lattice: LatticePipelines,
+    pub uniform_grid: UniformGridPipelines,
     /// For positions that the device wrote.
     pub gather: GatherPipeline,
 }
@@ -60,9 +60,9 @@ impl ModelPipelines {
         let draws = DrawPipelines::new(context, target, options, capture, &sets)?;
         let cached = CachedPipelines::new(context, sets.shared(), cache)?;
         let wireframe = options.styles.iter().any(|style| style.wireframe);
-        let lattice = LatticePipelines::new(context, &sets, cache, options.texcoords, wireframe)?;
+        let uniform_grid = UniformGridPipelines::new(context, &sets, cache, options.texcoords, wireframe)?;
         let gather = GatherPipeline::new(context, &sets, cache)?;
-        Ok(Self { context: context.clone(), cache, sets, draws, cached, conversion: None, lattice, gather })
+        Ok(Self { context: context.clone(), cache, sets, draws, cached, conversion: None, uniform_grid, gather })
     }
 
     /// Makes what draws of these groups of patches need in every style, and what comes before.
@@ -88,7 +88,7 @@ impl ModelPipelines {
                 _ => {}
             }
             if stages.evaluation == Evaluation::Compute {
-                self.lattice.make(stages, &self.draws.shaders)?;
+                self.uniform_grid.make(stages, &self.draws.shaders)?;
             }
         }
         Ok(MadeCut { cut, level, styles, pipelines })

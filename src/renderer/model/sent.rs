@@ -21,7 +21,7 @@ pub(crate) struct Sent {
     /// Of the buffer whose positions are gathered.
     pub(super) given: Option<DescriptorSet>,
     was_prepared: bool,
-    was_lattice_prepared: bool,
+    was_uniform_grid_prepared: bool,
     /// Positions that the host wrote, and factors of edges.
     were_due: [bool; 2],
 }
@@ -43,8 +43,8 @@ impl Sent {
         let Some(model) = model else { return };
         model.uploads.extend(self.uploads);
         model.prepared &= self.was_prepared;
-        if let Some(lattice) = &mut model.lattice {
-            lattice.prepared &= self.was_lattice_prepared;
+        if let Some(uniform_grid) = &mut model.uniform_grid {
+            uniform_grid.prepared &= self.was_uniform_grid_prepared;
         }
         let [positions, factors] = self.were_due;
         if positions {
@@ -64,7 +64,7 @@ impl Model {
             indices: None,
             given: None,
             was_prepared: self.prepared,
-            was_lattice_prepared: self.lattice.as_ref().is_some_and(|lattice| lattice.prepared),
+            was_uniform_grid_prepared: self.uniform_grid.as_ref().is_some_and(|uniform_grid| uniform_grid.prepared),
             were_due: [self.positions.is_due(), self.edge_factors.as_ref().is_some_and(|factors| factors.is_due())],
         }
     }

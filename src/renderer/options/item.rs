@@ -14,7 +14,7 @@ pub struct DrawItem {
     pub transform: [[f32; 4]; 4],
     /// How finely it is cut.
     pub factor: Factor,
-    /// Patches that are left out, where [`Evaluation::culls`]: by [`Renderer::cmd_cull`], of the tessellation stages by
+    /// Patches that are culled, where [`Evaluation::culls`]: by [`Renderer::cmd_cull`], of the tessellation stages by
     /// [`Renderer::cmd_draw`], too.
     pub cull: Cull,
     /// Index into [`Options::styles`](crate::renderer::Options::styles).

@@ -12,7 +12,7 @@ pub struct MemoryUsage {
     pub control_points: u64,
     /// Vertices that were evaluated by compute, on the device.
     pub vertices: u64,
-    /// Indices of the lattices of models that are not tessellated, on the device: once for all with as many segments.
+    /// Indices of the uniform grids of models that are not tessellated, on the device: once for all with as many segments.
     pub indices: u64,
     /// Edges and faces of control meshes on the device, if a style draws them.
     pub control_meshes: u64,

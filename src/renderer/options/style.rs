@@ -56,7 +56,7 @@ pub struct Style {
     pub target: Option<Target>,
     /// Draw triangles as lines ([`Features::fill_mode_non_solid`]).
     pub wireframe: bool,
-    /// The faces that are left out.
+    /// The triangles that the rasterizer culls.
     pub cull: vk::CullModeFlags,
     /// The winding of front faces in the framebuffer.
     pub front_face: vk::FrontFace,
@@ -95,9 +95,9 @@ impl Default for Style {
 }
 
 impl Style {
-    /// Whether it leaves out what winds counter-clockwise as the eye sees it in space, of a surface with this transform; else what
-    /// winds clockwise. If it leaves out neither: the inside.
-    pub(crate) fn leaves_out_counter_clockwise(&self, transform: &[[f32; 4]; 4], view: &View) -> bool {
+    /// Whether it culls what winds counter-clockwise as the eye sees it in space, of a surface with this transform; else what
+    /// winds clockwise. If it culls neither: the inside.
+    pub(crate) fn culls_counter_clockwise(&self, transform: &[[f32; 4]; 4], view: &View) -> bool {
         match self.cull {
             vk::CullModeFlags::BACK => (self.front_face == vk::FrontFace::CLOCKWISE) != view.mirrored,
             vk::CullModeFlags::FRONT => (self.front_face == vk::FrontFace::COUNTER_CLOCKWISE) != view.mirrored,

@@ -6,7 +6,7 @@ use ash::vk;
 
 /// Bytes of a vertex: position, normal, and the texture coordinate if there is one. Where the surface is displaced there is one,
 /// and after it which way, where in the map, and at which of its levels. GLSL twin: `VERTEX_WORDS` in
-/// `glsl/evaluate/lattice.comp`.
+/// `glsl/evaluate/uniform_grid.comp`.
 pub(crate) fn vertex_bytes(texcoords: bool, sharing: Sharing) -> u32 {
     match (sharing, texcoords) {
         (Sharing::Displacement, _) => 56,

@@ -21,8 +21,8 @@ named! {
         GatherComp = "compute/gather.comp",
         RefineComp = "compute/refine.comp",
         TessellationTese = "evaluate/tessellation.tese",
-        LatticeComp = "evaluate/lattice.comp",
-        LatticeVert = "evaluate/lattice.vert",
+        UniformGridComp = "evaluate/uniform_grid.comp",
+        UniformGridVert = "evaluate/uniform_grid.vert",
         InstancedVert = "evaluate/instanced.vert",
         StripsGeom = "evaluate/strips.geom",
         FacesGeom = "subdivide/faces.geom",
@@ -89,9 +89,9 @@ impl Source {
             Self::InstancedVert => {
                 Axes { outputs: &[Surface, Texcoords, CaptureVertices], attributes: true, ..sharing }
             }
-            Self::ControlPointsComp | Self::LatticeComp => sharing,
+            Self::ControlPointsComp | Self::UniformGridComp => sharing,
             Self::ConvertGeom | Self::CullComp => patch,
-            Self::LatticeVert => Axes { sharing: true, outputs: &[Surface, Texcoords], ..none },
+            Self::UniformGridVert => Axes { sharing: true, outputs: &[Surface, Texcoords], ..none },
             Self::LitFrag | Self::NormalsFrag => Axes { sharing: true, ..none },
             Self::FacesGeom => Axes { outputs: &[Surface, Texcoords, CaptureGrid], levels: 4, ..none },
             _ => none,
@@ -157,7 +157,9 @@ impl ShaderKey {
         let is_needed = match self.source {
             // Where patches have no hull, none can be culled.
             Source::CullComp if patch.hull == 0 => false,
-            Source::LatticeVert | Source::LitFrag | Source::NormalsFrag if self.sharing == Sharing::Normals => false,
+            Source::UniformGridVert | Source::LitFrag | Source::NormalsFrag if self.sharing == Sharing::Normals => {
+                false
+            }
             // Where attributes fit on every device, there is no other way.
             Source::InstancedVert if !self.attributes => {
                 self.sharing != Sharing::Positions

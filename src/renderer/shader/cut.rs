@@ -7,7 +7,7 @@ use crate::renderer::options::{Cull, Factor};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(crate) struct Cut {
     metric: u32,
-    /// Those that the control shader leaves out.
+    /// Those that the control shader culls.
     cull: Cull,
     /// Whether only those on a list are drawn.
     listed: bool,

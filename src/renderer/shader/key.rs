@@ -56,8 +56,8 @@ pub(crate) struct PatchStages {
     pub spacing: Spacing,
     pub sharing: Sharing,
     /// Whether another ring than its own owns what some corner shares.
-    pub has_speakers: bool,
-    /// Whether edges of a lattice have factors of their own.
+    pub has_foreign_owners: bool,
+    /// Whether edges of a uniform grid have factors of their own.
     pub edge_factors: bool,
     /// Texels that a corner has room for where its vectors are kept between draws, else 0.
     pub stride: u32,
@@ -164,7 +164,7 @@ impl PatchStages {
     pub(crate) fn for_culling(self) -> Self {
         Self {
             sharing: Sharing::Positions,
-            has_speakers: false,
+            has_foreign_owners: false,
             attributes: self.attributes,
             adaptive: self.adaptive,
             ..self.for_control_points()
@@ -192,7 +192,7 @@ impl PatchStages {
             Specialization::uint(constants::ID_DRAW_FLAGS, flags),
             Specialization::bool(constants::ID_MAY_BE_FITTED, self.scheme == Scheme::GregoryFitted),
             Specialization::bool(constants::ID_MAY_HAVE_PENTAGONS, self.scheme.has_pentagons()),
-            Specialization::bool(constants::ID_HAS_SPEAKERS, self.has_speakers),
+            Specialization::bool(constants::ID_HAS_FOREIGN_OWNERS, self.has_foreign_owners),
             Specialization::bool(constants::ID_HAS_EDGE_FACTORS, self.edge_factors),
             reads_texels(device),
             Specialization::bool(constants::ID_LISTED, cut.is_listed()),
@@ -243,7 +243,7 @@ mod tests {
             evaluation: Evaluation::Instanced,
             spacing: Spacing::Equal,
             sharing,
-            has_speakers: false,
+            has_foreign_owners: false,
             edge_factors: false,
             stride,
             attributes: false,

@@ -28,7 +28,7 @@ fn bench_measures_every_path_on_every_kind_of_patch() {
     assert_eq!(results["options"]["frames"], 6);
     // A torus in 5 schemes and 3 constructions and in ACC as published, a tetrahedron in 3 schemes; each in 2 floors, 2 spacings
     // and 2 factors.
-    // Left out: 2 schemes without triangles in 3 constructions, ACC as published among them, and 5 ways to evaluate lattices of
+    // Left out: 2 schemes without triangles in 3 constructions, ACC as published among them, and 5 ways to evaluate uniform grids of
     // 5 schemes, which have no such spacing, with ACC as published, instanced, and the CPU's vertices, for either mesh.
     let rows = results["rows"].as_array().unwrap();
     // Subdivision has no factor 3.

@@ -1,8 +1,8 @@
-// Evaluation without the tessellation stages: each patch on a lattice with the same number of segments along every side; but
+// Evaluation without the tessellation stages: each patch on a uniform grid with the same number of segments along every side; but
 // edges with factors of their own have fewer.
-// Rust twins: src/table/lattice.rs, and `grid_parameters` in src/table/cpu.rs for the order.
-#ifndef LATTICE_GLSL
-#define LATTICE_GLSL
+// Rust twins: src/table/uniform_grid.rs, and `grid_parameters` in src/table/cpu.rs for the order.
+#ifndef UNIFORM_GRID_GLSL
+#define UNIFORM_GRID_GLSL
 
 #ifdef DISPLACED
 #define SHARED
@@ -11,7 +11,7 @@
 #endif
 #endif
 #include "constants.glsl"
-#include "evaluate/lattice_sample.glsl"
+#include "evaluate/uniform_grid_sample.glsl"
 
 // The parameter of vertex i along a side, with 16 bits after the point: from both ends of an edge the same vertices, for
 // `1 - t` is exact. As tessellators that follow Direct3D's have it, which step by a rounded 1 / n; they end at 64 segments.
@@ -29,7 +29,7 @@ float along_side(uint i, uint segments) {
 layout(constant_id = ID_HAS_EDGE_FACTORS) const bool HAS_EDGE_FACTORS = false;
 layout(set = 1, binding = BINDING_EDGE_FACTORS, std430) readonly buffer CornerFactors { float corner_factors[]; };
 
-// The parameter of vertex i along the plus edge of a corner, which may have fewer segments than the lattice: then the vertex
+// The parameter of vertex i along the plus edge of a corner, which may have fewer segments than the uniform grid: then the vertex
 // goes to the nearest of the edge's own, and so both its patches have those and no others.
 float along_edge(uint i, uint segments, uint corner) {
     // What is no number counts as 1.
@@ -39,7 +39,7 @@ float along_edge(uint i, uint segments, uint corner) {
 }
 
 // (u, v) of a quad, (u, v, w) of a triangle, whose row r has r + 1 vertices.
-vec3 lattice_parameter(uint row, uint place, uint segments, uint first_corner) {
+vec3 uniform_grid_parameter(uint row, uint place, uint segments, uint first_corner) {
 #ifdef TRIANGLE
     precise float v = along_side(row - place, segments), w = along_side(place, segments);
     if (HAS_EDGE_FACTORS) {
@@ -74,18 +74,18 @@ vec3 lattice_parameter(uint row, uint place, uint segments, uint first_corner) {
 }
 
 // Of vertex i of the patch.
-vec3 lattice_parameter(uint i, uint segments, uint first_corner) {
+vec3 uniform_grid_parameter(uint i, uint segments, uint first_corner) {
 #ifdef TRIANGLE
     // Row r starts with vertex r (r + 1) / 2.
     uint row = uint((sqrt(float(8u * i + 1u)) - 1.0) / 2.0);
     row += (row + 1u) * (row + 2u) / 2u <= i ? 1u : 0u;
     row -= row * (row + 1u) / 2u > i ? 1u : 0u;
-    return lattice_parameter(row, i - row * (row + 1u) / 2u, segments, first_corner);
+    return uniform_grid_parameter(row, i - row * (row + 1u) / 2u, segments, first_corner);
 #else
     uint side = segments + 1u;
     // By floating point, which devices divide faster: right up to the 1024 segments that there may be.
     uint row = uint(int((float(int(i)) + 0.5) * (1.0 / float(int(side)))));
-    return lattice_parameter(row, i - row * side, segments, first_corner);
+    return uniform_grid_parameter(row, i - row * side, segments, first_corner);
 #endif
 }
 

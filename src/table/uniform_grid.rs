@@ -1,19 +1,19 @@
-//! Triangles of a patch that is evaluated on a lattice: vertices in the order of [`grid_parameters`](super::grid_parameters).
+//! Triangles of a patch that is evaluated on a uniform grid: vertices in the order of [`grid_parameters`](super::grid_parameters).
 
 use crate::topology::PatchKind;
 use std::cmp::Ordering;
 
-/// The most segments along a side: what the arithmetic of `glsl/lib/evaluate/lattice.glsl` is right for.
+/// The most segments along a side: what the arithmetic of `glsl/lib/evaluate/uniform_grid.glsl` is right for.
 pub(crate) const MAX_SEGMENTS: u32 = 1024;
 
 /// How many vertices a patch has with `n` segments along each side.
-pub(crate) fn lattice_vertices(kind: PatchKind, n: u32) -> u64 {
+pub(crate) fn uniform_grid_vertices(kind: PatchKind, n: u32) -> u64 {
     let n = u64::from(n);
     if kind.is_triangular() { (n + 1) * (n + 2) / 2 } else { (n + 1) * (n + 1) }
 }
 
 /// How many triangles.
-fn lattice_triangles(kind: PatchKind, n: u32) -> u64 {
+fn uniform_grid_triangles(kind: PatchKind, n: u32) -> u64 {
     let n = u64::from(n);
     if kind.is_triangular() { n * n } else { 2 * n * n }
 }
@@ -29,7 +29,7 @@ fn tile_size(n: u32) -> [u32; 2] {
 }
 
 /// How many of them cover a patch; of a triangle, some are empty.
-pub(crate) fn lattice_tiles(n: u32) -> u32 {
+pub(crate) fn uniform_grid_tiles(n: u32) -> u32 {
     tile_size(n).into_iter().map(|side| n.div_ceil(side)).product()
 }
 
@@ -44,25 +44,25 @@ fn rises(n: u32, column: u32, row: u32) -> bool {
     }
 }
 
-/// What the indices of a lattice are of.
+/// What the indices of a uniform grid are of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum LatticeIndices {
+pub(crate) enum UniformGridIndices {
     List,
     Strip,
 }
 
-impl LatticeIndices {
+impl UniformGridIndices {
     /// A strip where the list of a patch of any of these kinds has more than so many indices.
     pub(crate) fn new(kinds: impl IntoIterator<Item = PatchKind>, n: u32, at_once: u32) -> Self {
-        let long = kinds.into_iter().any(|kind| 3 * lattice_triangles(kind, n) > at_once.into());
+        let long = kinds.into_iter().any(|kind| 3 * uniform_grid_triangles(kind, n) > at_once.into());
         if long { Self::Strip } else { Self::List }
     }
 
     /// Those of a patch.
     pub(crate) fn of(self, kind: PatchKind, n: u32) -> Vec<u32> {
         match self {
-            Self::List => lattice_list(kind, n),
-            Self::Strip => lattice_strip(kind, n),
+            Self::List => uniform_grid_list(kind, n),
+            Self::Strip => uniform_grid_strip(kind, n),
         }
     }
 
@@ -87,8 +87,8 @@ impl LatticeIndices {
 }
 
 /// Three vertices for each triangle, counter-clockwise where (u, v) is.
-fn lattice_list(kind: PatchKind, n: u32) -> Vec<u32> {
-    let mut indices = Vec::with_capacity(3 * lattice_triangles(kind, n) as usize);
+fn uniform_grid_list(kind: PatchKind, n: u32) -> Vec<u32> {
+    let mut indices = Vec::with_capacity(3 * uniform_grid_triangles(kind, n) as usize);
     for row in 0..n {
         if kind.is_triangular() {
             let (above, below) = (row * (row + 1) / 2, (row + 1) * (row + 2) / 2);
@@ -134,9 +134,9 @@ fn strip_row(kind: PatchKind, n: u32, row: u32) -> (Vec<u32>, bool) {
     (vertices, turned)
 }
 
-/// The triangles of [`lattice_list`] as one strip, from row to row and back. In between are triangles that have a vertex twice;
+/// The triangles of [`uniform_grid_list`] as one strip, from row to row and back. In between are triangles that have a vertex twice;
 /// their sides are those of others.
-fn lattice_strip(kind: PatchKind, n: u32) -> Vec<u32> {
+fn uniform_grid_strip(kind: PatchKind, n: u32) -> Vec<u32> {
     let mut strip: Vec<u32> = Vec::new();
     for row in 0..n {
         let (mut vertices, mut turned) = strip_row(kind, n, row);
@@ -166,13 +166,13 @@ mod tests {
     use crate::table::grid_parameters;
 
     #[test]
-    fn lattices_cover_their_patch() {
+    fn uniform_grids_cover_their_patch() {
         for kind in PatchKind::ALL {
             for n in [1, 2, 5] {
                 let parameters = grid_parameters(kind, n + 1);
-                let indices = lattice_list(kind, n);
-                assert_eq!(parameters.len() as u64, lattice_vertices(kind, n));
-                assert_eq!(indices.len() as u64, 3 * lattice_triangles(kind, n));
+                let indices = uniform_grid_list(kind, n);
+                assert_eq!(parameters.len() as u64, uniform_grid_vertices(kind, n));
+                assert_eq!(indices.len() as u64, 3 * uniform_grid_triangles(kind, n));
                 let area = indices.chunks(3).map(|t| {
                     let [a, b, c] = [t[0], t[1], t[2]].map(|i| glam::DVec2::from(parameters[i as usize]));
                     (b - a).perp_dot(c - a) / 2.0
@@ -196,8 +196,8 @@ mod tests {
                 all
             };
             let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|[a, b]| [a.min(b), a.max(b)]);
-            let list = sorted(lattice_list(kind, n).chunks(3).map(|t| [t[0], t[1], t[2]]).collect());
-            let strip = lattice_strip(kind, n);
+            let list = sorted(uniform_grid_list(kind, n).chunks(3).map(|t| [t[0], t[1], t[2]]).collect());
+            let strip = uniform_grid_strip(kind, n);
             let of_strip = strip.windows(3).enumerate();
             let of_strip = of_strip.map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] });
             let (empty, real): (Vec<_>, Vec<_>) = of_strip.partition(|t| sides(t).iter().any(|[a, b]| a == b));
@@ -215,8 +215,8 @@ mod tests {
         for n in 1..=1024 {
             let [columns, rows] = tile_size(n);
             assert!(rows * (2 * columns + 6) <= TILE_VERTICES && rows >= 1, "{n}");
-            assert!(lattice_tiles(n) * columns * rows >= n * n);
+            assert!(uniform_grid_tiles(n) * columns * rows >= n * n);
         }
-        assert_eq!([1, 4, 8, 16, 1024].map(lattice_tiles), [1, 1, 4, 16, 36 * 1024]);
+        assert_eq!([1, 4, 8, 16, 1024].map(uniform_grid_tiles), [1, 1, 4, 16, 36 * 1024]);
     }
 }

@@ -1,4 +1,4 @@
-// A vertex that was evaluated by compute: see glsl/evaluate/lattice.comp.
+// A vertex that was evaluated by compute: see glsl/evaluate/uniform_grid.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef DISPLACED

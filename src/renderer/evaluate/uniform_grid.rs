@@ -1,6 +1,6 @@
-//! Evaluation on a lattice: its indices; by compute, pipelines, vertices and dispatches.
+//! Evaluation on a uniform grid: its indices; by compute, pipelines, vertices and dispatches.
 
-use super::indices::{IndexCache, LatticeShape, PatchIndices, SharedIndices};
+use super::indices::{IndexCache, PatchIndices, SharedIndices, UniformGridShape};
 use crate::constants::{GROUP_VERTICES, ID_HAS_TEXCOORDS};
 use crate::gpu::Specialization;
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS};
@@ -8,7 +8,7 @@ use crate::renderer::options::{EVALUATED_VERTICES, Error, MemoryUsage, ModelId};
 use crate::renderer::pipelines::{ComputePipelines, vertex_bytes};
 use crate::renderer::shader::{Cut, Output, PatchStages, SetLayouts, ShaderCode, Source};
 use crate::table::{Evaluation, Sharing};
-use crate::table::{PatchGroup, PatchPlan, lattice_vertices};
+use crate::table::{PatchGroup, PatchPlan, uniform_grid_vertices};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// About as many evaluated vertices are drawn with the same indices, of one patch at least.
 const BLOCK_VERTICES: u64 = 65_536;
 
-/// The push constants of a dispatch. GLSL twin: `Patches` in `glsl/evaluate/lattice.comp`.
+/// The push constants of a dispatch. GLSL twin: `Patches` in `glsl/evaluate/uniform_grid.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Dispatch {
@@ -28,14 +28,14 @@ struct Dispatch {
 }
 
 /// Pipelines by what they evaluate.
-pub(crate) struct LatticePipelines {
+pub(crate) struct UniformGridPipelines {
     sets: Arc<SetLayouts>,
     texcoords: bool,
     indices: IndexCache,
     pipelines: ComputePipelines<PatchStages, Dispatch>,
 }
 
-impl LatticePipelines {
+impl UniformGridPipelines {
     /// With the set layouts of the draws. Lines show the triangles that join the rows of strips, and not as those of others:
     /// with `wireframe` there are none.
     pub(crate) fn new(
@@ -56,32 +56,32 @@ impl LatticePipelines {
         let constants = stages.specialization(Cut::default(), self.pipelines.context().properties());
         let texcoords = Specialization::bool(ID_HAS_TEXCOORDS, self.texcoords);
         let constants: Vec<_> = constants.into_iter().chain([texcoords]).collect();
-        self.pipelines.make(stages, stages.shader(Source::LatticeComp, Output::Surface), code, &constants)
+        self.pipelines.make(stages, stages.shader(Source::UniformGridComp, Output::Surface), code, &constants)
     }
 }
 
 /// How the patches of a model are drawn with as many segments along every side.
-pub(crate) struct Lattice {
+pub(crate) struct UniformGrid {
     pub segments: u32,
     /// Those that compute evaluates.
-    pub vertices: Option<LatticeVertices>,
+    pub vertices: Option<UniformGridVertices>,
     pub indices: Arc<SharedIndices>,
     /// In the order of the plan.
-    groups: Vec<LatticeGroup>,
+    groups: Vec<UniformGridGroup>,
     /// Whether a frame was prepared with it.
     pub prepared: bool,
 }
 
-/// What lattices have bound in a command buffer since something else was.
+/// What uniform grids have bound in a command buffer since something else was.
 #[derive(Default)]
-pub(crate) struct BoundLattice {
+pub(crate) struct BoundUniformGrid {
     indices: vk::Buffer,
     /// And from where on.
     vertices: (vk::Buffer, u64),
     topology: Option<vk::PrimitiveTopology>,
 }
 
-impl BoundLattice {
+impl BoundUniformGrid {
     /// Binds vertices, or attributes of instances, from an offset on, unless they are bound.
     ///
     /// # Safety
@@ -102,14 +102,14 @@ impl BoundLattice {
 }
 
 /// Evaluated vertices, group by group.
-pub(crate) struct LatticeVertices {
+pub(crate) struct UniformGridVertices {
     pub buffer: Buffer,
     set: DescriptorSet,
 }
 
 /// Patches of one kind.
 #[derive(Clone, Copy)]
-struct LatticeGroup {
+struct UniformGridGroup {
     patches: u32,
     /// Vertices of a patch, and the first of all.
     vertices: u32,
@@ -117,9 +117,9 @@ struct LatticeGroup {
     indices: PatchIndices,
 }
 
-impl Lattice {
+impl UniformGrid {
     pub(crate) fn new(
-        pipelines: &mut LatticePipelines,
+        pipelines: &mut UniformGridPipelines,
         id: ModelId,
         evaluation: Evaluation,
         sharing: Sharing,
@@ -129,36 +129,36 @@ impl Lattice {
         let context = pipelines.pipelines.context();
         let computed = evaluation == Evaluation::Compute;
         let max = context.properties().max_storage_buffer_range;
-        let counts = plan.groups().iter().map(|g| g.patches.len() as u64 * lattice_vertices(g.kind, segments));
+        let counts = plan.groups().iter().map(|g| g.patches.len() as u64 * uniform_grid_vertices(g.kind, segments));
         let bytes = counts.sum::<u64>() * u64::from(vertex_bytes(pipelines.texcoords, sharing));
         if computed && bytes > max {
             return Err(Error::TableTooLarge { id, table: EVALUATED_VERTICES, bytes, max });
         }
-        let mut shape = LatticeShape { segments, blocks: [0; 2] };
+        let mut shape = UniformGridShape { segments, blocks: [0; 2] };
         for group in plan.groups() {
             let most = if computed { group.patches.len() as u64 } else { 1 };
-            let block = (BLOCK_VERTICES / lattice_vertices(group.kind, segments)).clamp(1, most.max(1)) as u32;
-            let of_kind = &mut shape.blocks[LatticeShape::place(group.kind)];
+            let block = (BLOCK_VERTICES / uniform_grid_vertices(group.kind, segments)).clamp(1, most.max(1)) as u32;
+            let of_kind = &mut shape.blocks[UniformGridShape::place(group.kind)];
             *of_kind = block.max(*of_kind);
         }
         let indices = pipelines.indices.get(context, shape)?;
         let mut first_vertex = 0;
         let group = |group: &PatchGroup| {
             let (kind, patches) = (group.kind, group.patches.len() as u32);
-            let vertices = lattice_vertices(kind, segments) as u32;
-            let lattice = LatticeGroup { patches, vertices, first_vertex, indices: indices.of_patch(kind) };
+            let vertices = uniform_grid_vertices(kind, segments) as u32;
+            let uniform_grid = UniformGridGroup { patches, vertices, first_vertex, indices: indices.of_patch(kind) };
             if computed {
                 // What fits into the buffer can be counted by 32 bits.
                 first_vertex += patches * vertices;
             }
-            lattice
+            uniform_grid
         };
         let groups = plan.groups().iter().map(group).collect();
-        let vertices = computed.then(|| LatticeVertices::new(pipelines, bytes)).transpose()?;
+        let vertices = computed.then(|| UniformGridVertices::new(pipelines, bytes)).transpose()?;
         Ok(Self { segments, vertices, indices, groups, prepared: false })
     }
 
-    /// Gives away what is to be copied to the device, with the indices that it is of, unless another model's lattice did; prepared by
+    /// Gives away what is to be copied to the device, with the indices that it is of, unless another model's uniform grid did; prepared by
     /// that.
     pub(crate) fn take_upload(&mut self) -> Option<(Buffer, Arc<SharedIndices>)> {
         self.prepared = true;
@@ -177,7 +177,7 @@ impl Lattice {
     /// made.
     pub(crate) unsafe fn cmd_evaluate(
         &self,
-        pipelines: &LatticePipelines,
+        pipelines: &UniformGridPipelines,
         cmd: vk::CommandBuffer,
         model: vk::DescriptorSet,
         stages: &[PatchStages],
@@ -187,18 +187,18 @@ impl Lattice {
         let pipelines = &pipelines.pipelines;
         // SAFETY: as the caller promises.
         unsafe { pipelines.cmd_bind(cmd, 1, &[model, vertices.set.raw()], &[]) };
-        for ((stages, group), lattice) in stages.iter().zip(plan.groups()).zip(&self.groups) {
+        for ((stages, group), uniform_grid) in stages.iter().zip(plan.groups()).zip(&self.groups) {
             let corners = group.kind.corners() as u32;
-            for patch in (0..lattice.patches).step_by(MAX_WORKGROUPS as usize) {
+            for patch in (0..uniform_grid.patches).step_by(MAX_WORKGROUPS as usize) {
                 let dispatch = Dispatch {
                     first_patch: group.patches.start as u32 + patch,
                     first_corner: group.first_corner as u32 + patch * corners,
-                    first_vertex: lattice.first_vertex + patch * lattice.vertices,
+                    first_vertex: uniform_grid.first_vertex + patch * uniform_grid.vertices,
                     segments: self.segments,
-                    vertices: lattice.vertices,
+                    vertices: uniform_grid.vertices,
                 };
-                let patches = MAX_WORKGROUPS.min(lattice.patches - patch);
-                let groups = [patches, lattice.vertices.div_ceil(GROUP_VERTICES)];
+                let patches = MAX_WORKGROUPS.min(uniform_grid.patches - patch);
+                let groups = [patches, uniform_grid.vertices.div_ceil(GROUP_VERTICES)];
                 // SAFETY: as the caller promises.
                 unsafe { pipelines.cmd_dispatch(cmd, stages, &dispatch, groups) };
             }
@@ -215,7 +215,7 @@ impl Lattice {
     ///
     /// # Safety
     /// `cmd` is being recorded, and has this bound.
-    pub(crate) unsafe fn cmd_bind(&self, device: &ash::Device, cmd: vk::CommandBuffer, bound: &mut BoundLattice) {
+    pub(crate) unsafe fn cmd_bind(&self, device: &ash::Device, cmd: vk::CommandBuffer, bound: &mut BoundUniformGrid) {
         let (indices, topology) = (self.indices.buffer.raw(), self.indices.topology);
         // SAFETY: as the caller promises.
         unsafe {
@@ -237,9 +237,9 @@ impl Lattice {
     /// Records the draws of a group.
     ///
     /// # Safety
-    /// `cmd` is being recorded, inside rendering, after [`Lattice::cmd_bind`], with a pipeline for it.
+    /// `cmd` is being recorded, inside rendering, after [`UniformGrid::cmd_bind`], with a pipeline for it.
     pub(crate) unsafe fn cmd_draw(&self, device: &ash::Device, cmd: vk::CommandBuffer, group: usize) {
-        let LatticeGroup { patches, vertices, first_vertex, indices } = self.groups[group];
+        let UniformGridGroup { patches, vertices, first_vertex, indices } = self.groups[group];
         let PatchIndices { count: indices, first: first_index, joint, block } = indices;
         if self.vertices.is_none() {
             // SAFETY: as the caller promises.
@@ -255,8 +255,8 @@ impl Lattice {
     }
 }
 
-impl LatticeVertices {
-    fn new(pipelines: &LatticePipelines, bytes: u64) -> Result<Self, GpuError> {
+impl UniformGridVertices {
+    fn new(pipelines: &UniformGridPipelines, bytes: u64) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC;
         let (context, sets) = (pipelines.pipelines.context(), &pipelines.sets);

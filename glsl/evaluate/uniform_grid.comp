@@ -1,10 +1,10 @@
-// Evaluation by compute: the vertices of each patch on a lattice, for draws to share. A workgroup takes some of the vertices
-// of one patch. Rust twin: `Dispatch` in src/renderer/evaluate/lattice.rs.
+// Evaluation by compute: the vertices of each patch on a uniform grid, for draws to share. A workgroup takes some of the vertices
+// of one patch. Rust twin: `Dispatch` in src/renderer/evaluate/uniform_grid.rs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TEXCOORD
 #include "constants.glsl"
-#include "evaluate/lattice.glsl"
+#include "evaluate/uniform_grid.glsl"
 #include "construct/read_cached.glsl"
 
 layout(local_size_x = 32) in;
@@ -42,8 +42,8 @@ void main() {
     uint start = gl_WorkGroupID.y * GROUP_VERTICES;
     uint end = min(start + GROUP_VERTICES, patches.vertices);
     for (uint i = start + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) {
-        vec3 at = lattice_parameter(i, patches.segments, first_corner);
-        LatticeSample surface = lattice_sample(at);
+        vec3 at = uniform_grid_parameter(i, patches.segments, first_corner);
+        UniformGridSample surface = uniform_grid_sample(at);
         uint word = VERTEX_WORDS * (first_vertex + i);
         put(word, surface.position);
         put(word + 3u, surface.normal);

@@ -1,7 +1,7 @@
-//! What every evaluation on a lattice draws: the pictures of the tessellation stages.
+//! What every evaluation on a uniform grid draws: the pictures of the tessellation stages.
 
 use crate::common::stage::{Stage, begin, with_segments};
-use crate::lattices::ways;
+use crate::uniform_grids::ways;
 use ash::vk;
 use ash_subdiv::renderer::{Evaluation, Factor, Fragment, Geometry};
 use ash_subdiv::{Construction, DrawItem, ModelOptions, Options, Renderer, Scheme, Style, shape};
@@ -246,7 +246,7 @@ fn displaced_pictures_are_those_of_the_tessellation_stages() {
 
 /// More than the tessellator has, and in one draw more than lavapipe takes in one batch.
 #[test]
-fn lattices_may_be_fine() {
+fn uniform_grids_may_be_fine() {
     let stage = Stage::new();
     for (name, segments) in [("cube", 150), ("tetrahedron", 301), ("single-quad", 1024)] {
         let mesh = shape(name).expect("built in");

@@ -1,4 +1,4 @@
-//! What every evaluation on a lattice has: the vertices of the tessellation stages, and along edges the same bits.
+//! What every evaluation on a uniform grid has: the vertices of the tessellation stages, and along edges the same bits.
 
 use crate::common;
 use crate::common::edges::{bits, edge_parameters, shared_edges};
@@ -13,11 +13,12 @@ use std::collections::{BTreeSet, HashMap};
 
 type Vertex = [f32; 6];
 
-/// Every evaluation on a lattice with every construction that it goes with.
+/// Every evaluation on a uniform grid with every construction that it goes with.
 pub fn ways(scheme: Scheme) -> impl Iterator<Item = ModelOptions> {
     let others = [Evaluation::Tessellation, Evaluation::Subdivision];
-    let on_lattices = Evaluation::ALL.into_iter().filter(move |evaluation| !others.contains(evaluation));
-    let pairs = on_lattices.flat_map(|evaluation| evaluation.constructions().iter().map(move |&c| (evaluation, c)));
+    let on_uniform_grids = Evaluation::ALL.into_iter().filter(move |evaluation| !others.contains(evaluation));
+    let pairs =
+        on_uniform_grids.flat_map(|evaluation| evaluation.constructions().iter().map(move |&c| (evaluation, c)));
     let fallback = Fallback::Gregory;
     pairs.map(move |(evaluation, construction)| ModelOptions {
         scheme,
@@ -37,29 +38,30 @@ fn tessellated(options: &ModelOptions) -> ModelOptions {
     ModelOptions { construction, evaluation: Evaluation::Tessellation, ..options.clone() }
 }
 
-/// Each patch on its lattice, in the order of [`grid_parameters`], as the device evaluates it.
-fn lattices(stage: &Stage, mesh: &ControlMesh, options: &ModelOptions, segments: u32) -> Vec<Vec<Vertex>> {
+/// Each patch on its uniform grid, in the order of [`grid_parameters`], as the device evaluates it.
+fn uniform_grids(stage: &Stage, mesh: &ControlMesh, options: &ModelOptions, segments: u32) -> Vec<Vec<Vertex>> {
     if options.evaluation == Evaluation::Compute {
-        return kept_lattices(stage, mesh, options, segments, None);
+        return kept_uniform_grids(stage, mesh, options, segments, None);
     }
     let captured = Captured::new(&stage.headless, mesh, options).expect("a model");
     let count = |kind| grid_parameters(kind, segments + 1).len();
     let patches = captured.tables().plan().patches();
-    let mut lattices: Vec<Vec<Option<Vertex>>> = patches.iter().map(|patch| vec![None; count(patch.kind)]).collect();
+    let mut uniform_grids: Vec<Vec<Option<Vertex>>> =
+        patches.iter().map(|patch| vec![None; count(patch.kind)]).collect();
     for vertex in captured.vertices(segments as f32).expect("a capture") {
         let patch = vertex.patch as usize;
-        let place = &mut lattices[patch][number(patches[patch].kind, vertex.coordinate, segments)];
+        let place = &mut uniform_grids[patch][number(patches[patch].kind, vertex.coordinate, segments)];
         let ([x, y, z], [i, j, k]) = (vertex.position, vertex.normal);
         let value = [x, y, z, i, j, k];
         // A vertex may be evaluated several times.
         assert!(place.is_none_or(|before| before.map(f32::to_bits) == value.map(f32::to_bits)), "{vertex:?} {place:?}");
         *place = Some(value);
     }
-    let all = |lattice: Vec<Option<Vertex>>| lattice.into_iter().map(|v| v.expect("every vertex")).collect();
-    lattices.into_iter().map(all).collect()
+    let all = |uniform_grid: Vec<Option<Vertex>>| uniform_grid.into_iter().map(|v| v.expect("every vertex")).collect();
+    uniform_grids.into_iter().map(all).collect()
 }
 
-/// The number of the vertex of a lattice that is nearest to a coordinate.
+/// The number of the vertex of a uniform grid that is nearest to a coordinate.
 fn number(kind: PatchKind, coordinate: [f32; 3], segments: u32) -> usize {
     let [u, v, w] = coordinate.map(|x| (x * segments as f32).round() as usize);
     let n = segments as usize;
@@ -67,7 +69,7 @@ fn number(kind: PatchKind, coordinate: [f32; 3], segments: u32) -> usize {
 }
 
 /// The same from the vertices that compute keeps.
-fn kept_lattices(
+fn kept_uniform_grids(
     stage: &Stage,
     mesh: &ControlMesh,
     options: &ModelOptions,
@@ -85,12 +87,12 @@ fn kept_lattices(
     let words = read_vertices(&stage.headless, &renderer, model);
     let mut vertices = words.chunks_exact(6).map(|v| [v[0], v[1], v[2], v[3], v[4], v[5]]);
     let patches = renderer.tables(model).unwrap().plan().patches();
-    let lattices: Vec<Vec<Vertex>> = patches
+    let uniform_grids: Vec<Vec<Vertex>> = patches
         .iter()
         .map(|patch| vertices.by_ref().take(grid_parameters(patch.kind, segments + 1).len()).collect())
         .collect();
-    assert!(vertices.next().is_none() && lattices.len() == patches.len());
-    lattices
+    assert!(vertices.next().is_none() && uniform_grids.len() == patches.len());
+    uniform_grids
 }
 
 fn position(vertex: &Vertex) -> Vec3 {
@@ -130,11 +132,11 @@ fn vertices_are_those_of_the_tessellation_stages() {
             for &segments in *counts {
                 let vertices = captured.vertices(segments as f32).expect("a capture");
                 let grids = captured.grid(segments + 1).expect("a capture");
-                let lattices = lattices(&stage, &mesh, &options, segments);
+                let uniform_grids = uniform_grids(&stage, &mesh, &options, segments);
                 let what = format!("{name} {scheme:?} {:?} {segments}", options.evaluation);
-                compare(captured.tables().plan().patches(), segments, &lattices, &vertices, &what);
-                for (lattice, grid) in lattices.iter().zip(&grids) {
-                    for (vertex, sample) in lattice.iter().zip(grid) {
+                compare(captured.tables().plan().patches(), segments, &uniform_grids, &vertices, &what);
+                for (uniform_grid, grid) in uniform_grids.iter().zip(&grids) {
+                    for (vertex, sample) in uniform_grid.iter().zip(grid) {
                         let off = (position(vertex) - Vec3::from(sample.position)).length();
                         let turn = (normal(vertex) - Vec3::from(sample.normal)).length();
                         // The grid's parameters are not rounded to 16 bits.
@@ -147,15 +149,21 @@ fn vertices_are_those_of_the_tessellation_stages() {
     stage.finish();
 }
 
-/// Asserts that lattices have the positions of what was tessellated, to the bit.
-fn compare(patches: &[Patch], segments: u32, lattices: &[Vec<Vertex>], tessellated: &[CapturedVertex], what: &str) {
+/// Asserts that uniform grids have the positions of what was tessellated, to the bit.
+fn compare(
+    patches: &[Patch],
+    segments: u32,
+    uniform_grids: &[Vec<Vertex>],
+    tessellated: &[CapturedVertex],
+    what: &str,
+) {
     let at: HashMap<_, &CapturedVertex> = tessellated
         .iter()
         .filter(|v| patches[v.patch as usize].kind.is_triangular() <= on_edge(v))
         .map(|v| (place(v.patch, [v.coordinate[0], v.coordinate[1]].map(f64::from), segments), v))
         .collect();
-    for (i, (patch, lattice)) in patches.iter().zip(lattices).enumerate() {
-        for (uv, vertex) in grid_parameters(patch.kind, segments + 1).into_iter().zip(lattice) {
+    for (i, (patch, uniform_grid)) in patches.iter().zip(uniform_grids).enumerate() {
+        for (uv, vertex) in grid_parameters(patch.kind, segments + 1).into_iter().zip(uniform_grid) {
             let w = 1.0 - uv[0] - uv[1];
             let edge = uv[0] == 0.0 || uv[1] == 0.0 || w.abs() < 0.5 / f64::from(segments);
             // Within triangles the tessellator has vertices elsewhere.
@@ -191,8 +199,8 @@ fn shared_normals_are_those_of_the_tessellation_stages() {
                 .map(|v| (place(v.patch, [v.coordinate[0], v.coordinate[1]].map(f64::from), segments), v))
                 .collect();
             let mut compared = 0;
-            for (i, lattice) in lattices(&stage, &mesh, &options, segments).into_iter().enumerate() {
-                for (uv, vertex) in grid_parameters(patches[i].kind, segments + 1).into_iter().zip(&lattice) {
+            for (i, uniform_grid) in uniform_grids(&stage, &mesh, &options, segments).into_iter().enumerate() {
+                for (uv, vertex) in grid_parameters(patches[i].kind, segments + 1).into_iter().zip(&uniform_grid) {
                     // Within triangles the tessellator has vertices elsewhere.
                     let Some(other) = at.get(&place(i as u32, uv, segments)) else { continue };
                     if patches[i].kind.is_triangular() && !on_edge(other) {
@@ -215,7 +223,7 @@ fn patches_meet_to_the_bit() {
         let mesh = shape(name).expect("built in");
         let topology = Topology::new(&mesh);
         for (segments, options) in [2, 7, 19].into_iter().flat_map(|n| ways(Scheme::Gregory).map(move |way| (n, way))) {
-            let lattices = lattices(&stage, &mesh, &options, segments);
+            let uniform_grids = uniform_grids(&stage, &mesh, &options, segments);
             let tables = ModelTables::new(&mesh, &options).expect("tables");
             let patches = tables.plan().patches();
             let of_face: HashMap<u32, usize> = patches.iter().enumerate().map(|(i, p)| (p.face, i)).collect();
@@ -227,7 +235,9 @@ fn patches_meet_to_the_bit() {
                     let along = (0..=segments).map(|i| edge_parameters(kind, k, f64::from(i) / f64::from(segments)));
                     let at = |uv: [f64; 2]| {
                         let near = |other: &[f64; 2]| (0..2).all(|i| (uv[i] - other[i]).abs() < 1e-9);
-                        bits(position(&lattices[patch][parameters.iter().position(near).expect("on the lattice")]))
+                        bits(position(
+                            &uniform_grids[patch][parameters.iter().position(near).expect("on the uniform grid")],
+                        ))
                     };
                     along.map(at).collect::<Vec<_>>()
                 });
@@ -280,18 +290,18 @@ fn edges_have_the_segments_of_their_own_factors() {
             };
             let expected = capture(&captured);
             let points = if options.evaluation == Evaluation::Compute {
-                let lattices = kept_lattices(&stage, &mesh, &options, 13, Some(&edge_factors));
-                let at = |(patch, lattice): (usize, Vec<Vertex>)| {
+                let uniform_grids = kept_uniform_grids(&stage, &mesh, &options, 13, Some(&edge_factors));
+                let at = |(patch, uniform_grid): (usize, Vec<Vertex>)| {
                     let parameters = grid_parameters(patches[patch].kind, 14).into_iter();
                     // Exactly on the edge opposite the last corner.
                     let exact = |[u, v]: [f64; 2]| if (u + v - 1.0).abs() < 1e-9 { [u, 1.0 - u] } else { [u, v] };
                     let triangular = patches[patch].kind.is_triangular();
-                    let vertices = parameters.zip(lattice).map(move |(uv, [x, y, z, ..])| {
+                    let vertices = parameters.zip(uniform_grid).map(move |(uv, [x, y, z, ..])| {
                         (patch as u32, if triangular { exact(uv) } else { uv }, [x, y, z])
                     });
                     vertices.collect::<Vec<_>>()
                 };
-                side_points(patches, lattices.into_iter().enumerate().flat_map(at))
+                side_points(patches, uniform_grids.into_iter().enumerate().flat_map(at))
             } else {
                 capture(&Captured::new(&stage.headless, &mesh, &options).expect("a model"))
             };
