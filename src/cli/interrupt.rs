@@ -1,18 +1,26 @@
 //! Ctrl-C while a file is being written: what is written so far is taken away.
 
+use super::error::CliError;
 use std::io::{self, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const SIGNALS: [libc::c_int; 3] = [libc::SIGINT, libc::SIGTERM, libc::SIGHUP];
 
-/// While it lives, signals that ask the program to end make [`Interruptible`] fail instead. The same signal once more ends it.
+/// The watches that there are.
+static WATCHES: AtomicUsize = AtomicUsize::new(0);
+
+/// While it lives, signals that ask the program to end make [`Interruptible`] fail instead. The same signal once more ends it. A watch
+/// within another changes nothing.
 pub(super) struct Watch(());
 
 impl Watch {
     pub(super) fn start() -> Self {
+        if WATCHES.fetch_add(1, Ordering::Relaxed) > 0 {
+            return Self(());
+        }
         #[cfg(all(target_os = "linux", target_env = "gnu"))]
         for signal in SIGNALS {
             extern "C" fn note(signal: libc::c_int) {
@@ -39,6 +47,9 @@ impl Watch {
 
 impl Drop for Watch {
     fn drop(&mut self) {
+        if WATCHES.fetch_sub(1, Ordering::Relaxed) > 1 {
+            return;
+        }
         #[cfg(all(target_os = "linux", target_env = "gnu"))]
         for signal in SIGNALS {
             // SAFETY: nothing but a query, and the default of what is not ignored.
@@ -54,6 +65,14 @@ impl Drop for Watch {
 /// Whether the program is asked to end, while there is a [`Watch`].
 pub(super) fn is_interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
+}
+
+/// Fails if the program is asked to end, after some of all frames.
+pub(super) fn check_frames(written: usize, all: usize) -> Result<(), CliError> {
+    match is_interrupted() {
+        true => Err(CliError::Work(format!("interrupted: {written} of {all} frames are written"))),
+        false => Ok(()),
+    }
 }
 
 /// Writes until the program is asked to end.

@@ -8,7 +8,7 @@ mod draw;
 use super::described::described;
 use super::error::CliError;
 use super::info::Patches;
-use super::interrupt::{Watch, is_interrupted};
+use super::interrupt::{Watch, check_frames};
 use super::local::Local;
 use super::motion::{FramesOut, Moving, moved};
 use super::output::{self, Progress, write_file};
@@ -204,10 +204,7 @@ impl RenderArgs {
         let _watch = Watch::start();
         progress.fill("drawing", files.len() as u64);
         for (number, positions) in moving.frames().enumerate() {
-            if is_interrupted() {
-                let all = files.len();
-                return Err(CliError::Work(format!("interrupted: {number} of {all} frames are written")));
-            }
+            check_frames(number, files.len())?;
             let positions: Vec<[f32; 3]> = positions?.into_iter().map(|p| p.map(|x| x as f32)).collect();
             let mut pixels = drawing.draw(&views[number], Some(&positions))?;
             self.save(&files[number], &mut pixels, painting)?;

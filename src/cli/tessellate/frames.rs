@@ -1,6 +1,7 @@
 //! A tessellation of a moving mesh: faces and depths stay, vertices are filled again for each file.
 
 use super::super::error::CliError;
+use super::super::interrupt::{Watch, check_frames};
 use super::super::motion::{Moving, moved};
 use super::super::output::Progress;
 use super::{Kind, Made, TessellateArgs};
@@ -30,14 +31,19 @@ impl TessellateArgs {
         let [scale, bias] = self.displacement.amount(&first);
         progress.fill("tessellating", files.len() as u64);
         let mut counts = [0; 3];
-        for (file, positions) in files.iter().zip(moving.frames()) {
+        let _watch = Watch::start();
+        for ((number, file), positions) in files.iter().enumerate().zip(moving.frames()) {
+            check_frames(number, files.len())?;
             let positions = positions?;
             let single: Vec<[f32; 3]> = positions.iter().map(|p| p.map(|x| x as f32)).collect();
             tessellation.update(&single)?;
             if let Some(texels) = &texels {
                 tessellation.displace(|texcoord| scale * texels.sample(texcoord) + bias)?;
             }
-            counts = self.write_arrays(file, kind, &tessellation, &unused)?;
+            counts = self.write_arrays(file, kind, &tessellation, &unused).or_else(|error| {
+                check_frames(number, files.len())?;
+                Err(error)
+            })?;
             if let Some(error) = &mut largest_error {
                 let plan = Plan::<f32>::new(&Topology::new(&moved(&first, positions)?), &options)?;
                 *error = plan.error_bound()?.max(*error);

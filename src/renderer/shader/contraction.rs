@@ -25,7 +25,7 @@ const EXCEPTIONS: [(&str, &str); 17] = [
     ("pm_point_inside", INSIDE),
     ("pm_points_beside", INSIDE),
     ("pm_sum_inside", INSIDE),
-    ("examine_points", CULLING),
+    ("include_point", CULLING),
     ("faces_away", CULLING),
 ];
 const INSIDE: &str = "points inside a face, which no other patch has; those on edges are passed through";
