@@ -126,30 +126,51 @@ impl Features {
         if self.transform_feedback { vec![ash::ext::transform_feedback::NAME] } else { Vec::new() }
     }
 
+    /// Turns the features on in structures of the caller's chain for `vkCreateDevice`, and leaves what else is on there as it is. The
+    /// extension's `transformFeedback` is in neither.
+    ///
+    /// ```
+    /// use ash::vk;
+    /// use ash_subdiv::renderer::{Options, Target, requirements};
+    ///
+    /// let target = Target::dynamic(vk::Format::R8G8B8A8_SRGB, vk::Format::D32_SFLOAT, vk::SampleCountFlags::TYPE_1);
+    /// let needs = requirements(&target, &Options::default()).features;
+    /// // As your engine has them.
+    /// let mut core = vk::PhysicalDeviceFeatures::default().sampler_anisotropy(true);
+    /// let mut v13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true);
+    /// needs.enable(&mut core, &mut v13);
+    /// assert!(core.tessellation_shader == vk::TRUE && v13.dynamic_rendering == vk::TRUE);
+    /// assert!(core.sampler_anisotropy == vk::TRUE && v13.synchronization2 == vk::TRUE);
+    /// ```
+    pub fn enable(self, core: &mut vk::PhysicalDeviceFeatures, v13: &mut vk::PhysicalDeviceVulkan13Features<'_>) {
+        let set = |flag: &mut vk::Bool32, on: bool| *flag |= vk::Bool32::from(on);
+        set(&mut core.tessellation_shader, self.tessellation);
+        set(&mut core.fill_mode_non_solid, self.fill_mode_non_solid);
+        set(&mut core.wide_lines, self.wide_lines);
+        set(&mut core.vertex_pipeline_stores_and_atomics, self.vertex_stores);
+        set(&mut core.pipeline_statistics_query, self.statistics);
+        set(&mut core.geometry_shader, self.geometry);
+        set(&mut core.draw_indirect_first_instance, self.indirect_first_instance);
+        set(&mut core.multi_draw_indirect, self.multi_draw_indirect);
+        set(&mut core.independent_blend, self.independent_blend);
+        set(&mut core.shader_float64, self.float64);
+        set(&mut core.sampler_anisotropy, self.anisotropy);
+        set(&mut v13.dynamic_rendering, self.dynamic_rendering);
+        set(&mut v13.synchronization2, self.synchronization2);
+        set(&mut v13.maintenance4, self.maintenance4);
+        set(&mut v13.shader_terminate_invocation, self.terminate_invocation);
+        set(&mut v13.shader_demote_to_helper_invocation, self.demote_to_helper_invocation);
+    }
+
     /// Calls `with` with the chain of feature structures to hand to `vkCreateDevice`, for Vulkan 1.3.
     ///
     /// In it is a `VkPhysicalDeviceVulkan13Features`, of which a chain has one at most, and none of the structures that were
-    /// promoted into it beside it (such as `VkPhysicalDeviceDynamicRenderingFeatures`). If you have one, or one of those, do
-    /// without this: set the features that are on here ([`Features::named`]) in your own structures.
+    /// promoted into it beside it (such as `VkPhysicalDeviceDynamicRenderingFeatures`). If you have one, use
+    /// [`Features::enable`].
     pub fn chain<R>(self, with: impl FnOnce(&mut vk::PhysicalDeviceFeatures2<'_>) -> R) -> R {
-        let core = vk::PhysicalDeviceFeatures::default()
-            .tessellation_shader(self.tessellation)
-            .fill_mode_non_solid(self.fill_mode_non_solid)
-            .wide_lines(self.wide_lines)
-            .vertex_pipeline_stores_and_atomics(self.vertex_stores)
-            .pipeline_statistics_query(self.statistics)
-            .geometry_shader(self.geometry)
-            .draw_indirect_first_instance(self.indirect_first_instance)
-            .multi_draw_indirect(self.multi_draw_indirect)
-            .independent_blend(self.independent_blend)
-            .shader_float64(self.float64)
-            .sampler_anisotropy(self.anisotropy);
-        let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
-            .dynamic_rendering(self.dynamic_rendering)
-            .synchronization2(self.synchronization2)
-            .maintenance4(self.maintenance4)
-            .shader_terminate_invocation(self.terminate_invocation)
-            .shader_demote_to_helper_invocation(self.demote_to_helper_invocation);
+        let (mut core, mut v13) =
+            (vk::PhysicalDeviceFeatures::default(), vk::PhysicalDeviceVulkan13Features::default());
+        self.enable(&mut core, &mut v13);
         let mut feedback = vk::PhysicalDeviceTransformFeedbackFeaturesEXT::default().transform_feedback(true);
         let mut all = vk::PhysicalDeviceFeatures2::default().features(core).push_next(&mut v13);
         if self.transform_feedback {
