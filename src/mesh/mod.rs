@@ -16,7 +16,7 @@ mod rules;
 mod shapes;
 pub mod write;
 
-pub use animation::Animations;
+pub use animation::{Animations, Skinning};
 pub(crate) use check::MAX_CORNERS;
 pub use control_mesh::{ControlMesh, Corner, Crease, FaceVarying, MeshData, SHARPNESS_INFINITE};
 pub use edits::{Change, Edit, MAX_EDIT_LEVEL};

@@ -11,7 +11,7 @@ use ash_subdiv::headless::objects::{
     descriptor_set_layout, pipeline_layout,
 };
 use ash_subdiv::headless::{Headless, Offscreen};
-use ash_subdiv::mesh::{Change, Edit};
+use ash_subdiv::mesh::{Change, Edit, animated_shape};
 use ash_subdiv::renderer::{DevicePositions, Evaluation, Factor};
 use ash_subdiv::table::{ModelTables, TableError};
 use ash_subdiv::{
@@ -497,4 +497,114 @@ fn what_cannot_be_read_is_an_error() {
     assert!(matches!(give(&mut renderer, model, frame, given), Err(Error::NoSuchModel { .. })));
     drop((renderer, buffer));
     stage.finish();
+}
+
+/// A character that a shader of the caller's skins is where the CPU has it, and looks so.
+#[test]
+fn a_skinned_character_is_that_of_the_cpu() {
+    let stage = Stage::new();
+    let headless = &stage.headless;
+    let tentacle = animated_shape("tentacle").expect("built in");
+    let (mesh, animations) = (&tentacle.mesh, &tentacle.animations);
+    let of_vertices = animations.influences();
+    let most = of_vertices.iter().map(Vec::len).max().expect("vertices");
+    assert!(most > 1 && of_vertices.len() == mesh.vertex_count());
+    // What has no weight is there for every vertex to have as many.
+    let padded = |of: &Vec<(u32, f32)>| [&of[..], &vec![(0, 0.0); most - of.len()]].concat();
+    let influences: Vec<[u32; 2]> =
+        of_vertices.iter().flat_map(padded).map(|(matrix, weight)| [matrix, weight.to_bits()]).collect();
+    let view = Stage::view();
+    let mut pictures = Vec::new();
+    for number in 0..animations.len() {
+        let mut renderer = stage.renderer(&Options::default());
+        let [host, device] = [0; 2].map(|_| renderer.add_model(mesh, &ModelOptions::default()).expect("a model"));
+        let seconds = 0.4;
+        let mut expected = mesh.positions_f32();
+        animations.positions(number, seconds, &mut expected).expect("a pose");
+        let given = animations.skinning(number, seconds).expect("a pose");
+        let bound: Vec<[f32; 4]> = given.positions.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+        let frame = begin(&mut renderer);
+        let room = renderer.device_positions(device, frame).expect("room");
+        assert_eq!(room.stride, 16);
+        let skinned = skin(headless, (&bound, &influences, &given.matrices), most as u32, room);
+        let largest = common::largest_coordinate(mesh) as f32;
+        for (skinned, expected) in skinned.iter().zip(&expected) {
+            for axis in 0..3 {
+                let away = (skinned[axis] - expected[axis]).abs();
+                assert!(away < 2e-6 * largest, "animation {number}: {skinned:?} {expected:?}");
+            }
+        }
+        give(&mut renderer, device, frame, room).expect("positions");
+        renderer.set_positions(host, frame, &expected).expect("positions");
+        stage.prepare(&mut renderer, frame);
+        let view = View { light: view.light, ..View::framing(mesh.bounds(), [-0.6, 0.5, 1.0], 1.0) };
+        let [by_host, by_device] =
+            [host, device].map(|id| draw(&stage, &mut renderer, frame, (&view, DrawItem::new(id, 6.0))));
+        assert!(covered(&by_host) > 300, "{}", covered(&by_host));
+        let far = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 8;
+        let differ = by_host.iter().zip(&by_device).filter(|&pair| far(pair)).count();
+        assert!(differ < by_host.len() / 500, "animation {number}: {differ}");
+        pictures.push(by_device);
+    }
+    assert!(pictures.len() > 1 && pictures.windows(2).all(|two| two[0] != two[1]));
+    stage.finish();
+}
+
+/// Skins vertices into a room of the renderer's, with what each is bound to and what moves that, and reads them back.
+fn skin(
+    headless: &Headless,
+    (bound, influences, matrices): (&[[f32; 4]], &[[u32; 2]], &[[[f32; 4]; 4]]),
+    of_vertex: u32,
+    room: DevicePositions,
+) -> Vec<[f32; 4]> {
+    let (context, device) = (headless.context(), headless.device());
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    let bound_buffer = Buffer::with_data(context, "bound", usage, bound).expect("a buffer");
+    let influences = Buffer::with_data(context, "influences", usage, influences).expect("a buffer");
+    let matrices = Buffer::with_data(context, "matrices", usage, matrices).expect("a buffer");
+    let bytes = 16 * bound.len() as u64;
+    let to = vk::DescriptorBufferInfo { buffer: room.buffer, offset: room.offset, range: bytes };
+    let binding = (vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::COMPUTE);
+    let layout = descriptor_set_layout(context, "skin", &[binding; 4]).expect("a layout");
+    let pool = DescriptorPool::new(context, "skin", &[&layout]);
+    let constants = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size: 8 }];
+    let target = BufferDesc {
+        name: "skinned",
+        size: bytes,
+        usage: vk::BufferUsageFlags::STORAGE_BUFFER,
+        location: MemoryLocation::Readback,
+    };
+    let copy = Buffer::new(context, &target).expect("a buffer");
+    let words = [of_vertex, bound.len() as u32].map(u32::to_ne_bytes).concat();
+    // SAFETY: layouts and sets go with the shader; the submissions are waited for.
+    unsafe {
+        let pipeline_layout = pipeline_layout(context, "skin", &[layout.raw()], &constants).expect("a layout");
+        let shader = Shader::compute(shaders::SKIN_COMP);
+        let desc = ComputePipelineDesc {
+            name: "skin",
+            layout: pipeline_layout.raw(),
+            shader,
+            cache: vk::PipelineCache::null(),
+        };
+        let pipeline = desc.create(context).expect("a pipeline");
+        for to in [to, copy.descriptor()] {
+            let buffers = [bound_buffer.descriptor(), influences.descriptor(), matrices.descriptor(), to];
+            let set = DescriptorSet::of_buffers(&pool, &layout, "skin", &buffers).expect("a set");
+            let record = |cmd| {
+                let point = vk::PipelineBindPoint::COMPUTE;
+                device.cmd_bind_pipeline(cmd, point, pipeline.raw());
+                device.cmd_bind_descriptor_sets(cmd, point, pipeline_layout.raw(), 0, &[set.raw()], &[]);
+                device.cmd_push_constants(cmd, pipeline_layout.raw(), vk::ShaderStageFlags::COMPUTE, 0, &words);
+                device.cmd_dispatch(cmd, (bound.len() as u32).div_ceil(64), 1, 1);
+                let host = vk::MemoryBarrier::default()
+                    .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+                    .dst_access_mask(vk::AccessFlags::HOST_READ);
+                let (from, to) = (vk::PipelineStageFlags::COMPUTE_SHADER, vk::PipelineStageFlags::HOST);
+                device.cmd_pipeline_barrier(cmd, from, to, Default::default(), &[host], &[], &[]);
+                Ok::<(), Error>(())
+            };
+            headless.try_submit(record).expect("skinned");
+        }
+    }
+    copy.read(0, bound.len()).expect("read back")
 }

@@ -84,7 +84,35 @@ impl Binding {
         out.par_iter_mut().enumerate().map(move_to).collect()
     }
 
-    fn morphed(&self, pose: &Pose) -> Vec<DVec3> {
+    pub(super) fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The influences of each vertex, by the numbers of all parts' matrices in a row.
+    pub(super) fn influences(&self, rig: &Rig) -> impl Iterator<Item = Vec<Influence>> {
+        let count = |next: &mut u32, part: &Part| {
+            let first = *next;
+            *next += part.matrix_count(rig) as u32;
+            Some(first)
+        };
+        let firsts: Vec<u32> = self.parts.iter().scan(0, count).collect();
+        self.part_of.iter().enumerate().map(move |(vertex, &part)| {
+            let (part, first) = (&self.parts[part as usize], firsts[part as usize]);
+            match part.skin {
+                None if part.node.is_none() => Vec::new(),
+                None => vec![Influence { joint: first, weight: 1.0 }],
+                Some(_) => self.of_joints(vertex).iter().map(|i| Influence { joint: first + i.joint, ..*i }).collect(),
+            }
+        })
+    }
+
+    /// The influences of a skinned vertex.
+    fn of_joints(&self, vertex: usize) -> &[Influence] {
+        let first = vertex.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.influences[first..self.ends[vertex]]
+    }
+
+    pub(super) fn morphed(&self, pose: &Pose) -> Vec<DVec3> {
         let mut positions = self.positions.clone();
         for part in &self.parts {
             let weights = part.node.map_or(&[][..], |node| &pose.weights[node as usize]);
@@ -96,8 +124,7 @@ impl Binding {
     }
 
     fn skinned(&self, vertex: usize, position: DVec3, matrices: &[DMat4]) -> DVec3 {
-        let first = vertex.checked_sub(1).map_or(0, |before| self.ends[before]);
-        let influences = &self.influences[first..self.ends[vertex]];
+        let influences = self.of_joints(vertex);
         if influences.is_empty() {
             return position;
         }
@@ -107,8 +134,13 @@ impl Binding {
 }
 
 impl Part {
+    /// Number of [`Part::matrices`].
+    fn matrix_count(&self, rig: &Rig) -> usize {
+        self.skin.map_or(usize::from(self.node.is_some()), |skin| rig.skins[skin as usize].joints.len())
+    }
+
     /// One a joint; without a skin that of the node, if there is one.
-    fn matrices(&self, rig: &Rig, pose: &Pose) -> Vec<DMat4> {
+    pub(super) fn matrices(&self, rig: &Rig, pose: &Pose) -> Vec<DMat4> {
         let Some(skin) = self.skin else {
             return self.node.map(|node| pose.globals[node as usize]).into_iter().collect();
         };

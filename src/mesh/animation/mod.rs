@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `keys` | values at times, and the three interpolations between them |
 //! | `rig` | nodes with their transforms, skins, and what moves them: the pose at a time |
+//! | `skinning` | what shaders of the caller's skin by |
 //! | `binding` | what each control vertex follows: its node or joints, and its morph offsets |
 //!
 //! The order is that of glTF 2.0: morph targets first, then the skin. A skinned vertex is where its joints are; the transform of its
@@ -12,13 +13,17 @@
 mod binding;
 mod keys;
 mod rig;
+mod skinning;
 
 pub(crate) use binding::{Binding, Influence, Part};
 pub(crate) use keys::{Interpolation, Keys};
 pub(crate) use rig::{Clip, Node, Path, Placement, Rig, Skin, Track};
 
+pub use skinning::Skinning;
+
 use super::MeshError;
 use glam::DVec3;
+use rig::Pose;
 
 /// The animations of a mesh: positions of its control vertices at any time.
 ///
@@ -116,15 +121,21 @@ impl Animations {
         positions: &mut [T],
         of: impl Fn(DVec3) -> T + Sync,
     ) -> Result<(), MeshError> {
-        let unknown = || MeshError::UnknownAnimation { name: animation.to_string(), known: self.known() };
-        let clip = self.clips.get(animation).ok_or_else(unknown)?;
+        let pose = self.pose(animation, seconds)?;
         let (given, count) = (positions.len(), self.binding.vertex_count());
         if given != count {
             return Err(MeshError::PositionCount { given, count });
         }
+        self.binding.positions(&self.rig, &pose, positions, of)
+    }
+
+    /// All nodes at a time of an animation.
+    fn pose(&self, animation: usize, seconds: f64) -> Result<Pose, MeshError> {
+        let unknown = || MeshError::UnknownAnimation { name: animation.to_string(), known: self.known() };
+        let clip = self.clips.get(animation).ok_or_else(unknown)?;
         if !seconds.is_finite() {
             return Err(MeshError::BadTime { seconds });
         }
-        self.binding.positions(&self.rig, &self.rig.pose(clip, seconds), positions, of)
+        Ok(self.rig.pose(clip, seconds))
     }
 }

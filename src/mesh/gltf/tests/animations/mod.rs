@@ -96,6 +96,19 @@ fn positions(animated: &Animated, seconds: f64) -> Vec<[f64; 3]> {
     let mut single = vec![[0.0f32; 3]; positions.len()];
     animated.animations.positions(0, seconds, &mut single).unwrap();
     assert_eq!(single, positions.iter().map(|p| p.map(|x| x as f32)).collect::<Vec<_>>());
+    // And what a shader makes of what it is given.
+    let given = animated.animations.skinning(0, seconds).unwrap();
+    let largest = single.as_flattened().iter().fold(1.0f32, |largest, x| largest.max(x.abs()));
+    let of_vertices = animated.animations.influences();
+    assert!(given.positions.len() == single.len() && of_vertices.len() == single.len());
+    for ((rest, of), expected) in given.positions.iter().zip(of_vertices).zip(&single) {
+        let rest = glam::Vec3::from(*rest);
+        let skin = |moved, &(matrix, weight): &(u32, f32)| {
+            moved + weight * glam::Mat4::from_cols_array_2d(&given.matrices[matrix as usize]).transform_point3(rest)
+        };
+        let moved = if of.is_empty() { rest } else { of.iter().fold(glam::Vec3::ZERO, skin) };
+        assert!(moved.distance((*expected).into()) < 5e-6 * largest, "{moved} {expected:?}");
+    }
     positions
 }
 

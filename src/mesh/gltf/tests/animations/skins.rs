@@ -102,6 +102,7 @@ fn skins_of_one_four_eight_and_nine_influences() {
         let expected: Vec<_> = (0..9).map(|v| skinned(rest[v], &bound[grid_vertex(v)], &globals, &binds)).collect();
         assert_near(&positions(&animated, 1.0), &expected, 1e-12);
         assert!(animated.animations.notes()[0].ends_with("that do not add up to one: they are scaled"));
+        assert_eq!(animated.animations.influences().iter().map(Vec::len).max(), Some(influences));
     }
 }
 
@@ -243,4 +244,22 @@ fn one_joint_without_matrices_and_weights_that_are_odd() {
     let mut file = one_joint([1., 0., 0., 0.], [0; 4]);
     file.primitive_mut()["attributes"].as_object_mut().unwrap().retain(|name, _| name == "POSITION");
     assert_eq!(rise(file), ([0., 0., 0.], vec![]));
+}
+
+/// Two nodes with the same mesh, each moved on its own.
+#[test]
+fn nodes_have_matrices_of_their_own() {
+    let mut file = grid();
+    file.json["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0, "translation": [0, 0, 9] }]);
+    file.json["scenes"] = json!([{ "nodes": [0, 1] }]);
+    for (node, end) in [[7.0f32, 0.0, 0.0], [0.0, 20.0, 0.0]].iter().enumerate() {
+        let output = file.floats(&[[0.0; 3], *end]);
+        file.channel(node, "translation", &[0.0, 1.0], output, "LINEAR");
+    }
+    let animated = file.animated();
+    let [rest, moved] = [0.0, 1.0].map(|seconds| positions(&animated, seconds));
+    assert_eq!(moved.len(), 18);
+    let ways = rest.iter().zip(&moved).map(|(a, b)| [b[0] - a[0], b[1] - a[1], b[2] - a[2]]);
+    let of_both = [[7.0, 0.0, 0.0], [0.0, 20.0, 0.0]].map(|way| ways.clone().filter(|w| *w == way).count());
+    assert_eq!(of_both, [9, 9]);
 }
