@@ -11,7 +11,7 @@ use ash_subdiv::headless::objects::{
     descriptor_set_layout, pipeline_layout,
 };
 use ash_subdiv::headless::{Headless, Offscreen};
-use ash_subdiv::mesh::{Change, Edit, animated_shape};
+use ash_subdiv::mesh::{Change, Edit, Skinning, animated_shape};
 use ash_subdiv::renderer::{DevicePositions, Evaluation, Factor};
 use ash_subdiv::table::{ModelTables, TableError};
 use ash_subdiv::{
@@ -522,11 +522,10 @@ fn a_skinned_character_is_that_of_the_cpu() {
         let mut expected = mesh.positions_f32();
         animations.positions(number, seconds, &mut expected).expect("a pose");
         let given = animations.skinning(number, seconds).expect("a pose");
-        let bound: Vec<[f32; 4]> = given.positions.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
         let frame = begin(&mut renderer);
         let room = renderer.device_positions(device, frame).expect("room");
         assert_eq!(room.stride, 16);
-        let skinned = skin(headless, (&bound, &influences, &given.matrices), most as u32, room);
+        let skinned = skin(headless, &given, (&influences, most as u32), room);
         let largest = common::largest_coordinate(mesh) as f32;
         for (skinned, expected) in skinned.iter().zip(&expected) {
             for axis in 0..3 {
@@ -553,15 +552,16 @@ fn a_skinned_character_is_that_of_the_cpu() {
 /// Skins vertices into a room of the renderer's, with what each is bound to and what moves that, and reads them back.
 fn skin(
     headless: &Headless,
-    (bound, influences, matrices): (&[[f32; 4]], &[[u32; 2]], &[[[f32; 4]; 4]]),
-    of_vertex: u32,
+    given: &Skinning,
+    (influences, of_vertex): (&[[u32; 2]], u32),
     room: DevicePositions,
 ) -> Vec<[f32; 4]> {
     let (context, device) = (headless.context(), headless.device());
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    let bound_buffer = Buffer::with_data(context, "bound", usage, bound).expect("a buffer");
+    let bound: Vec<[f32; 4]> = given.positions.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+    let bound_buffer = Buffer::with_data(context, "bound", usage, &bound).expect("a buffer");
     let influences = Buffer::with_data(context, "influences", usage, influences).expect("a buffer");
-    let matrices = Buffer::with_data(context, "matrices", usage, matrices).expect("a buffer");
+    let matrices = Buffer::with_data(context, "matrices", usage, &given.matrices).expect("a buffer");
     let bytes = 16 * bound.len() as u64;
     let to = vk::DescriptorBufferInfo { buffer: room.buffer, offset: room.offset, range: bytes };
     let binding = (vk::DescriptorType::STORAGE_BUFFER, vk::ShaderStageFlags::COMPUTE);
