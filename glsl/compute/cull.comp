@@ -1,8 +1,7 @@
 // Which patches of a draw can be seen: one invocation for each patch, by the rules of the control shaders. Control points that are
-// cached are read; others are made, as in a draw of the two-stage or the stencil construction, for nothing but this. Of faces that are
-// refined, hulls are. Each workgroup
-// lists those of its patches that can be seen, and writes the indirect draws of them; for instances to have what is kept of them as
-// attributes, it also copies that, one after the other as on the list.
+// cached are read; others are made, as in a draw of the two-stage or the stencil construction, for nothing but this; of refined faces,
+// hulls are read. Each workgroup lists those of its patches that can be seen, and writes the indirect draws of them; for instances to have
+// what is kept of them as attributes, it also copies that, one after the other as on the list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MAKES_LISTS

@@ -26,7 +26,7 @@ pub struct LeafTable {
     /// `WEDGE_BIT` where it is a wedge, and its edge or corner; or `OWNER_NONE`, where a neighbour is not refined. Of patches that are
     /// not refined zeros.
     pub faces: Vec<[u32; FACE_WORDS as usize]>,
-    /// The hulls of faces, of which wedges of one face have the same: the number of entries, then for each a vertex, or with
+    /// The hulls of faces: the number of entries, then for each a vertex, or with
     /// `HULL_CAP_BIT` the first of `CAP_VERTICES`. The surface of the face lies between all of these.
     pub hulls: Vec<u32>,
     /// For each leaf, its kind; a crease's sharpness or the first of the four face points f- of an end cap; two words that are not

@@ -1,5 +1,5 @@
 // What culling looks at of faces that are refined, in the place of control points: leaves may reach beyond these. The surface lies
-// between the vertices around the face, but for end caps, which lie between their own control points. Rust twin: src/table/hulls.rs.
+// between the vertices around the face, or the control points of its leaves, but for end caps, which lie between their own. Rust twin: src/table/hulls.rs.
 #ifndef HULLS_GLSL
 #define HULLS_GLSL
 
