@@ -104,7 +104,7 @@ impl Captured<'_> {
     }
 
     /// The patches of a kind, as many at a time as one buffer holds.
-    fn windows(&self, kind: PatchKind, bytes: u64) -> impl Iterator<Item = Range<u32>> {
+    pub(super) fn windows(&self, kind: PatchKind, bytes: u64) -> impl Iterator<Item = Range<u32>> {
         let patches = self.tables.plan().range(kind);
         let (start, end) = (patches.start as u32, patches.end as u32);
         let max = MAX_BYTES.min(self.headless.properties().max_storage_buffer_range) - HEAD_BYTES;

@@ -249,13 +249,12 @@ impl<'h> Captured<'h> {
     /// As [`Renderer::cmd_draw`] and [`Renderer::set_edge_factors`].
     pub fn vertices_of(&self, draw: &CaptureDraw, which: Which) -> Result<Vec<CapturedVertex>, Error> {
         let max = self.headless.properties().max_tessellation_level;
-        let most = self.largest_factor(draw)?;
         let tessellated = self.evaluation(Capture::Vertices) == Evaluation::Tessellation;
-        let segments = match tessellated {
-            true => self.options.spacing.segments(most, max),
-            false => (most.ceil() as u32).min(MAX_SEGMENTS),
-        };
-        let bytes = |kind: PatchKind| {
+        let bytes = |most: f32, kind: PatchKind| {
+            let segments = match tessellated {
+                true => self.options.spacing.segments(most, max),
+                false => (most.ceil() as u32).min(MAX_SEGMENTS),
+            };
             let domain = if kind.is_triangular() { Domain::Triangles } else { Domain::Quads };
             let vertices = match which {
                 Which::All if !tessellated => uniform_grid_vertices(kind, segments),
@@ -266,17 +265,29 @@ impl<'h> Captured<'h> {
             let shares = tessellated && self.headless.properties().patch_batch == PatchBatch::LAVAPIPE;
             if shares { vertices * RECORD_BYTES } else { 6 * vertices * RECORD_BYTES }
         };
+        // Factors that only the device knows take pipelines of their own to be captured: not where there is room for the largest.
+        let has_room = |kind| self.windows(kind, bytes(max as f32, kind)).count() <= 1;
+        let most = match known_factor(draw) {
+            Some(most) => most,
+            None if tessellated && PatchKind::ALL.into_iter().all(has_room) => max as f32,
+            None => self.captured_factor(draw)?,
+        };
         let mut vertices = Vec::new();
-        let captured = self.capture(Capture::Vertices, draw, bytes, |patches| Head {
-            first_patch: patches.start,
-            patches: patches.len() as u32,
-            grid: match which {
-                Which::All => 0,
-                Which::OnEdges => EDGES_ONLY,
+        let captured = self.capture(
+            Capture::Vertices,
+            draw,
+            |kind| bytes(most, kind),
+            |patches| Head {
+                first_patch: patches.start,
+                patches: patches.len() as u32,
+                grid: match which {
+                    Which::All => 0,
+                    Which::OnEdges => EDGES_ONLY,
+                },
+                capacity: u32::MAX,
+                count: 0,
             },
-            capacity: u32::MAX,
-            count: 0,
-        })?;
+        )?;
         for (_, words) in captured {
             vertices.extend_from_slice(bytemuck::cast_slice(&words));
         }
@@ -298,10 +309,10 @@ impl<'h> Captured<'h> {
             let device = self.headless.properties().name.clone();
             return Err(Error::Unsupported { device, missing: vec!["geometryShader".into()] });
         }
-        let segments = self
-            .options
-            .spacing
-            .segments(self.largest_factor(draw)?, self.headless.properties().max_tessellation_level);
+        let segments = self.options.spacing.segments(
+            known_factor(draw).map_or_else(|| self.captured_factor(draw), Ok)?,
+            self.headless.properties().max_tessellation_level,
+        );
         // Those of a quad; triangles have fewer.
         let bytes = 2 * u64::from(segments).pow(2) * 3 * RECORD_BYTES;
         let head = |patches: &Range<u32>| Head {
@@ -323,12 +334,17 @@ impl<'h> Captured<'h> {
         }
     }
 
-    /// The largest that an edge asks for.
-    fn largest_factor(&self, draw: &CaptureDraw) -> Result<f32, Error> {
-        match draw.factor {
-            Factor::Uniform(factor) => Ok(factor),
-            Factor::Edges(scale) => Ok(draw.edge_factors.iter().fold(1.0, |most, factor| (scale * factor).max(most))),
-            _ => Ok(self.factors(draw)?.iter().flat_map(|f| f.asked).fold(1.0, f32::max)),
-        }
+    /// The largest factor that an edge asks for, as the device finds it.
+    fn captured_factor(&self, draw: &CaptureDraw) -> Result<f32, Error> {
+        Ok(self.factors(draw)?.iter().flat_map(|f| f.asked).fold(1.0, f32::max))
+    }
+}
+
+/// The largest factor that an edge asks for, where it does not depend on the view.
+fn known_factor(draw: &CaptureDraw) -> Option<f32> {
+    match draw.factor {
+        Factor::Uniform(factor) => Some(factor),
+        Factor::Edges(scale) => Some(draw.edge_factors.iter().fold(1.0, |most, factor| (scale * factor).max(most))),
+        _ => None,
     }
 }

@@ -13,10 +13,11 @@ use ash_subdiv::headless::{Headless, Texture};
 use ash_subdiv::measure::watertight::{
     self, Mismatch, Seams, Tally, leaked_pixels, random_factors, with_seams_everywhere,
 };
-use ash_subdiv::renderer::{Cull, Factor};
+use ash_subdiv::renderer::{Cull, Factor, ModelTables};
 use ash_subdiv::{Construction, ControlMesh, ModelOptions, Scheme, Spacing, View};
 use clap::Args;
 use glam::Vec3;
+use rayon::prelude::*;
 use serde::Serialize;
 
 #[derive(Debug, Args)]
@@ -89,6 +90,9 @@ described! {
     }
 }
 
+/// Faces of a mesh whose draws take longer than the pipelines that draw it.
+const MANY_FACES: usize = 100_000;
+
 /// Factors of a draw, and what they are called.
 fn draws(seams_edges: usize, view: View, largest: f32, seed: u64) -> Vec<(String, CaptureDraw)> {
     let plain = |factor: f32| (format!("uniform {factor}"), CaptureDraw { view, ..CaptureDraw::new(factor) });
@@ -126,6 +130,39 @@ impl WatertightArgs {
     fn options(&self, construction: Construction, spacing: Spacing, shared_normals: bool) -> ModelOptions {
         let options = self.source.model_options(Scheme::Gregory, construction);
         ModelOptions { spacing, shared_normals, edge_factors: true, ..options }
+    }
+
+    /// Options of every way to draw, and whether it is displaced.
+    fn ways(&self) -> Vec<(ModelOptions, bool)> {
+        let mut ways = Vec::new();
+        for &construction in self.constructions() {
+            for spacing in Spacing::ALL {
+                for (shared_normals, displaced) in [(false, false), (true, false), (true, true)] {
+                    ways.push((self.options(construction, spacing, shared_normals), displaced));
+                }
+            }
+        }
+        ways
+    }
+
+    /// Compares a mesh in every way to draw, in the order of [`WatertightArgs::ways`].
+    fn compare_all(
+        &self,
+        headless: &Headless,
+        mesh: &ControlMesh,
+        seed: u64,
+        closed: bool,
+    ) -> Result<Vec<(Configuration, Tally)>, CliError> {
+        let compare = |(options, displaced)| {
+            let setup = self.setup(headless, mesh, options, displaced)?;
+            self.compare(headless, mesh, &setup, seed, closed)
+        };
+        // Pipelines are made in parallel where they take longer than draws, whose tables and buffers take memory.
+        let found: Result<Vec<_>, _> = match mesh.face_count() < MANY_FACES {
+            true => self.ways().into_par_iter().map(compare).collect(),
+            false => self.ways().into_iter().map(compare).collect(),
+        };
+        Ok(found?.into_iter().flatten().collect())
     }
 
     fn setup<'h>(
@@ -167,32 +204,21 @@ pub(super) fn run(args: &WatertightArgs, json: bool) -> Result<(), CliError> {
     let closed = mesh.boundary_edge_count() == 0 && mesh.data().holes.is_empty();
     progress.now("building tables");
     let (device, edges, configurations, first) = args.device.run(|headless| {
+        let edges = {
+            let tables = ModelTables::new(&mesh, &args.ways()[0].0)?;
+            report_notices(tables.notices(), &progress);
+            Seams::new(&mesh, &tables)?.edge_count()
+        };
+        progress.now("comparing");
         let mut configurations = Vec::new();
         let mut first = None;
-        let mut edges = 0;
         let mut samples = 0;
-        let mut seed = 0;
-        loop {
-            for &construction in args.constructions() {
-                for spacing in Spacing::ALL {
-                    for (shared_normals, displaced) in [(false, false), (true, false), (true, true)] {
-                        let options = args.options(construction, spacing, shared_normals);
-                        let setup = args.setup(headless, &mesh, options, displaced)?;
-                        if seed == 0 && edges == 0 {
-                            report_notices(setup.captured.tables().notices(), &progress);
-                        }
-                        edges = setup.seams.edge_count();
-                        progress.now("comparing");
-                        let found = args.compare(headless, &mesh, &setup, seed, closed)?;
-                        for (configuration, tally) in found {
-                            samples += tally.samples;
-                            first = first.or(tally.first);
-                            configurations.push(configuration);
-                        }
-                    }
-                }
+        for seed in 0.. {
+            for (configuration, tally) in args.compare_all(headless, &mesh, seed, closed)? {
+                samples += tally.samples;
+                first = first.or(tally.first);
+                configurations.push(configuration);
             }
-            seed += 1;
             if samples >= args.samples || samples == 0 {
                 break;
             }

@@ -282,7 +282,9 @@ pub fn leaked_pixels(
     let Layers { renderer, target } = &mut layers;
     // SAFETY: the texture outlives the model, and nothing else looks at it.
     let map = displacement.map(|texture| unsafe { renderer.add_displacement(texture.into()) });
-    let model = renderer.add_model(mesh, &ModelOptions { displacement: map, ..options.clone() })?;
+    let options = ModelOptions { displacement: map, ..options.clone() };
+    let (tables, drawn_so) = (ModelTables::new(mesh, &options)?, (draw.factor, draw.cull));
+    let model = renderer.add_drawn(tables, &mesh.positions_f32(), &options, drawn_so)?;
     // SAFETY: the frame before was waited for.
     let frame = unsafe { renderer.begin_frame() };
     if let Factor::Edges(_) = draw.factor {

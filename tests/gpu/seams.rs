@@ -146,28 +146,32 @@ fn adaptive_surfaces_are_watertight() {
     let built_in = ["creature-mixed", "machine-part", "valences", "cloth", "cube", "fan", "polygons"];
     let built_in = built_in.map(|name| (name.to_owned(), shape(name).expect("built in")));
     let random = (0..4).map(|seed| ("random".to_owned(), random_creased_mesh(seed)));
-    for ((name, mesh), i) in built_in.into_iter().chain(random).zip(0..) {
-        let mesh = with_texcoords(mesh);
-        let construction = Construction::ALL[i % 3];
-        let (faces, leaves) = (DrawnBy::Faces, DrawnBy::Leaves);
-        let ways = [(None, true, faces), (Some(0), true, faces), (Some(1), false, faces), (Some(3), true, faces)];
-        let by_leaves = [(Some(0), false, leaves), (Some(2), true, leaves)];
-        for (depth, displaced, drawn_by) in ways.into_iter().chain(by_leaves) {
-            // Faces of five and more corners are drawn by leaves in any case. Where depths differ, levels do by more than one.
-            let sharp_depth = depth.filter(|_| drawn_by == leaves).map(|depth| 2 * depth);
-            let options = |depth| AdaptiveOptions { depth, sharp_depth, drawn_by, ..AdaptiveOptions::default() };
-            let adaptive = depth.map(options);
-            if depth.is_none() && !mesh.data().face_sizes.iter().any(|&size| size > 4) {
-                continue;
-            }
+    let meshes: Vec<_> =
+        built_in.into_iter().chain(random).map(|(name, mesh)| (name, with_texcoords(mesh))).zip(0..).collect();
+    let (faces, leaves) = (DrawnBy::Faces, DrawnBy::Leaves);
+    let by_faces = [(None, true, faces), (Some(0), true, faces), (Some(1), false, faces), (Some(3), true, faces)];
+    let by_leaves = [(Some(0), false, leaves), (Some(2), true, leaves)];
+    // Meshes last, so that all can use the same pipelines.
+    for (way, (depth, displaced, drawn_by)) in by_faces.into_iter().chain(by_leaves).enumerate() {
+        // Where depths differ, levels do by more than one.
+        let sharp_depth = depth.filter(|_| drawn_by == leaves).map(|depth| 2 * depth);
+        let adaptive =
+            depth.map(|depth| AdaptiveOptions { depth, sharp_depth, drawn_by, ..AdaptiveOptions::default() });
+        for (k, construction) in Construction::ALL.into_iter().enumerate() {
             let options =
-                ModelOptions { construction, spacing: SPACINGS[i / 3 % 3], adaptive, ..ModelOptions::default() };
-            let tally = tally(&headless, &mesh, &options, displaced.then_some(&texture), i as u64);
-            assert!(
-                tally.is_watertight(),
-                "{name} depth {depth:?} by {drawn_by:?} displaced {displaced} {construction:?}: {tally:?}"
-            );
-            samples += tally.samples;
+                ModelOptions { construction, spacing: SPACINGS[(way + k) % 3], adaptive, ..ModelOptions::default() };
+            for ((name, mesh), i) in meshes.iter().filter(|(_, i)| i % 3 == k) {
+                // Faces of five and more corners are drawn by leaves in any case.
+                if depth.is_none() && !mesh.data().face_sizes.iter().any(|&size| size > 4) {
+                    continue;
+                }
+                let tally = tally(&headless, mesh, &options, displaced.then_some(&texture), *i as u64);
+                assert!(
+                    tally.is_watertight(),
+                    "{name} depth {depth:?} by {drawn_by:?} displaced {displaced} {construction:?}: {tally:?}"
+                );
+                samples += tally.samples;
+            }
         }
     }
     assert!(samples > 500_000, "{samples} pairs");

@@ -123,8 +123,10 @@ fn vertices_are_those_of_the_tessellation_stages() {
         ("cloth", &[6], &[Scheme::Gregory]),
         ("pentagons", &[6, 13], &[Scheme::Pm]),
     ];
-    // Shapes last, so that all can use the same pipelines.
-    for options in Scheme::ALL.into_iter().flat_map(ways) {
+    let mut all: Vec<_> = Scheme::ALL.into_iter().flat_map(ways).collect();
+    // Ways beside the same patches of the tessellation stages after each other and shapes last, so that they can use the same pipelines.
+    all.sort_by_key(|options| (options.scheme as u32, tessellated(options).construction as u32));
+    for options in all {
         let scheme = options.scheme;
         for (name, counts, _) in shapes.iter().filter(|(_, _, schemes)| schemes.contains(&scheme)) {
             let mesh = if *name == "pentagons" { common::pentagons() } else { shape(name).expect("built in") };
