@@ -39,7 +39,7 @@
 //! | 9 | [`triangles`](mod@triangles) (feature `headless`) | triangles of the CPU, drawn as the renderer shades | files, windows |
 //! | 9 | `capture` (feature `headless`) | control points and evaluated vertices, read back from the GPU | files, windows |
 //! | 8 | [`renderer`] | the drop-in module: models, pipelines, frames | files, windows |
-//! | 7 | [`tessellate`] | tessellation factors, edges and culling, as the shaders have them | Vulkan, models |
+//! | 7 | [`tessellator`] | tessellation factors, edges and culling, as the shaders have them | Vulkan, models |
 //! | 7 | `headless` (feature `headless`) | a device of our own, without a window, for tests and tools | patches |
 //! | 6 | [`table`] | what the GPU reads | Vulkan |
 //! | 5 | [`adaptive`] | feature-adaptive subdivision: which cells are refined, and the sums that make their vertices | Vulkan, positions |
@@ -153,7 +153,7 @@ mod named;
 pub mod patch;
 pub mod renderer;
 pub mod table;
-pub mod tessellate;
+pub mod tessellator;
 pub mod topology;
 #[cfg(feature = "headless")]
 pub mod triangles;

@@ -30,7 +30,7 @@ named! {
     ///
     /// All but the tessellation stages and subdivision evaluate on a uniform grid with the same number of segments along every edge,
     /// from 1 to 1024, or with factors of edges ([`TableOptions::edge_factors`]) of which the largest holds inside patches: they are for
-    /// [`Spacing::Equal`], and for [`Factor::Segments`](crate::tessellate::Factor::Segments) where [`Evaluation::needs_segments`]. Where patches share positions to the last bit, they
+    /// [`Spacing::Equal`], and for [`Factor::Segments`](crate::tessellator::Factor::Segments) where [`Evaluation::needs_segments`]. Where patches share positions to the last bit, they
     /// do so here; for normals and displacement see [`Evaluation::shares`], for culling [`Evaluation::culls`].
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     #[non_exhaustive]
@@ -51,7 +51,7 @@ named! {
         /// they are evaluated as by [`Evaluation::Instanced`]. Needs no queue that computes.
         GeometryTwoPass = "geometry-two-pass",
         /// No patches: a geometry shader subdivides each face by the Catmull-Clark rules, straight from the control vertices, in each
-        /// draw anew (Antal et al. 2007). The [`Factor`](crate::tessellate::Factor) is `Uniform`: 1, 2, 4 or 8 segments along every edge, for 0
+        /// draw anew (Antal et al. 2007). The [`Factor`](crate::tessellator::Factor) is `Uniform`: 1, 2, 4 or 8 segments along every edge, for 0
         /// to 3 levels. Vertices are those of the refined mesh, not limit points, with the normals of limit points; creases and
         /// corners of finite sharpness are followed as far as the levels go. Neighbouring faces share positions to the bit.
         ///
@@ -79,7 +79,7 @@ impl Evaluation {
         }
     }
 
-    /// Whether draws can cull patches ([`Cull`](crate::tessellate::Cull)): by `Renderer::cmd_cull`, the tessellation stages by themselves,
+    /// Whether draws can cull patches ([`Cull`](crate::tessellator::Cull)): by `Renderer::cmd_cull`, the tessellation stages by themselves,
     /// too.
     pub fn culls(self) -> bool {
         matches!(self, Self::Tessellation | Self::Instanced)

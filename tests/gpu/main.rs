@@ -23,7 +23,7 @@ mod screen;
 mod seams;
 mod sharpness;
 mod subdivision;
-mod tessellate;
+mod tessellator;
 mod twins;
 mod uniform_grid_pictures;
 mod uniform_grids;

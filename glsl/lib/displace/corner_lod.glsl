@@ -1,4 +1,4 @@
-// The level of the displacement map for a corner of a patch. Rust twin: `corner_lod` in src/tessellate/factors.rs.
+// The level of the displacement map for a corner of a patch. Rust twin: `corner_lod` in src/tessellator/factors.rs.
 #ifndef CORNER_LOD_GLSL
 #define CORNER_LOD_GLSL
 

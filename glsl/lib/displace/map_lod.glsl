@@ -1,4 +1,4 @@
-// A level of the displacement map. Rust twin: `map_lod` in src/tessellate/factors.rs.
+// A level of the displacement map. Rust twin: `map_lod` in src/tessellator/factors.rs.
 #ifndef MAP_LOD_GLSL
 #define MAP_LOD_GLSL
 

@@ -2,7 +2,7 @@
 //
 // To be included where CORNERS and the `owned` control points are known, and where there are `outside` and `pixel_box` for what
 // `examine` finds at each corner. HULL of a corner's control points enclose the patch, with those of the others; 0 if they need not.
-// Rust twins: src/tessellate/culling.rs.
+// Rust twins: src/tessellator/culling.rs.
 #ifndef CULLING_GLSL
 #define CULLING_GLSL
 

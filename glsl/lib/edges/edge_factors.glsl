@@ -1,4 +1,4 @@
-// The factors of a patch's edges, of its `owned` control points, CORNERS of them. Rust twins: src/tessellate/factors.rs.
+// The factors of a patch's edges, of its `owned` control points, CORNERS of them. Rust twins: src/tessellator/factors.rs.
 #ifndef EDGE_FACTORS_GLSL
 #define EDGE_FACTORS_GLSL
 

@@ -1,5 +1,5 @@
 // What both patches at an edge evaluate alike, from data of the edge alone. Rust twins: src/patch/edge.rs,
-// src/tessellate/edges.rs.
+// src/tessellator/edges.rs.
 #ifndef EDGES_GLSL
 #define EDGES_GLSL
 

@@ -2,7 +2,7 @@
 //
 // The factor of an edge comes from the edge alone (its Bezier points, which both its patches have to the bit), by sums that
 // are the same from either end; so it is the same for both, whether one of them is culled or not. Rust twins:
-// src/tessellate/factors.rs, src/tessellate/draw.rs.
+// src/tessellator/factors.rs, src/tessellator/draw.rs.
 #ifndef FACTORS_GLSL
 #define FACTORS_GLSL
 

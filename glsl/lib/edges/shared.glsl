@@ -1,5 +1,5 @@
 // What a patch corner shares with other patches: made in the vertex shader or in the control shader, and handed on by the latter.
-// Rust twins: src/table/shared.rs, src/tessellate/shared.rs.
+// Rust twins: src/table/shared.rs, src/tessellator/shared.rs.
 #ifndef SHARED_GLSL
 #define SHARED_GLSL
 

@@ -4,7 +4,7 @@ use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 use crate::table::TableError;
 use crate::table::{Construction, Evaluation};
-use crate::tessellate::Factor;
+use crate::tessellator::Factor;
 use ash::vk;
 
 /// What can go wrong in the renderer.

@@ -3,7 +3,7 @@
 use super::id::ModelId;
 #[cfg(doc)]
 use crate::renderer::{Evaluation, Renderer};
-use crate::tessellate::{Cull, Factor};
+use crate::tessellator::{Cull, Factor};
 
 /// One model drawn once.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -25,7 +25,7 @@ pub use style::{Fragment, Geometry, Style};
 pub use target::{ColorEncoding, Pass, Target};
 pub use view::{MeasuredFrom, View};
 
-pub use crate::tessellate::{Cull, Factor};
+pub use crate::tessellator::{Cull, Factor};
 
 pub(crate) use error::EVALUATED_VERTICES;
 pub(crate) use view::is_size;

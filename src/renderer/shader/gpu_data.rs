@@ -36,7 +36,7 @@ impl ViewData {
             light: light.extend(0.0).into(),
             measured_view_projection: view_projection,
             measured_eye: [eye_x, eye_y, eye_z, 1.0],
-            viewport: crate::tessellate::viewport(&view_projection, viewport),
+            viewport: crate::tessellator::viewport(&view_projection, viewport),
         }
     }
 }

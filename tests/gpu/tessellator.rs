@@ -9,7 +9,7 @@ use ash_subdiv::measure::watertight::random_factors;
 use ash_subdiv::patch::RingValues;
 use ash_subdiv::renderer::{Cull, Factor};
 use ash_subdiv::table::{Patch, PatchPlan, SharedTable, prepare_patches};
-use ash_subdiv::tessellate::{
+use ash_subdiv::tessellator::{
     FramedRing, MeasuredDraw, PatchFactors, SharedSample, SharingCorner, share, share_corner,
 };
 use ash_subdiv::topology::{PatchKind, Topology};

@@ -1,5 +1,5 @@
-//! How finely patches are tessellated, which are culled, and what lies along their edges: on the CPU, in f32 and in the order in
-//! which the shaders compute it.
+//! The tessellator's orders: factors of patches and edges, which patches are culled, and what lies along the edges. On the CPU, in
+//! f32 and in the order in which the shaders compute it.
 //!
 //! Every function here has a GLSL twin of the same name. Where that is `precise` both give the same bits, as far as the driver
 //! rounds divisions and square roots as IEEE 754 says.
