@@ -1,6 +1,6 @@
 //! How deep each facet is.
 
-use super::bounds::{Bounds, PIECE};
+use super::bounds::{Asked, Bounds, PIECE};
 use super::finer::{Cell, Finer};
 use super::options::{Camera, Depth, DiceOptions};
 use crate::mesh::MeshError;
@@ -46,9 +46,11 @@ pub(super) fn halvings(
         Depth::Tolerance(distance) => {
             let facets: Vec<u32> = (0..).zip(drawn).filter(|(_, drawn)| **drawn).map(|(facet, _)| facet).collect();
             let mut depths = vec![0; mesh.face_count()];
+            let asked = |depth| Asked { depth, has_finer_edges: false };
             for piece in facets.chunks(PIECE) {
                 let bounds = Bounds::new(topology, finer, piece, deepest)?;
-                let least = |index| (0..deepest).find(|&n| bounds.is_within(*distance, index, n)).unwrap_or(deepest);
+                let least =
+                    |index| (0..deepest).find(|&n| bounds.is_within(*distance, index, asked(n))).unwrap_or(deepest);
                 let of_facets: Vec<u32> = (0..piece.len()).into_par_iter().map(least).collect();
                 piece.iter().zip(of_facets).for_each(|(&facet, depth)| depths[facet as usize] = depth);
             }
@@ -68,6 +70,12 @@ pub(super) fn halvings(
         *depth = finer.holes(facet).iter().map(|hole| hole.halvings).fold(*depth, u32::max);
     }
     limit_steps(topology, drawn, &mut depths, options.max_step);
+    if let Depth::Tolerance(distance) = options.depth {
+        let mut kept = vec![None; depths.len()];
+        while deepen_beside_finer((topology, finer), (distance, deepest), drawn, &mut depths, &mut kept)? {
+            limit_steps(topology, drawn, &mut depths, options.max_step);
+        }
+    }
     Ok(depths.into_iter().zip(drawn).map(|(depth, drawn)| drawn.then_some(depth)).collect())
 }
 
@@ -83,6 +91,44 @@ fn of_cell(finer: &Finer, cell: Cell, of_face: &impl Fn(&Topology, u32) -> u32) 
             of_face(&level.topology, level.faces[index as usize].face)
         }
     }
+}
+
+/// Makes facets deeper that are beside finer ones, and therefore not within a distance of the surface; tells whether there were any.
+/// `kept` are the depths at which they are.
+fn deepen_beside_finer(
+    (topology, finer): (&Topology, &Finer),
+    (distance, deepest): (f64, u32),
+    drawn: &[bool],
+    depths: &mut [u32],
+    kept: &mut [Option<u32>],
+) -> Result<bool, MeshError> {
+    let depth = |facet: u32| depths[facet as usize];
+    let is_finer =
+        |h: u32| topology.twin(h).is_some_and(|twin| drawn[twin as usize / 4] && depth(twin / 4) > depth(h / 4));
+    let is_asked = |facet: &u32| {
+        let index = *facet as usize;
+        drawn[index]
+            && depths[index] < deepest
+            && kept[index] != Some(depths[index])
+            && (4 * facet..4 * facet + 4).any(is_finer)
+    };
+    let facets: Vec<u32> = (0..depths.len() as u32).into_par_iter().filter(is_asked).collect();
+    let mut deepened = false;
+    for piece in facets.chunks(PIECE) {
+        let bounds = Bounds::new(topology, finer, piece, deepest)?;
+        let asked = |index: usize| Asked { depth: depths[piece[index] as usize], has_finer_edges: true };
+        let within: Vec<bool> =
+            (0..piece.len()).into_par_iter().map(|index| bounds.is_within(distance, index, asked(index))).collect();
+        for (&facet, within) in piece.iter().zip(within) {
+            let depth = &mut depths[facet as usize];
+            match within {
+                true => kept[facet as usize] = Some(*depth),
+                false => *depth += 1,
+            }
+            deepened |= !within;
+        }
+    }
+    Ok(deepened)
 }
 
 /// Makes facets deeper that differ from a deeper neighbour by more than a step.

@@ -20,6 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bend;
 mod bicubic;
 mod bounds;
 mod depth;
@@ -37,6 +38,7 @@ mod place;
 mod plan;
 mod real;
 mod sectors;
+mod strays;
 mod stream;
 mod sums;
 mod tessellation;

@@ -1,7 +1,7 @@
 //! All about a tessellation that does not depend on positions.
 
 use super::bicubic::Basis;
-use super::bounds::{self, Bounds};
+use super::bounds::{self, Asked, Bounds};
 use super::depth::halvings;
 use super::error::DiceError;
 use super::faces::FaceWriter;
@@ -138,9 +138,9 @@ impl<T: Real> Plan<T> {
 
     /// A distance within which all faces are of the limit surface, for the control vertices of which the plan was made.
     ///
-    /// It is a bound from control points: second differences, `(uu + 2 uv + vv) / 8` of them and a quarter of that for each
-    /// halving, wherever the surface is a B-spline patch (Filip, Magedson, Markot 1986), and how far control points around what is
-    /// left next to extraordinary vertices and sharp features are from a face. Between points with the same parameters it
+    /// It is a bound from control points: second differences, `(uu + 2 uv + vv) / 8` of them at most and a quarter of that for each
+    /// halving, wherever the surface is a B-spline patch (Filip, Magedson, Markot 1986; here less where the surface bends to both sides),
+    /// and how far control points around what is left next to extraordinary vertices and sharp features are from a face. Between points with the same parameters it
     /// holds in any case. Where it is less, it is along the normals of faces, whose angles to the surface's count; there the surface
     /// must not fold back within a face. Displacement, texture coordinates and rounding are not covered.
     ///
@@ -151,7 +151,10 @@ impl<T: Real> Plan<T> {
         let of_piece = |piece: &[Facet]| -> Result<f64, DiceError> {
             let facets: Vec<u32> = piece.iter().map(|facet| facet.facet).collect();
             let bounds = Bounds::new(&self.refined, &self.finer, &facets, deepest)?;
-            Ok(bounds.greatest(|index| piece[index].depth))
+            Ok(bounds.greatest(|index| {
+                let Facet { depth, edges, .. } = piece[index];
+                Asked { depth, has_finer_edges: edges.iter().any(|&edge| edge > depth) }
+            }))
         };
         self.facets().chunks(bounds::PIECE).map(of_piece).try_fold(0.0, |most, bound| Ok(f64::max(most, bound?)))
     }
