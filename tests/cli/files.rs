@@ -399,3 +399,23 @@ fn meshes_are_converted() {
         &format!("{wrong}: control meshes are written to files ending in .obj, .glb or .ply"),
     );
 }
+
+#[test]
+fn limits_are_lowered_and_raised() {
+    let path = written("limits", CUBE);
+    let path = path.display();
+    let error = format!(
+        "{path}: the file has 6 faces or more: at most 5 are read; raise the limit \"faces\" if they are meant"
+    );
+    fails(&format!("info {path} --limit vertices=8 --limit faces=5"), 1, &error);
+    assert_eq!(json(&format!("info {path} --limit faces=5 --limit faces=6"))["faces"], 6);
+    for wrong in ["face=5", "faces", "faces=5.5"] {
+        let output = subdiv().args(["info", &path.to_string(), "--limit", wrong]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            stderr.contains("write NAME=COUNT, with one of bytes, vertices") || stderr.contains("is no count"),
+            "{stderr}"
+        );
+    }
+}

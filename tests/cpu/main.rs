@@ -22,6 +22,7 @@ mod large;
 mod limit;
 mod limit_reference;
 mod limit_surface;
+mod limits;
 mod pentagons;
 mod properties;
 mod reader_properties;

@@ -131,7 +131,7 @@ mod gltf {
     }
 
     fn read_gltf(bytes: &[u8]) -> bool {
-        let named = GltfOptions { mesh: Some("node".into()), folder: None, quads: true };
+        let named = GltfOptions { mesh: Some("node".into()), quads: true, ..GltfOptions::default() };
         let _ = ControlMesh::from_gltf_bytes(bytes, &named);
         ControlMesh::from_gltf_bytes(bytes, &GltfOptions::default()).is_ok()
     }
