@@ -18,6 +18,8 @@ mod exactness;
 mod face_varying;
 mod fallback;
 mod fitted;
+#[cfg(all(feature = "gltf", feature = "exr", feature = "headless"))]
+mod fuzzed;
 mod large;
 mod limit;
 mod limit_reference;

@@ -50,7 +50,6 @@ fn animations(
     if motion.animations.is_empty() {
         return Ok(Animations::default());
     }
-
     cost::check_motion(file, instances, &motion, &options.limits)?;
     let mut notes = Vec::new();
     let skins = motion.skins(&file.root, &file.buffers)?;
