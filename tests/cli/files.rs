@@ -419,3 +419,18 @@ fn limits_are_lowered_and_raised() {
         );
     }
 }
+
+#[test]
+fn meshes_without_extent_are_said_to_have_none() {
+    let at_one_place = |line: &str| if line.starts_with('v') { "v 1 2 3\n".into() } else { format!("{line}\n") };
+    let (_, notes) = info(&written("point", CUBE.lines().map(at_one_place).collect::<String>()));
+    let expected = "all vertices are at one place, so there is nothing to see: look for a scale of 0 in the file, or among its nodes";
+    assert_eq!(notes, [expected]);
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn a_scale_of_zero_is_noted() {
+    let (_, notes) = info(&case("more/zero_scale.glb"));
+    assert!(notes.iter().any(|note| note.starts_with("all vertices are at one place")), "{notes:?}");
+}

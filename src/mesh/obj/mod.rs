@@ -302,7 +302,7 @@ fn completed<T>(mut attribute: FaceVarying<T>, fill: T) -> Option<FaceVarying<T>
     Some(attribute)
 }
 
-/// Takes out vertices without a face. Gives the number in the file of every vertex kept.
+/// Takes out vertices without a face. Gives the number in the file of every vertex kept; lines stay those of the file's numbers.
 fn drop_isolated(data: &mut MeshData, lines: &mut Lines) -> Result<Vec<u32>, MeshError> {
     let mut numbers = vec![ABSENT; data.positions.len()];
     data.face_vertices.iter().for_each(|&vertex| numbers[vertex as usize] = 0);
@@ -312,7 +312,6 @@ fn drop_isolated(data: &mut MeshData, lines: &mut Lines) -> Result<Vec<u32>, Mes
         kept.push(vertex as u32);
     }
     data.positions = kept.iter().map(|&vertex| data.positions[vertex as usize]).collect();
-    lines.vertices = kept.iter().map(|&vertex| lines.vertices[vertex as usize]).collect();
     data.face_vertices.iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
 
     for (crease, tag) in data.creases.iter_mut().enumerate() {

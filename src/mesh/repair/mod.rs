@@ -15,6 +15,8 @@ mod attributes;
 mod doubled;
 mod faces;
 mod isolated;
+#[cfg(feature = "gltf")]
+mod matching;
 mod orient;
 mod part;
 #[cfg(feature = "gltf")]
