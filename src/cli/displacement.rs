@@ -25,6 +25,9 @@ pub(super) struct DisplacementArgs {
     /// The map holds vectors in object space, in red, green and blue.
     #[arg(long)]
     displacement_vectors: bool,
+    /// Texels that the map has at most.
+    #[arg(long, value_name = "COUNT", default_value_t = Texels::MAX)]
+    max_texels: u64,
 }
 
 impl DisplacementArgs {
@@ -43,7 +46,7 @@ impl DisplacementArgs {
         }
         match name.as_str() {
             SCALES_NAME => Ok(Some(scales()?)),
-            file => Ok(Some(Texels::open(file, vectors).map_err(|error| match error {
+            file => Ok(Some(Texels::open_up_to(file, vectors, self.max_texels).map_err(|error| match error {
                 HeadlessError::Picture { path, message } => {
                     CliError::Work(format!("--displacement {}: {message}", path.display()))
                 }

@@ -1,6 +1,6 @@
 //! Values of options.
 
-use ash_subdiv::mesh::SHARPNESS_INFINITE;
+use ash_subdiv::mesh::{Limits, SHARPNESS_INFINITE};
 use ash_subdiv::renderer::Evaluation;
 use ash_subdiv::{Fallback, Scheme};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -15,6 +15,14 @@ where
         // The parser lets none but these names through.
         all.into_iter().find(|&one| name(one) == given).unwrap_or(all[0])
     })
+}
+
+/// A limit by its name, and its count.
+pub(super) fn limit(text: &str) -> Result<(&'static str, u64), String> {
+    let of_names = || format!("write NAME=COUNT, with one of {}", Limits::NAMES.join(", "));
+    let (name, count) = text.split_once('=').ok_or_else(of_names)?;
+    let name = Limits::NAMES.into_iter().find(|known| *known == name).ok_or_else(of_names)?;
+    Ok((name, count.parse().map_err(|_| format!("\"{count}\" is no count: write it like 200000000"))?))
 }
 
 /// A scheme to fall back to, by its name.

@@ -8,7 +8,8 @@ use super::rules::RulesArgs;
 use ash_subdiv::adaptive::{AdaptiveOptions, DrawnBy, Sums};
 use ash_subdiv::headless::{Headless, HeadlessOptions};
 use ash_subdiv::mesh::{
-    Animated, Animations, ReadOptions, RepairOptions, Repairs, animated_shape, read, read_animated, read_repaired,
+    Animated, Animations, Limits, ReadOptions, RepairOptions, Repairs, animated_shape, read, read_animated,
+    read_repaired,
 };
 use ash_subdiv::table::{CpuSurface, Notice, TableOptions};
 use ash_subdiv::{Construction, ControlMesh, Fallback, ModelOptions, Scheme};
@@ -240,6 +241,9 @@ pub(super) struct ReadingArgs {
     /// With --strict: take out vertices that belong to no face, instead of refusing the file (OBJ).
     #[arg(long)]
     drop_isolated: bool,
+    /// Another limit on what is read, such as vertices=200000000; of bytes, vertices, faces, corners or json-values. May be repeated
+    #[arg(long = "limit", value_name = "NAME=COUNT", value_parser = parse::limit)]
+    limits: Vec<(&'static str, u64)>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -269,7 +273,9 @@ impl ReadingArgs {
     /// Reads a file, or one mesh of it, `moving` with its animations.
     fn read_animated(&self, path: &Path, mesh: Option<String>, moving: bool) -> Result<Animated, CliError> {
         let quads = self.rebuild_quads == RebuildQuads::Auto;
-        let options = ReadOptions { drop_isolated: self.drop_isolated, mesh, quads };
+        let with = |limits: Limits, &(name, limit): &(&str, u64)| limits.with(name, limit).unwrap_or(limits);
+        let limits = self.limits.iter().fold(Limits::default(), with);
+        let options = ReadOptions { drop_isolated: self.drop_isolated, mesh, quads, limits };
         let repair = (!self.strict).then_some(RepairOptions { weld: self.weld });
         Ok(match repair {
             repair if moving => read_animated(path, &options, repair.as_ref())?,

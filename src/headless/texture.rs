@@ -6,6 +6,24 @@ use super::HeadlessError;
 use crate::gpu::{Buffer, BufferDesc, GpuError, Image, ImageDesc, MemoryLocation, Owned, VkResultExt};
 use ash::vk;
 
+/// Bytes of a texel of four 32-bit channels.
+#[cfg(feature = "png")]
+const BYTES_A_TEXEL: u64 = 16;
+
+/// Checks the texels of a picture.
+///
+/// # Errors
+/// Reason, in words.
+#[cfg(feature = "png")]
+pub(super) fn check_size([width, height]: [u64; 2], max: u64) -> Result<(), String> {
+    match width.checked_mul(height).is_some_and(|texels| texels <= max) {
+        true => Ok(()),
+        false => Err(format!(
+            "it has {width} x {height} texels: at most {max} are read; make it smaller, or raise the limit"
+        )),
+    }
+}
+
 /// Texels: rows from the top.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texels {
@@ -34,16 +52,28 @@ impl Texels {
         (1.0 - t) * row(y0) + t * row(y1)
     }
 
-    /// Reads a picture: heights (its red channel; of an EXR file without colours Y, Z, or whichever is the only one) or vectors.
+    /// Texels that a picture has at most, unless more are asked for: 16384 x 16384.
+    pub const MAX: u64 = 1 << 28;
+
+    /// Reads a picture of up to [`Texels::MAX`] texels: heights (its red channel; of an EXR file without colours Y, Z, or whichever is the only one) or vectors.
     /// Integers become numbers from 0 to 1; EXR files (feature `exr`) are read as they are.
     ///
     /// # Errors
     /// [`HeadlessError::Picture`].
     #[cfg(feature = "png")]
     pub fn open(path: impl AsRef<std::path::Path>, vectors: bool) -> Result<Self, HeadlessError> {
+        Self::open_up_to(path, vectors, Self::MAX)
+    }
+
+    /// The same with another limit of texels.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Picture`].
+    #[cfg(feature = "png")]
+    pub fn open_up_to(path: impl AsRef<std::path::Path>, vectors: bool, max: u64) -> Result<Self, HeadlessError> {
         let path = path.as_ref();
         let read = std::fs::read(path).map_err(|error| error.to_string());
-        let texels = read.and_then(|bytes| Self::decode(&bytes, vectors));
+        let texels = read.and_then(|bytes| Self::decode_up_to(&bytes, vectors, max));
         texels.map_err(|message| HeadlessError::Picture { path: path.to_owned(), message })
     }
 
@@ -53,11 +83,30 @@ impl Texels {
     /// Reason, in words.
     #[cfg(feature = "png")]
     pub fn decode(bytes: &[u8], vectors: bool) -> Result<Self, String> {
+        Self::decode_up_to(bytes, vectors, Self::MAX)
+    }
+
+    /// The same with another limit of texels, which is checked before memory is taken for them.
+    ///
+    /// # Errors
+    /// Reason, in words.
+    #[cfg(feature = "png")]
+    pub fn decode_up_to(bytes: &[u8], vectors: bool, max: u64) -> Result<Self, String> {
+        use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
         #[cfg(feature = "exr")]
-        if !vectors && let Some(texels) = super::exr::heights(bytes)? {
+        if let Some(texels) = super::exr::heights(bytes, vectors, max)? {
             return texels.checked();
         }
-        Self::of_picture(image::load_from_memory(bytes).map_err(|e| e.to_string())?, vectors).checked()
+        let mut reader =
+            ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+        // What a texel takes in the largest format, and some for the decoder.
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(max.saturating_mul(BYTES_A_TEXEL).saturating_add(1 << 20));
+        reader.limits(limits);
+        let decoder = reader.into_decoder().map_err(|e| e.to_string())?;
+        let (width, height) = decoder.dimensions();
+        check_size([width, height].map(u64::from), max)?;
+        Self::of_picture(&DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?, vectors).checked()
     }
 
     #[cfg(feature = "png")]
@@ -67,12 +116,16 @@ impl Texels {
     }
 
     #[cfg(feature = "png")]
-    fn of_picture(picture: image::DynamicImage, vectors: bool) -> Self {
+    fn of_picture(picture: &image::DynamicImage, vectors: bool) -> Self {
         let (width, height) = (picture.width(), picture.height());
-        let texels = picture.into_rgba32f().into_raw();
-        let (channels, values) =
-            if vectors { (4, texels) } else { (1, texels.chunks_exact(4).map(|texel| texel[0]).collect()) };
-        Self { width, height, channels, values }
+        let channels = if vectors { 4 } else { 1 };
+        let mut values = Vec::with_capacity(width as usize * height as usize * channels);
+        // By rows: as four floats a texel the picture would take much more memory than it does.
+        for row in 0..height {
+            let texels = picture.crop_imm(0, row, width, 1).into_rgba32f().into_raw();
+            values.extend(texels.chunks_exact(4).flat_map(|texel| &texel[..channels]));
+        }
+        Self { width, height, channels: channels as u32, values }
     }
 
     /// The least and the largest value of what is looked at.
@@ -269,6 +322,36 @@ mod tests {
         let mut bytes = Cursor::new(Vec::new());
         picture.write_to(&mut bytes, format).unwrap();
         bytes.into_inner()
+    }
+
+    /// A PNG file of which there is no more than the header.
+    fn header(width: u32, height: u32) -> Vec<u8> {
+        let (mut bytes, mut crc) = (b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec(), u32::MAX);
+        let chunk = [b"IHDR".as_slice(), &width.to_be_bytes(), &height.to_be_bytes(), &[8, 0, 0, 0, 0]].concat();
+        for byte in &chunk {
+            crc ^= u32::from(*byte);
+            (0..8).for_each(|_| crc = if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 });
+        }
+        bytes.extend(chunk);
+        bytes.extend((!crc).to_be_bytes());
+        // The beginning of the data, for whoever wants to see it before believing the size.
+        bytes.extend(b"\0\0\0\x01IDAT\x78");
+        bytes
+    }
+
+    #[test]
+    fn pictures_beyond_the_limit_are_refused_by_their_header() {
+        let expected = "it has 100000 x 100000 texels: at most 268435456 are read; make it smaller, or raise the limit";
+        for vectors in [false, true] {
+            assert_eq!(Texels::decode(&header(100_000, 100_000), vectors).unwrap_err(), expected);
+            let error = Texels::decode(&header(u32::MAX, u32::MAX), vectors).unwrap_err();
+            assert!(error.len() < 300, "{error}");
+        }
+        let mut png = std::io::Cursor::new(Vec::new());
+        image::GrayImage::from_raw(3, 2, vec![0; 6]).unwrap().write_to(&mut png, ImageFormat::Png).unwrap();
+        assert!(Texels::decode_up_to(png.get_ref(), false, 6).is_ok());
+        let error = Texels::decode_up_to(png.get_ref(), false, 5).unwrap_err();
+        assert_eq!(error, "it has 3 x 2 texels: at most 5 are read; make it smaller, or raise the limit");
     }
 
     #[test]

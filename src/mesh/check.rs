@@ -52,10 +52,45 @@ pub(super) fn check(data: &MeshData) -> Result<Vec<u32>, MeshError> {
     Ok(face_offsets)
 }
 
+/// Checks what no repair can do without: that there are vertices and faces, and that the arrays go together.
+pub(super) fn check_sound(data: &MeshData) -> Result<(), MeshError> {
+    let count = data.positions.len();
+    for (what, is_empty) in [("vertices", count == 0), ("faces", data.face_sizes.is_empty())] {
+        if is_empty {
+            return Err(MeshError::Empty { what });
+        }
+    }
+    check_size(data)?;
+    let corners = data.face_sizes.iter().map(|&size| u64::from(size)).sum::<u64>() as usize;
+    let texcoords = data.texcoords.as_ref().map(|texcoords| texcoords.indices.len());
+    let normals = data.normals.as_ref().map(|normals| normals.indices.len());
+    for (what, given) in
+        [("vertices", Some(data.face_vertices.len())), ("texture coordinate", texcoords), ("normal", normals)]
+    {
+        if let Some(given) = given.filter(|&given| given != corners) {
+            return Err(MeshError::CornerCount { what, given, corners });
+        }
+    }
+    if let Some(corner) = data.face_vertices.iter().position(|&vertex| vertex as usize >= count) {
+        let vertex = data.face_vertices[corner];
+        let mut ends = data.face_sizes.iter().scan(0, |end, &size| {
+            *end += size as usize;
+            Some(*end)
+        });
+        let face = ends.position(|end| corner < end).unwrap_or_default() as u32;
+        return Err(MeshError::IndexOutOfRange { face, vertex, count });
+    }
+    Ok(())
+}
+
 /// Checks that vertices and face corners can be counted.
 pub(super) fn check_size(data: &MeshData) -> Result<(), MeshError> {
     let max = MAX_CORNERS;
-    for (what, count) in [("vertices", data.positions.len()), ("face corners", data.face_vertices.len())] {
+    for (what, count) in [
+        ("vertices", data.positions.len()),
+        ("faces", data.face_sizes.len()),
+        ("face corners", data.face_vertices.len()),
+    ] {
         if count > max {
             return Err(MeshError::TooLarge { what, count, max });
         }

@@ -57,6 +57,11 @@ pub enum MeshError {
     #[error("the mesh has {count} {what}: at most {max} can be addressed")]
     TooLarge { what: &'static str, count: usize, max: usize },
 
+    #[error(
+        "the file has {count} {what} or more: at most {max} are read; raise the limit \"{limit}\" if they are meant"
+    )]
+    BeyondLimit { limit: &'static str, what: &'static str, count: u64, max: u64 },
+
     #[error("line {line}: {error}")]
     AtLine { line: usize, error: Box<MeshError> },
     #[error("line {line}: {message}")]
@@ -116,4 +121,18 @@ impl MeshError {
             _ => {}
         }
     }
+}
+
+/// A message as long as a message may be: files can hold words of any length.
+pub(super) fn shortened(message: String) -> String {
+    const HEAD: usize = 400;
+    const TAIL: usize = 200;
+    // A byte length, so that short messages cost nothing.
+    if message.len() <= HEAD + TAIL {
+        return message;
+    }
+    let head: String = message.chars().take(HEAD).collect();
+    let tail: Vec<char> = message.chars().rev().take(TAIL).collect();
+    let tail: String = tail.iter().rev().collect();
+    format!("{head} … {tail}")
 }

@@ -8,6 +8,7 @@ mod edits;
 mod error;
 #[cfg(feature = "gltf")]
 mod gltf;
+mod limits;
 mod obj;
 mod ply;
 mod read;
@@ -23,6 +24,7 @@ pub use edits::{Change, Edit, MAX_EDIT_LEVEL};
 pub use error::MeshError;
 #[cfg(feature = "gltf")]
 pub use gltf::GltfOptions;
+pub use limits::Limits;
 pub use obj::ObjOptions;
 pub use read::{Animated, ReadOptions, read, read_animated, read_repaired};
 pub use repair::{Place, Repair, RepairKind, RepairOptions, Repairs, repair};

@@ -1,4 +1,5 @@
-use super::{Animations, ControlMesh, MeshError, ObjOptions, RepairOptions, Repairs};
+use super::{Animations, ControlMesh, Limits, MeshError, ObjOptions, RepairOptions, Repairs, obj, ply};
+use std::io::Read as _;
 use std::path::Path;
 
 /// How [`read`] reads a file.
@@ -10,6 +11,8 @@ pub struct ReadOptions {
     pub mesh: Option<String>,
     /// Put quads of glTF together that were split into triangles: `GltfOptions::quads`.
     pub quads: bool,
+    /// The most that is read.
+    pub limits: Limits,
 }
 
 /// Reads a control mesh from a file whose name ends in `.obj`, `.ply`, `.gltf` or `.glb` (in any case).
@@ -82,30 +85,49 @@ fn read_any(path: &Path, options: &ReadOptions, repair: Option<&RepairOptions>, 
     if path.is_dir() {
         return Err(unreadable("this is a directory: name a file in it".into()));
     }
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => unreadable("there is no such file".into()),
-        _ => unreadable(error.to_string()),
+    let in_file = |error| MeshError::InFile { path: path.to_owned(), error: Box::new(error) };
+    let bytes = bytes_of(path, 0, &options.limits).map_err(|error| match error {
+        Unread::Io(error) if error.kind() == std::io::ErrorKind::NotFound => unreadable("there is no such file".into()),
+        Unread::Io(error) => unreadable(error.to_string()),
+        Unread::Mesh(error) => in_file(error),
     })?;
-    reader(path, &bytes, options, repair, moving)
-        .map_err(|error| MeshError::InFile { path: path.to_owned(), error: Box::new(error) })
+    reader(path, &bytes, options, repair, moving).map_err(in_file)
+}
+
+/// Why the bytes of a file were not read.
+pub(super) enum Unread {
+    Io(std::io::Error),
+    Mesh(MeshError),
+}
+
+/// The bytes of a file, if they are no more than the limit with those read `before`. Its length is asked first, but not relied on: devices and pipes have none.
+pub(super) fn bytes_of(path: &Path, before: u64, limits: &Limits) -> Result<Vec<u8>, Unread> {
+    let file = std::fs::File::open(path).map_err(Unread::Io)?;
+    let length = file.metadata().map_err(Unread::Io)?.len();
+    limits.check_bytes(before.saturating_add(length)).map_err(Unread::Mesh)?;
+    let mut bytes = Vec::with_capacity(length as usize);
+    file.take(limits.bytes.saturating_sub(before).saturating_add(1)).read_to_end(&mut bytes).map_err(Unread::Io)?;
+    limits.check_bytes(before.saturating_add(bytes.len() as u64)).map_err(Unread::Mesh)?;
+    Ok(bytes)
 }
 
 fn read_obj(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>, _: bool) -> Read {
     whole(options, "an OBJ file")?;
     Ok(Animated::from(match repair {
-        Some(repair) => ControlMesh::from_obj_bytes_repaired(bytes, repair)?,
+        Some(repair) => obj::read_repaired(bytes, repair, &options.limits)?,
         None => {
-            let options = ObjOptions { drop_isolated: options.drop_isolated };
-            (ControlMesh::from_obj_bytes(bytes, &options)?, Repairs::default())
+            let obj_options = ObjOptions { drop_isolated: options.drop_isolated };
+            (obj::read(bytes, &obj_options, &options.limits)?, Repairs::default())
         }
     }))
 }
 
 fn read_ply(_: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>, _: bool) -> Read {
     whole(options, "a PLY file")?;
+    let data = ply::read(bytes, &options.limits)?;
     Ok(Animated::from(match repair {
-        Some(repair) => ControlMesh::from_ply_bytes_repaired(bytes, repair)?,
-        None => (ControlMesh::from_ply_bytes(bytes)?, Repairs::default()),
+        Some(repair) => ControlMesh::repaired(data, repair)?,
+        None => (ControlMesh::new(data)?, Repairs::default()),
     }))
 }
 
@@ -120,7 +142,8 @@ fn whole(options: &ReadOptions, file: &str) -> Result<(), MeshError> {
 #[cfg(feature = "gltf")]
 fn read_gltf(path: &Path, bytes: &[u8], options: &ReadOptions, repair: Option<&RepairOptions>, moving: bool) -> Read {
     let folder = path.parent().map(Path::to_owned);
-    let options = super::GltfOptions { mesh: options.mesh.clone(), folder, quads: options.quads };
+    let ReadOptions { mesh, quads, limits, .. } = options.clone();
+    let options = super::GltfOptions { mesh, folder, quads, limits };
     if moving {
         return ControlMesh::from_gltf_bytes_animated(bytes, &options, repair);
     }

@@ -70,6 +70,8 @@ pub enum Notice {
     /// No face is drawn: all are holes, or touch a boundary where that keeps faces from being drawn
     /// ([`BoundaryRule::None`](crate::mesh::BoundaryRule::None)).
     NothingDrawn,
+    /// All vertices are at one place, as where a node of a file has the scale 0: there is nothing to see.
+    NoExtent,
     /// End caps of adaptive subdivision at whose level creases or corners are of finite sharpness still.
     RoundedCaps {
         /// How many such caps there are.
@@ -115,6 +117,10 @@ impl fmt::Display for Notice {
             Self::NothingDrawn => write!(
                 f,
                 "no face is drawn: all are holes, or touch a boundary where the rule for boundaries is to draw none of those"
+            ),
+            Self::NoExtent => write!(
+                f,
+                "all vertices are at one place, so there is nothing to see: look for a scale of 0 in the file, or among its nodes"
             ),
             Self::RoundedCaps { count } => write!(
                 f,
@@ -301,10 +307,12 @@ impl Prepared {
         let rounded = semi_sharp(self.mesh()).filter(|_| self.rounds_sharpness);
         let darts = darts(&self.topology).filter(|_| self.rounds_sharpness);
         let nothing = plan.patches().is_empty().then_some(Notice::NothingDrawn);
+        let no_extent = (self.mesh().diagonal() == 0.0).then_some(Notice::NoExtent);
         let caps = Some(Notice::RoundedCaps { count: self.rounded_caps });
         let caps = caps.filter(|_| self.rounded_caps > 0 && !self.rounds_sharpness);
         nothing
             .into_iter()
+            .chain(no_extent)
             .chain(caps)
             .chain(refined)
             .chain(split)

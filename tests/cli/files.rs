@@ -399,3 +399,38 @@ fn meshes_are_converted() {
         &format!("{wrong}: control meshes are written to files ending in .obj, .glb or .ply"),
     );
 }
+
+#[test]
+fn limits_are_lowered_and_raised() {
+    let path = written("limits", CUBE);
+    let path = path.display();
+    let error = format!(
+        "{path}: the file has 6 faces or more: at most 5 are read; raise the limit \"faces\" if they are meant"
+    );
+    fails(&format!("info {path} --limit vertices=8 --limit faces=5"), 1, &error);
+    assert_eq!(json(&format!("info {path} --limit faces=5 --limit faces=6"))["faces"], 6);
+    for wrong in ["face=5", "faces", "faces=5.5"] {
+        let output = subdiv().args(["info", &path.to_string(), "--limit", wrong]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            stderr.contains("write NAME=COUNT, with one of bytes, vertices") || stderr.contains("is no count"),
+            "{stderr}"
+        );
+    }
+}
+
+#[test]
+fn meshes_without_extent_are_said_to_have_none() {
+    let at_one_place = |line: &str| if line.starts_with('v') { "v 1 2 3\n".into() } else { format!("{line}\n") };
+    let (_, notes) = info(&written("point", CUBE.lines().map(at_one_place).collect::<String>()));
+    let expected = "all vertices are at one place, so there is nothing to see: look for a scale of 0 in the file, or among its nodes";
+    assert_eq!(notes, [expected]);
+}
+
+#[test]
+#[cfg_attr(not(shared), ignore = "needs ../shared")]
+fn a_scale_of_zero_is_noted() {
+    let (_, notes) = info(&case("more/zero_scale.glb"));
+    assert!(notes.iter().any(|note| note.starts_with("all vertices are at one place")), "{notes:?}");
+}

@@ -18,10 +18,13 @@ mod exactness;
 mod face_varying;
 mod fallback;
 mod fitted;
+#[cfg(all(feature = "gltf", feature = "exr", feature = "headless"))]
+mod fuzzed;
 mod large;
 mod limit;
 mod limit_reference;
 mod limit_surface;
+mod limits;
 mod pentagons;
 mod properties;
 mod reader_properties;

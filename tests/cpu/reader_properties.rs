@@ -78,7 +78,7 @@ proptest! {
 }
 
 #[cfg(feature = "gltf")]
-mod gltf {
+pub(crate) mod gltf {
     use super::*;
     use ash_subdiv::mesh::GltfOptions;
     use serde_json::{Value, json};
@@ -114,7 +114,7 @@ mod gltf {
         })
     }
 
-    fn glb(json: &Value) -> Vec<u8> {
+    pub(crate) fn glb(json: &Value) -> Vec<u8> {
         let mut json = serde_json::to_vec(json).unwrap();
         json.resize(json.len().next_multiple_of(4), b' ');
         let corners = [[0f32, 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
@@ -130,8 +130,33 @@ mod gltf {
         glb
     }
 
+    /// The same with a skin and an animation; its numbers are those of the mesh.
+    #[cfg(all(feature = "exr", feature = "headless"))]
+    pub(crate) fn animated_json() -> Value {
+        let mut json = valid_json();
+        json["nodes"][1]["skin"] = 0.into();
+        json["skins"] = json!([{ "joints": [1, 2] }]);
+        let accessors = json["accessors"].as_array_mut().unwrap();
+        accessors
+            .push(json!({ "bufferView": 0, "byteOffset": 8, "componentType": 5126, "count": 2, "type": "SCALAR" }));
+        accessors.push(json!({ "bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3" }));
+        accessors.push(json!({ "bufferView": 1, "componentType": 5121, "count": 4, "type": "VEC4", "byteOffset": 0 }));
+        accessors
+            .push(json!({ "bufferView": 0, "componentType": 5121, "normalized": true, "count": 4, "type": "VEC4" }));
+        json["bufferViews"].as_array_mut().unwrap().push(json!({ "buffer": 0, "byteLength": 16, "byteOffset": 40 }));
+        json["accessors"][5]["bufferView"] = 2.into();
+        json["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = 5.into();
+        json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = 6.into();
+        json["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0 }]);
+        json["animations"] = json!([{
+            "samplers": [{ "input": 3, "output": 4 }],
+            "channels": [{ "sampler": 0, "target": { "node": 0, "path": "scale" } }],
+        }]);
+        json
+    }
+
     fn read_gltf(bytes: &[u8]) -> bool {
-        let named = GltfOptions { mesh: Some("node".into()), folder: None, quads: true };
+        let named = GltfOptions { mesh: Some("node".into()), quads: true, ..GltfOptions::default() };
         let _ = ControlMesh::from_gltf_bytes(bytes, &named);
         ControlMesh::from_gltf_bytes(bytes, &GltfOptions::default()).is_ok()
     }

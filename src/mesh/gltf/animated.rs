@@ -4,7 +4,7 @@ use super::error::format_error;
 use super::motion::{self, Motion};
 use super::scene::{Instance, placement};
 use super::skinned::Binder;
-use super::{File, GltfOptions, Source};
+use super::{File, GltfOptions, Source, cost};
 use crate::mesh::animation::{Node, Rig, Skin};
 use crate::mesh::{Animated, Animations, ControlMesh, MeshError, RepairOptions, Repairs};
 use ::gltf::json;
@@ -35,16 +35,22 @@ impl ControlMesh {
         let repairs = Repairs { rebuilt_quads: built.rebuilt_quads, ..repairs };
         let vertices = 0..mesh.vertex_count() as u32;
         let sources: Vec<Source> = vertices.map(|v| built.sources[repairs.given_vertex(v) as usize]).collect();
-        let animations = animations(&file, &instances, &sources)?;
+        let animations = animations(&file, &instances, &sources, options)?;
         Ok(Animated { mesh, repairs, animations })
     }
 }
 
-fn animations(file: &File<'_>, instances: &[Instance<'_>], sources: &[Source]) -> Result<Animations, MeshError> {
+fn animations(
+    file: &File<'_>,
+    instances: &[Instance<'_>],
+    sources: &[Source],
+    options: &GltfOptions,
+) -> Result<Animations, MeshError> {
     let motion = Motion::parse(file.json)?;
     if motion.animations.is_empty() {
         return Ok(Animations::default());
     }
+    cost::check_motion(file, instances, &motion, &options.limits)?;
     let mut notes = Vec::new();
     let skins = motion.skins(&file.root, &file.buffers)?;
     let rig = rig(&file.root, &motion, skins)?;

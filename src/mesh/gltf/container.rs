@@ -1,7 +1,9 @@
 //! From the bytes of a file to its JSON and its buffers.
 
+use super::GltfOptions;
 use super::error::format_error;
-use crate::mesh::MeshError;
+use crate::mesh::read::{Unread, bytes_of};
+use crate::mesh::{Limits, MeshError};
 use ::gltf::json;
 use base64::Engine as _;
 use std::borrow::Cow;
@@ -49,7 +51,8 @@ fn u32_at(bytes: &[u8], offset: usize) -> Option<u32> {
 const NOT_GEOMETRY: [&str; 7] = ["animations", "cameras", "images", "materials", "samplers", "skins", "textures"];
 
 /// The JSON with types, none of its indices checked.
-pub(super) fn parse(json: &[u8]) -> Result<json::Root, MeshError> {
+pub(super) fn parse(json: &[u8], limits: &Limits) -> Result<json::Root, MeshError> {
+    limits.check_json_values(values(json))?;
     let not_gltf = |error: serde_json::Error| format_error(format!("the file is not glTF 2.0: {error}"));
     let mut value: serde_json::Value = serde_json::from_slice(json).map_err(not_gltf)?;
     if let Some(object) = value.as_object_mut() {
@@ -58,17 +61,41 @@ pub(super) fn parse(json: &[u8]) -> Result<json::Root, MeshError> {
     serde_json::from_value(value).map_err(not_gltf)
 }
 
+/// At least as many values as the JSON has: each but the first follows a bracket or a comma.
+fn values(json: &[u8]) -> u64 {
+    let (mut count, mut in_string, mut escaped) = (1, false, false);
+    for &byte in json {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' => escaped = in_string,
+            b'"' => in_string = !in_string,
+            b'[' | b'{' | b',' if !in_string => count += 1,
+            _ => {}
+        }
+    }
+    count
+}
+
 /// The contents of every buffer: the binary chunk, a data URI, or a file in `folder`.
 pub(super) fn buffers<'a>(
     root: &json::Root,
     binary: Option<&'a [u8]>,
-    folder: Option<&Path>,
+    options: &GltfOptions,
 ) -> Result<Vec<Cow<'a, [u8]>>, MeshError> {
     let mut buffers = Vec::with_capacity(root.buffers.len());
+    // A file may be named by any number of buffers.
+    let mut fetched_bytes = 0;
     for (index, buffer) in root.buffers.iter().enumerate() {
         let contents = match (&buffer.uri, binary) {
             (Some(uri), _) => {
-                Cow::Owned(fetch(uri, folder).map_err(|why| format_error(format!("buffer {index}: {why}")))?)
+                let fetched = fetch(uri, options.folder.as_deref(), fetched_bytes, &options.limits).map_err(
+                    |error| match error {
+                        Unfetched::Why(why) => format_error(format!("buffer {index}: {why}")),
+                        Unfetched::Mesh(error) => error,
+                    },
+                )?;
+                fetched_bytes += fetched.len() as u64;
+                Cow::Owned(fetched)
             }
             (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
             (None, _) => return Err(format_error(format!("buffer {index} has no data: give it a URI or use GLB"))),
@@ -82,14 +109,28 @@ pub(super) fn buffers<'a>(
     Ok(buffers)
 }
 
-fn fetch(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
+/// Why a buffer has no bytes.
+enum Unfetched {
+    Why(String),
+    Mesh(MeshError),
+}
+
+impl<S: Into<String>> From<S> for Unfetched {
+    fn from(why: S) -> Self {
+        Self::Why(why.into())
+    }
+}
+
+fn fetch(uri: &str, folder: Option<&Path>, before: u64, limits: &Limits) -> Result<Vec<u8>, Unfetched> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (_, encoded) = data.split_once(";base64,").ok_or("the data URI is not in base64: encode it so")?;
         // Encoders disagree about the padding at the end.
         let padding = base64::engine::DecodePaddingMode::Indifferent;
         let config = base64::engine::GeneralPurposeConfig::new().with_decode_padding_mode(padding);
         let engine = base64::engine::GeneralPurpose::new(&base64::alphabet::STANDARD, config);
-        return engine.decode(encoded).map_err(|error| format!("the data URI is not valid base64: {error}"));
+        // Four digits are three bytes.
+        limits.check_bytes(before.saturating_add(encoded.len() as u64 / 4 * 3)).map_err(Unfetched::Mesh)?;
+        return Ok(engine.decode(encoded).map_err(|error| format!("the data URI is not valid base64: {error}"))?);
     }
     // Some exporters write names as they are, with a `%` in them.
     let decoded = percent_decoded(uri).filter(|decoded| {
@@ -99,15 +140,18 @@ fn fetch(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
     let name = decoded.unwrap_or_else(|| uri.to_owned());
     let relative = Path::new(&name);
     if uri.contains("://") || relative.has_root() {
-        return Err(format!("\"{uri}\" is not a relative file name: put the file next to this one"));
+        return Err(format!("\"{uri}\" is not a relative file name: put the file next to this one").into());
     }
     let folder = folder.ok_or_else(|| format!("\"{uri}\" can't be found from memory: read the file by its path"))?;
     let path = folder.join(relative);
     // Reading a device or a pipe could go on for ever.
     if !path.is_file() {
-        return Err(format!("there is no file \"{name}\" next to this one"));
+        return Err(format!("there is no file \"{name}\" next to this one").into());
     }
-    std::fs::read(path).map_err(|error| format!("\"{name}\": {error}"))
+    bytes_of(&path, before, limits).map_err(|error| match error {
+        Unread::Io(error) => format!("\"{name}\": {error}").into(),
+        Unread::Mesh(error) => Unfetched::Mesh(error),
+    })
 }
 
 fn percent_decoded(uri: &str) -> Option<String> {

@@ -6,6 +6,7 @@
 mod accessor;
 mod animated;
 mod container;
+mod cost;
 mod error;
 mod motion;
 mod polygons;
@@ -35,7 +36,7 @@ fn check_count(name: &str, accessor: &Accessor, positions: &Accessor) -> Result<
 mod tests;
 
 use super::repair::{quads, weld};
-use super::{ControlMesh, FaceVarying, MeshData, MeshError, RepairOptions, Repairs};
+use super::{ControlMesh, FaceVarying, Limits, MeshData, MeshError, RepairOptions, Repairs};
 use ::gltf::json;
 use accessor::Accessor;
 use error::format_error;
@@ -58,6 +59,8 @@ pub struct GltfOptions {
     /// Put quads together that were split into triangles, as exporters do: by their order in the file, or else by shape. Only where
     /// most triangles are parts of quads, and never across seams of texture coordinates or materials.
     pub quads: bool,
+    /// The most that is read: few bytes can draw a mesh any number of times.
+    pub limits: Limits,
 }
 
 const NGONS: &str = "FB_ngon_encoding";
@@ -149,9 +152,9 @@ struct Source {
 impl<'b> File<'b> {
     fn open(bytes: &'b [u8], options: &GltfOptions) -> Result<Self, MeshError> {
         let (json, binary) = container::split(bytes)?;
-        let root = container::parse(json)?;
+        let root = container::parse(json, &options.limits)?;
         check_extensions(&root)?;
-        let buffers = container::buffers(&root, binary, options.folder.as_deref())?;
+        let buffers = container::buffers(&root, binary, options)?;
         Ok(Self { json, root, buffers })
     }
 
@@ -165,9 +168,10 @@ impl<'b> File<'b> {
     }
 
     fn build(&self, instances: &[Instance<'_>], options: &GltfOptions) -> Result<Built, MeshError> {
+        cost::check(self, instances, &options.limits)?;
         let mut builder = Builder::default();
         for (instance, number) in instances.iter().zip(0..) {
-            builder.add_instance(&self.root, &self.buffers, instance, number)?;
+            builder.add_instance(self, instance, number, &options.limits)?;
         }
         if builder.data.face_sizes.is_empty() {
             return Err(format_error("the scene has no triangles: points and lines have no surface"));
@@ -222,15 +226,17 @@ struct Local {
 impl Builder {
     fn add_instance(
         &mut self,
-        root: &json::Root,
-        buffers: &[Cow<'_, [u8]>],
+        file: &File<'_>,
         instance: &Instance<'_>,
         number: u32,
+        limits: &Limits,
     ) -> Result<(), MeshError> {
         let mut places = HashMap::new();
         for (primitive, index) in instance.mesh.primitives.iter().zip(0..) {
             let first = self.sources.len();
-            self.add_primitive(root, buffers, instance, primitive, &mut places)?;
+            self.add_primitive(&file.root, &file.buffers, instance, primitive, &mut places)?;
+            limits.check_vertices(self.data.positions.len() as u64)?;
+            limits.check_faces(self.data.face_sizes.len() as u64)?;
             self.sources[first..].iter_mut().for_each(|s| (s.instance, s.primitive) = (number, index));
         }
         Ok(())

@@ -27,6 +27,14 @@ pub(super) struct Animation {
     samplers: Vec<Sampler>,
 }
 
+impl Animation {
+    /// Accessors of each channel.
+    pub(super) fn accessors(&self) -> impl Iterator<Item = usize> {
+        let samplers = self.channels.iter().filter_map(|channel| self.samplers.get(channel.sampler));
+        samplers.flat_map(|sampler| [sampler.input, sampler.output])
+    }
+}
+
 #[derive(Deserialize)]
 struct Channel {
     sampler: usize,
@@ -82,6 +90,11 @@ fn target_count(root: &json::Root, node: usize) -> usize {
 }
 
 impl Motion {
+    /// Joints of a skin.
+    pub fn joints(&self, skin: usize) -> usize {
+        self.skins.get(skin).map_or(0, |skin| skin.joints.len())
+    }
+
     pub fn parse(json: &[u8]) -> Result<Self, MeshError> {
         serde_json::from_slice(json).map_err(|error| format_error(format!("animations and skins: {error}")))
     }

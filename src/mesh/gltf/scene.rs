@@ -6,6 +6,9 @@ use crate::mesh::animation::Placement;
 use ::gltf::json;
 use glam::{DMat4, DQuat, DVec3};
 
+/// Names that a message lists at most.
+const MOST_NAMES: usize = 50;
+
 /// A mesh at a place in the scene.
 pub(super) struct Instance<'a> {
     pub mesh: &'a json::Mesh,
@@ -79,6 +82,10 @@ pub(super) fn choose<'a>(instances: Vec<Instance<'a>>, name: &str) -> Result<Vec
     known.dedup();
     let known = match known.as_slice() {
         [] => "its meshes have no names; leave the name out to read them all".to_owned(),
+        known if known.len() > MOST_NAMES => {
+            let (some, count) = (known[..MOST_NAMES].join("\", \""), known.len() - MOST_NAMES);
+            format!("choose one of \"{some}\" and {count} others")
+        }
         known => format!("choose one of \"{}\"", known.join("\", \"")),
     };
     Err(MeshError::UnknownMesh { name: name.to_owned(), known })

@@ -6,7 +6,8 @@ mod tags;
 #[cfg(test)]
 mod tests;
 
-use super::{ControlMesh, FaceVarying, MeshData, MeshError, Place, RepairOptions, Repairs};
+use super::error::shortened;
+use super::{ControlMesh, FaceVarying, Limits, MeshData, MeshError, Place, RepairOptions, Repairs};
 use statements::{ABSENT, NOTHING, face_corner, for_each_statement, number, number_f32, number_or_none};
 use std::borrow::Cow;
 
@@ -71,7 +72,7 @@ impl ControlMesh {
     /// [`MeshError::Syntax`] for a statement that can't be read, and those of [`ControlMesh::new`] with their line
     /// ([`MeshError::AtLine`]); in these, vertices and faces count from zero as everywhere.
     pub fn from_obj_str(text: &str, options: &ObjOptions) -> Result<Self, MeshError> {
-        ObjFile::parse(text, false)?.into_mesh(options)
+        ObjFile::parse(text.as_bytes(), false, &Limits::NUMBERING)?.into_mesh(options)
     }
 
     /// As [`ControlMesh::from_obj_str`], from the bytes of a file.
@@ -82,7 +83,7 @@ impl ControlMesh {
     /// # Errors
     /// As [`ControlMesh::from_obj_str`].
     pub fn from_obj_bytes(bytes: &[u8], options: &ObjOptions) -> Result<Self, MeshError> {
-        Self::from_obj_str(&decoded(bytes), options)
+        read(bytes, options, &Limits::NUMBERING)
     }
 
     /// As [`ControlMesh::from_obj_bytes`], with what is odd about the file mended: see [`repair`](super::repair). Repairs know
@@ -91,29 +92,52 @@ impl ControlMesh {
     /// # Errors
     /// As [`ControlMesh::from_obj_str`], for what can't be mended.
     pub fn from_obj_bytes_repaired(bytes: &[u8], options: &RepairOptions) -> Result<(Self, Repairs), MeshError> {
-        ObjFile::parse(&decoded(bytes), true)?.into_repaired(options)
+        read_repaired(bytes, options, &Limits::NUMBERING)
     }
 }
 
-fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+/// A mesh within limits.
+pub(super) fn read(bytes: &[u8], options: &ObjOptions, limits: &Limits) -> Result<ControlMesh, MeshError> {
+    ObjFile::parse(&decoded(bytes), false, limits)?.into_mesh(options)
+}
+
+/// A mesh within limits, mended.
+pub(super) fn read_repaired(
+    bytes: &[u8],
+    options: &RepairOptions,
+    limits: &Limits,
+) -> Result<(ControlMesh, Repairs), MeshError> {
+    ObjFile::parse(&decoded(bytes), true, limits)?.into_repaired(options)
+}
+
+/// UTF-16 as UTF-8; the rest as it is.
+fn decoded(bytes: &[u8]) -> Cow<'_, [u8]> {
     let utf_16 = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
         let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
-        String::from_utf16_lossy(&units).into()
+        String::from_utf16_lossy(&units).into_bytes().into()
     };
     match bytes {
         [0xff, 0xfe, rest @ ..] => utf_16(rest, u16::from_le_bytes),
         [0xfe, 0xff, rest @ ..] => utf_16(rest, u16::from_be_bytes),
-        _ => String::from_utf8_lossy(bytes),
+        _ => bytes.into(),
     }
 }
 
 impl ObjFile {
-    fn parse(text: &str, mend: bool) -> Result<Self, MeshError> {
+    fn parse(text: &[u8], mend: bool, limits: &Limits) -> Result<Self, MeshError> {
         let mut file = Self { mend, ..Self::default() };
         for_each_statement(text, |line, statement| {
-            file.read(line, statement).map_err(|message| MeshError::Syntax { line, message })
+            file.read(line, statement).map_err(|message| MeshError::Syntax { line, message: shortened(message) })?;
+            file.check(limits)
         })?;
         Ok(file)
+    }
+
+    fn check(&self, limits: &Limits) -> Result<(), MeshError> {
+        let MeshData { positions, face_sizes, face_vertices, .. } = &self.data;
+        limits.check_vertices(positions.len() as u64)?;
+        limits.check_faces(face_sizes.len() as u64)?;
+        limits.check_corners("face corners", face_vertices.len() as u64)
     }
 
     fn read(&mut self, line: usize, statement: &str) -> Result<(), String> {
@@ -278,7 +302,7 @@ fn completed<T>(mut attribute: FaceVarying<T>, fill: T) -> Option<FaceVarying<T>
     Some(attribute)
 }
 
-/// Takes out vertices without a face. Gives the number in the file of every vertex kept.
+/// Takes out vertices without a face. Gives the number in the file of every vertex kept; lines stay those of the file's numbers.
 fn drop_isolated(data: &mut MeshData, lines: &mut Lines) -> Result<Vec<u32>, MeshError> {
     let mut numbers = vec![ABSENT; data.positions.len()];
     data.face_vertices.iter().for_each(|&vertex| numbers[vertex as usize] = 0);
@@ -288,7 +312,6 @@ fn drop_isolated(data: &mut MeshData, lines: &mut Lines) -> Result<Vec<u32>, Mes
         kept.push(vertex as u32);
     }
     data.positions = kept.iter().map(|&vertex| data.positions[vertex as usize]).collect();
-    lines.vertices = kept.iter().map(|&vertex| lines.vertices[vertex as usize]).collect();
     data.face_vertices.iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
 
     for (crease, tag) in data.creases.iter_mut().enumerate() {

@@ -3,33 +3,42 @@
 use crate::mesh::MeshError;
 
 /// Calls `visit` with the line (from one) and the text of every statement that is not empty: comments are taken off,
-/// and lines that end in a backslash are joined with the next; the line is then that of the first.
+/// and lines that end in a backslash are joined with the next; the line is then that of the first. The text may be in any encoding
+/// that writes ASCII as it is: it is decoded line by line, for a copy of nonsense would be three times as long.
 pub(super) fn for_each_statement(
-    text: &str,
+    text: &[u8],
     mut visit: impl FnMut(usize, &str) -> Result<(), MeshError>,
 ) -> Result<(), MeshError> {
     // Editors on Windows put a byte order mark before the first line.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut joined = String::new();
+    let text = text.strip_prefix("\u{feff}".as_bytes()).unwrap_or(text);
+    let mut joined = Vec::new();
     let mut first = None;
+    let mut visit = |line, statement: &[u8]| match statement.first() {
+        // All that is read begins so.
+        Some(b'f' | b'v' | b't') => visit(line, &String::from_utf8_lossy(statement)),
+        _ => Ok(()),
+    };
     // Lines end as Unix, Windows or old Macs have it.
-    let lines = text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
+    let lines = text
+        .split(|&byte| byte == b'\n')
+        .flat_map(|line| line.strip_suffix(b"\r").unwrap_or(line).split(|&byte| byte == b'\r'));
     for (index, line) in lines.enumerate() {
-        let line = line.split_once('#').map_or(line, |(statement, _)| statement).trim();
-        if let Some(part) = line.strip_suffix('\\') {
+        let end = line.iter().position(|&byte| byte == b'#').unwrap_or(line.len());
+        let line = line[..end].trim_ascii();
+        if let Some(part) = line.strip_suffix(b"\\") {
             first.get_or_insert(index + 1);
-            joined.push_str(part);
-            joined.push(' ');
+            joined.extend_from_slice(part);
+            joined.push(b' ');
         } else if let Some(first) = first.take() {
-            joined.push_str(line);
-            visit(first, &joined)?;
+            joined.extend_from_slice(line);
+            visit(first, joined.trim_ascii_start())?;
             joined.clear();
-        } else if !line.is_empty() {
+        } else {
             visit(index + 1, line)?;
         }
     }
     match first {
-        Some(first) => visit(first, &joined),
+        Some(first) => visit(first, joined.trim_ascii_start()),
         None => Ok(()),
     }
 }

@@ -388,3 +388,12 @@ fn lines_end_as_they_do_anywhere() {
         assert_eq!(error.to_string(), "line 2: \"v\" needs 3 numbers, but has 2");
     }
 }
+
+/// Found by fuzzing: there was a panic.
+#[test]
+fn errors_about_vertices_know_their_line_where_others_are_dropped() {
+    let text = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1e308 0 1\nf 2 3 4";
+    let error = ControlMesh::from_obj_str(text, &ObjOptions { drop_isolated: true }).unwrap_err();
+    let position = [1e308, 0.0, 1.0];
+    assert_eq!(error, MeshError::AtLine { line: 4, error: Box::new(MeshError::NotFinite { vertex: 3, position }) });
+}

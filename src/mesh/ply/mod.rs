@@ -5,9 +5,10 @@ mod header;
 #[cfg(test)]
 mod tests;
 
+use super::error::shortened;
 use super::obj::from_top;
 use super::repair::weld;
-use super::{ControlMesh, FaceVarying, MeshData, MeshError, RepairOptions, Repairs};
+use super::{ControlMesh, FaceVarying, Limits, MeshData, MeshError, RepairOptions, Repairs};
 use body::{Body, Row};
 use header::{Element, Header, Property};
 use std::collections::HashMap;
@@ -25,7 +26,7 @@ impl ControlMesh {
     /// # Errors
     /// [`MeshError::Format`] for a file that is broken, and those of [`ControlMesh::new`].
     pub fn from_ply_bytes(bytes: &[u8]) -> Result<Self, MeshError> {
-        Self::new(read(bytes)?)
+        Self::new(read(bytes, &Limits::NUMBERING)?)
     }
 
     /// As [`ControlMesh::from_ply_bytes`], with what is odd about the file mended: see [`repair`](super::repair()).
@@ -33,17 +34,23 @@ impl ControlMesh {
     /// # Errors
     /// As [`ControlMesh::from_ply_bytes`], for what can't be mended.
     pub fn from_ply_bytes_repaired(bytes: &[u8], options: &RepairOptions) -> Result<(Self, Repairs), MeshError> {
-        Self::repaired(read(bytes)?, options)
+        Self::repaired(read(bytes, &Limits::NUMBERING)?, options)
     }
 }
 
 fn format_error(message: impl Into<String>) -> MeshError {
-    MeshError::Format { message: message.into() }
+    MeshError::Format { message: shortened(message.into()) }
 }
 
 /// Parts of the mesh in a file, unchecked.
-fn read(bytes: &[u8]) -> Result<MeshData, MeshError> {
+pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<MeshData, MeshError> {
     let (header, rest) = header::read(bytes)?;
+    let announced = |name: &str| {
+        let counts = header.elements.iter().filter(|element| element.name == name).map(|element| element.count);
+        counts.fold(0, u64::saturating_add)
+    };
+    limits.check_vertices(announced("vertex"))?;
+    limits.check_faces(announced("face"))?;
     let mut body = Body::new(header.encoding, rest);
     let mut data = MeshData::default();
     let mut texcoords = Vec::new();
@@ -51,7 +58,7 @@ fn read(bytes: &[u8]) -> Result<MeshData, MeshError> {
     for element in &header.elements {
         match element.name.as_str() {
             "vertex" => read_vertices(element, &mut body, &mut data, &mut texcoords, &mut normals)?,
-            "face" => read_faces(element, &mut body, &mut data)?,
+            "face" => read_faces(element, &mut body, &mut data, limits)?,
             _ => body.for_each_row(element, |_| Ok(()))?,
         }
     }
@@ -114,7 +121,7 @@ fn read_vertices(
     })
 }
 
-fn read_faces(element: &Element, body: &mut Body, data: &mut MeshData) -> Result<(), MeshError> {
+fn read_faces(element: &Element, body: &mut Body, data: &mut MeshData, limits: &Limits) -> Result<(), MeshError> {
     let is_list = |property: &&Property| property.length.is_some() && VERTICES.contains(&property.name.as_str());
     let list = element.properties.iter().filter(|property| property.length.is_some()).position(|p| is_list(&p));
     let list =
@@ -122,6 +129,7 @@ fn read_faces(element: &Element, body: &mut Body, data: &mut MeshData) -> Result
     let mut face = 0;
     body.for_each_row(element, |row: &Row| {
         let vertices = row.list(list);
+        limits.check_corners("face corners", (data.face_vertices.len() + vertices.len()) as u64)?;
         for &vertex in vertices {
             if !(0.0..f64::from(u32::MAX)).contains(&vertex) || vertex.fract() != 0.0 {
                 return Err(format_error(format!("face {face} names vertex {vertex}: vertices count from 0")));

@@ -82,7 +82,7 @@ fn what_is_wrong_is_told() {
         "element \"face\", row 1: a list of 0.5 numbers can't be: write the file again"
     );
     // Counts without bytes behind them are not believed.
-    let huge = with("element vertex 5", "element vertex 18446744073709551615");
+    let huge = with("element vertex 5", "element vertex 1073741824");
     assert!(huge.starts_with("element \"vertex\", row 7"), "{huge}");
     let empty =
         TEXT.replace("element edge 1\nproperty int vertex1\nproperty int vertex2", "element edge 18446744073709551615");

@@ -15,6 +15,8 @@ mod attributes;
 mod doubled;
 mod faces;
 mod isolated;
+#[cfg(feature = "gltf")]
+mod matching;
 mod orient;
 mod part;
 #[cfg(feature = "gltf")]
@@ -28,7 +30,8 @@ mod tests;
 pub(super) mod weld;
 
 use super::adjacency::{Edges, NO_TWIN};
-use super::{ControlMesh, MAX_CORNERS, MeshData, MeshError};
+use super::check::check_sound;
+use super::{ControlMesh, MeshData, MeshError};
 pub use report::{Place, Repair, RepairKind, Repairs};
 
 /// Repairs beyond those that a mesh needs.
@@ -108,6 +111,8 @@ impl ControlMesh {
     /// # Errors
     /// Errors of [`ControlMesh::new`] for what can't be mended, with the numbers that vertices and faces were given with.
     pub fn repaired(data: MeshData, options: &RepairOptions) -> Result<(Self, Repairs), MeshError> {
+        // Otherwise the error could be one of what is mended.
+        check_sound(&data)?;
         let (data, repairs) = repair(data, options);
         match Self::new(data) {
             Ok(mesh) => Ok((mesh, repairs)),
@@ -127,14 +132,7 @@ struct Work {
 
 /// Whether the arrays go together, so that they can be walked.
 pub(super) fn is_sound(data: &MeshData) -> bool {
-    let corners = data.face_vertices.len();
-    let sizes: u64 = data.face_sizes.iter().map(|&size| u64::from(size)).sum();
-    let is_whole = |indices: Option<usize>| indices.is_none_or(|count| count == corners);
-    sizes == corners as u64
-        && corners.max(data.positions.len()).max(data.face_sizes.len()) <= MAX_CORNERS
-        && data.face_vertices.iter().all(|&vertex| (vertex as usize) < data.positions.len())
-        && is_whole(data.texcoords.as_ref().map(|values| values.indices.len()))
-        && is_whole(data.normals.as_ref().map(|values| values.indices.len()))
+    check_sound(data).is_ok()
 }
 
 /// Joins faces along edges that two of them have; doubled faces go before, and others are turned over.

@@ -2,8 +2,9 @@
 //!
 //! First by the exporter's order: it wrote both triangles of a quad one after the other, always in the same manner. If most
 //! triangles are in such pairs, these are the quads, and the rest are triangles. Otherwise by shape: of all pairs of neighbours
-//! those with the best corners first. If most triangles find one, they were quads; otherwise nothing changes.
+//! those with the best corners first, as many as can be found. If most triangles find one, they were quads; otherwise nothing changes.
 
+use super::matching::{Candidate, Matching};
 use super::{Joints, MeshData, NO_TWIN};
 use glam::DVec3;
 
@@ -38,11 +39,21 @@ pub(in super::super) fn rebuild(data: &mut MeshData, groups: &[u32]) -> usize {
     let joints = Joints::new(data);
     let triangles = Triangles { data, joints: &joints, groups };
     let count = (0..groups.len() as u32).filter(|&face| triangles.is_one(face)).count() as f64;
-    let believed = |pairs: Vec<Pair>, part: f64| Some(pairs).filter(|pairs| 2.0 * pairs.len() as f64 >= part * count);
-    let pairs = believed(triangles.in_order(count), ORDERED).or_else(|| believed(triangles.by_shape(), SHAPED));
-    let pairs = pairs.filter(|pairs| !pairs.is_empty()).unwrap_or_default();
+    let ordered = Some(triangles.in_order(count)).filter(|pairs| 2.0 * pairs.len() as f64 >= ORDERED * count);
+    let pairs = ordered.or_else(|| triangles.by_shape(count)).unwrap_or_default();
     merge(data, &joints, &pairs);
     pairs.len()
+}
+
+impl Pair {
+    /// Whether an exporter may have split this quad.
+    fn may_follow(&self) -> bool {
+        self.is_convex && self.bent <= BENT_IN_ORDER && self.fold >= FOLD_IN_ORDER
+    }
+
+    fn cost(&self) -> f64 {
+        self.bent + (1.0 - self.fold)
+    }
 }
 
 struct Triangles<'d> {
@@ -98,7 +109,7 @@ impl Triangles<'_> {
 
     /// The pairs of the manner that most triangles which follow one another have; there are `count` triangles.
     fn in_order(&self, count: f64) -> Vec<Pair> {
-        let good = self.following(|pair| pair.is_convex && pair.bent <= BENT_IN_ORDER && pair.fold >= FOLD_IN_ORDER);
+        let good = self.following(Pair::may_follow);
         let bent = |pairs: &[Pair]| pairs.iter().map(|pair| pair.bent).sum::<f64>();
         // As many pairs as can be; of manners that are nearly as frequent the one with better corners.
         let worth = |pairs: &[Pair]| pairs.len() as f64 - bent(pairs);
@@ -141,50 +152,40 @@ impl Triangles<'_> {
         found
     }
 
-    /// The best pairs first, as long as both triangles are free; then those are moved on that leave one alone.
-    fn by_shape(&self) -> Vec<Pair> {
+    /// The best pairs of good shape first, as long as both triangles are free. If there are enough, those were quads; then partners
+    /// are changed along paths from one triangle that is left to another, over pairs of any shape that exporters write.
+    fn by_shape(&self, count: f64) -> Option<Vec<Pair>> {
         let half_edges = 0..self.joints.twins.len() as u32;
         let mut pairs: Vec<Pair> = half_edges
             .filter(|&h| h < self.joints.twins[h as usize])
             .filter_map(|h| self.pair(h))
-            .filter(|pair| pair.is_convex && pair.bent <= BENT && pair.fold >= FOLD)
+            .filter(Pair::may_follow)
             .collect();
-        let cost = |pair: &Pair| pair.bent + (1.0 - pair.fold);
-        pairs.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+        pairs.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         let faces = |pair: &Pair| [pair.first, pair.second].map(|h| self.joints.faces[h as usize]);
-        let mut taken: Vec<Option<Pair>> = vec![None; self.groups.len()];
-        let take = |taken: &mut Vec<Option<Pair>>, pair: Pair| {
-            faces(&pair).into_iter().for_each(|face| taken[face as usize] = Some(pair));
-        };
-        for &pair in &pairs {
-            if faces(&pair).iter().all(|&face| taken[face as usize].is_none()) {
-                take(&mut taken, pair);
+        let mut candidates = vec![Vec::new(); self.groups.len()];
+        for (number, pair) in (0..).zip(&pairs) {
+            let [a, b] = faces(pair);
+            for (face, node) in [(a, b), (b, a)] {
+                candidates[face as usize].push(Candidate { node, cost: pair.cost(), pair: number });
             }
         }
-        // A free triangle takes a neighbour whose partner finds another free one.
-        let mut across: Vec<Vec<Pair>> = vec![Vec::new(); self.groups.len()];
-        pairs.iter().for_each(|pair| faces(pair).into_iter().for_each(|face| across[face as usize].push(*pair)));
-        let other = |pair: &Pair, face: u32| if faces(pair)[0] == face { faces(pair)[1] } else { faces(pair)[0] };
-        for face in 0..self.groups.len() as u32 {
-            if taken[face as usize].is_some() {
-                continue;
-            }
-            let exchange = across[face as usize].iter().find_map(|pair| {
-                let neighbour = other(pair, face);
-                let partner = other(&taken[neighbour as usize]?, neighbour);
-                let free = |next: &&Pair| {
-                    let last = other(next, partner);
-                    last != face && taken[last as usize].is_none()
-                };
-                Some((*pair, *across[partner as usize].iter().find(free)?))
-            });
-            if let Some((pair, next)) = exchange {
-                take(&mut taken, pair);
-                take(&mut taken, next);
+        let mut matching = Matching::new(&candidates);
+        let mut found = 0.0;
+        for (number, pair) in (0..).zip(&pairs).filter(|(_, pair)| pair.bent <= BENT && pair.fold >= FOLD) {
+            let [a, b] = faces(pair);
+            if matching.mates[a as usize].is_none() && matching.mates[b as usize].is_none() {
+                matching.join(a, Candidate { node: b, cost: pair.cost(), pair: number });
+                found += 2.0;
             }
         }
-        let owners = (0..).zip(&taken);
-        owners.filter_map(|(face, pair)| pair.filter(|pair| faces(pair)[0].min(faces(pair)[1]) == face)).collect()
+        if found < SHAPED * count {
+            return None;
+        }
+        matching.augment();
+        let mates = (0..).zip(&matching.mates);
+        let of_lower = |(face, mate): (u32, &Option<Candidate>)| mate.filter(|mate| face < mate.node);
+        Some(mates.filter_map(of_lower).map(|mate| pairs[mate.pair as usize]).collect())
     }
 }
 

@@ -147,3 +147,48 @@ fn seams_materials_and_polygons_of_the_file_are_kept() {
     assert_eq!(rebuilt(&|data, _| seam(data, 0.0)), 6);
     assert_eq!(rebuilt(&|data, _| seam(data, 1.0)), 5, "a seam along the diagonal");
 }
+
+#[test]
+fn quads_are_restored_without_order_along_either_diagonal() {
+    // Those that are good, and the parts that are restored. Without a second search the last two have 0.91 and 0.87.
+    for (name, least) in [("torus", 1.0), ("cloth", 1.0), ("tentacle", 1.0), ("creature", 0.99), ("machine-part", 0.95)]
+    {
+        let data = shape(name).unwrap().into_data();
+        for seed in [1, 12345] {
+            let mut mended = scrambled(&data, seed);
+            let count = mended.face_sizes.len();
+            rebuild(&mut mended, &vec![0; count]);
+            let part = shared(&data, &mended);
+            assert!(part >= least, "{name}, {seed}: {part}");
+        }
+    }
+}
+
+/// Every quad as two triangles along either diagonal, all in any order.
+fn scrambled(data: &MeshData, seed: u64) -> MeshData {
+    let mut state = seed;
+    let mut random = |count: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % count as u64) as usize
+    };
+    let (mut faces, mut rest): (Vec<Vec<u32>>, _) = (Vec::new(), data.face_vertices.as_slice());
+    for &size in &data.face_sizes {
+        let (face, tail) = rest.split_at(size as usize);
+        rest = tail;
+        match size {
+            4 => faces.extend(MANNERS[random(2)].map(|part| part.map(|k| face[k]).to_vec())),
+            _ => faces.push(face.to_vec()),
+        }
+    }
+    for i in (1..faces.len()).rev() {
+        faces.swap(i, random(i + 1));
+    }
+    MeshData {
+        positions: data.positions.clone(),
+        face_sizes: faces.iter().map(|face| face.len() as u32).collect(),
+        face_vertices: faces.concat(),
+        ..MeshData::default()
+    }
+}

@@ -289,3 +289,18 @@ fn what_cannot_be_mended_has_the_numbers_that_were_given() {
     data.normals = Some(FaceVarying { values: vec![], indices: vec![0] });
     assert_eq!(error(data), "normal are given for 1 face corners, but the mesh has 3");
 }
+
+/// Found by fuzzing: the error was that the first face is too small, which is mended.
+#[test]
+fn what_cannot_be_mended_is_the_error_whatever_else_could_be() {
+    let data = MeshData {
+        positions: vec![[0.0; 3]; 3],
+        face_sizes: vec![0, 2, 4],
+        face_vertices: vec![0, 0, 0, 1, 2, 7],
+        ..MeshData::default()
+    };
+    let error = ControlMesh::repaired(data.clone(), &RepairOptions::default()).unwrap_err();
+    assert_eq!(error, MeshError::IndexOutOfRange { face: 2, vertex: 7, count: 3 });
+    let error = ControlMesh::repaired(MeshData { face_sizes: vec![0, 2, 3], ..data }, &RepairOptions::default());
+    assert_eq!(error.unwrap_err(), MeshError::CornerCount { what: "vertices", given: 6, corners: 5 });
+}

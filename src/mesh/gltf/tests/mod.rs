@@ -96,7 +96,7 @@ impl File {
     }
 
     fn try_read(self, mesh: Option<&str>) -> Result<MeshData, MeshError> {
-        let options = GltfOptions { mesh: mesh.map(str::to_owned), folder: None, quads: false };
+        let options = GltfOptions { mesh: mesh.map(str::to_owned), ..GltfOptions::default() };
         ControlMesh::from_gltf_bytes(&self.glb(), &options).map(ControlMesh::into_data)
     }
 
