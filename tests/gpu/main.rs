@@ -16,6 +16,7 @@ mod frames;
 mod golden_files;
 mod goldens;
 mod headless;
+mod instances;
 mod leaves;
 mod module;
 mod passes;

@@ -27,15 +27,20 @@ impl RecipeStage {
         Ok(if self.spacing == Spacing::Equal { code.to_vec() } else { spaced(code, self.spacing) })
     }
 
-    /// The shader with its SPIR-V.
-    pub(crate) fn shader<'s>(&'s self, code: &'s [u32]) -> Shader<'s> {
+    /// Its constants, and one more.
+    pub(crate) fn with(&self, constant: Specialization) -> Vec<Specialization> {
+        self.constants.iter().copied().chain([constant]).collect()
+    }
+
+    /// The shader with its SPIR-V and constants.
+    pub(crate) fn shader<'s>(&self, code: &'s [u32], constants: &'s [Specialization]) -> Shader<'s> {
         let shader = match self.key.source.stage() {
             "tesc" => Shader::tess_control(code),
             "tese" => Shader::tess_evaluation(code),
             "geom" => Shader::geometry(code),
             _ => Shader::vertex(code),
         };
-        shader.specialized(&self.constants)
+        shader.specialized(constants)
     }
 }
 
