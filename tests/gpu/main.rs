@@ -20,6 +20,7 @@ mod instances;
 mod leaves;
 mod module;
 mod passes;
+mod refusals;
 mod screen;
 mod seams;
 mod sharpness;
