@@ -23,6 +23,7 @@ mod axes;
 mod form;
 #[path = "src/named.rs"]
 mod named;
+#[allow(dead_code, reason = "what is left is for tables")]
 #[path = "src/table/sharing.rs"]
 mod sharing;
 

@@ -168,8 +168,8 @@ pub use mesh::{
 };
 pub use patch::{Fallback, Scheme};
 pub use renderer::{
-    Construction, DevicePositions, DrawItem, Error, Frame, ModelId, ModelOptions, Options, Renderer, Style, Target,
-    View, check, requirements,
+    Construction, DevicePositions, DrawItem, Error, Frame, Instance, Instances, ModelId, ModelOptions, Options,
+    Renderer, Style, Target, View, check, requirements,
 };
 
 /// The examples of the README and of the pages under `docs/`, compiled as tests.

@@ -23,7 +23,7 @@ void main() {
     if (gl_InvocationID == 0) {
         cosines = vec4(in_cosine(0), in_cosine(1), in_cosine(2), in_cosine(3));
     }
-    finish_framed_corner(k);
+    finish_framed_corner(in_patch_number[0], k);
     barrier();
     finish_patch(in_patch_number[0]);
 }

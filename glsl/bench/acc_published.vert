@@ -22,6 +22,7 @@ float cosines[CORNERS];
 #define ATTRIBUTE_TEXELS 6
 #include "construct/cached.glsl"
 #include "draw/draw.glsl"
+#include "draw/instance_out.glsl"
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;

@@ -12,6 +12,7 @@ layout(vertices = 4) out;
 
 layout(location = 0) in vec3 corner[];
 layout(location = 0) out vec4 handed_on[][1];
+layout(location = LOCATION_PATCH_INSTANCE) patch out uint instance_of_patch;
 
 void main() {
     handed_on[gl_InvocationID][0] = vec4(corner[gl_InvocationID], 0.0);

@@ -11,8 +11,8 @@ layout(triangle_strip, max_vertices = 3) out;
 
 layout(location = 0) in vec3 world_position[];
 layout(location = 1) in vec3 world_normal[];
-layout(location = 3) in vec3 coordinate[];
-layout(location = 4) in uint patch_index[];
+layout(location = 6) in vec3 coordinate[];
+layout(location = 7) in uint patch_index[];
 
 void main() {
     if (patch_index[0] - capture_first_patch >= capture_patches) {

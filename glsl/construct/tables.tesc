@@ -21,6 +21,9 @@
 
 layout(location = 0) in uint in_patch_number[];
 
+// Within the draw, or its instance.
+uint patch_number;
+
 #ifdef SHARED
 float level_of_map(uint corner, FramedRing own) {
 #ifdef DISPLACED
@@ -33,7 +36,7 @@ float level_of_map(uint corner, FramedRing own) {
 
 // What the corner owns and shares, by stencils.
 void sum_corner(uint corner) {
-    stencil_points(draw.first_patch + in_patch_number[0], uint(gl_InvocationID), CORNERS, own);
+    stencil_points(draw.first_patch + patch_number, uint(gl_InvocationID), CORNERS, own);
 #ifdef SHARED
     uvec2 place = patch_corner(corner);
     FramedRing ring = framed_ring(place.x), owner = ring;
@@ -67,7 +70,7 @@ void read_corner(uint corner) {
 #ifdef READS_LEAVES
 // What it has of its leaf: along its edges patches by leaves share what their owners make.
 void look_up_corner(uint corner) {
-    own = leaf_corner(in_patch_number[0], uint(gl_InvocationID));
+    own = leaf_corner(patch_number, uint(gl_InvocationID));
 #ifdef SHARED
     vec3 with[SHARED_VECTORS];
     for (int i = 0; i < SHARED_VECTORS; ++i) {
@@ -75,7 +78,7 @@ void look_up_corner(uint corner) {
     }
     float lod = 0.0;
 #ifdef DISPLACED
-    lod = leaf_corner_lod(corner, in_patch_number[0], uint(gl_InvocationID));
+    lod = leaf_corner_lod(corner, patch_number, uint(gl_InvocationID));
 #endif
     write_shared(corner, with, 0.0, lod);
 #endif
@@ -83,7 +86,8 @@ void look_up_corner(uint corner) {
 #endif
 
 void main() {
-    uint corner = draw.first_corner + in_patch_number[0] * CORNERS + uint(gl_InvocationID);
+    patch_number = take_instance(in_patch_number[0]);
+    uint corner = draw.first_corner + patch_number * CORNERS + uint(gl_InvocationID);
 #ifdef READS_LEAVES
     if (IS_BY_LEAVES) {
         look_up_corner(corner);
@@ -94,7 +98,7 @@ void main() {
     } else {
         sum_corner(corner);
     }
-    finish_corner(in_patch_number[0]);
+    finish_corner(patch_number);
     barrier();
-    finish_patch(in_patch_number[0]);
+    finish_patch(patch_number);
 }

@@ -11,8 +11,9 @@
 
 void main() {
     uint k = uint(gl_InvocationID);
+    uint patch_number = take_instance(in_patch_number[0]);
     POINT_STEPS
-    finish_framed_corner(k);
+    finish_framed_corner(patch_number, k);
     barrier();
-    finish_patch(in_patch_number[0]);
+    finish_patch(patch_number);
 }

@@ -23,7 +23,7 @@ void main() {
     // Not gl_PrimitiveID: lavapipe restarts it (bug B).
     uint vertex = uint(gl_VertexIndex);
     patch_number = patch_drawn(uint(gl_InstanceIndex) * draw.patches_per_instance + vertex / CORNERS);
-    uint number = draw.first_corner + patch_number * CORNERS + vertex % CORNERS;
+    uint number = draw.first_corner + take_instance(patch_number) * CORNERS + vertex % CORNERS;
     Corner corner = corner_of_patch(number);
     float numbers[4 * RING_ROWS];
     PUT_VECTOR(numbers, RING_LIMIT, corner.limit);

@@ -6,6 +6,7 @@
 #include "evaluate/uniform_grid.glsl"
 #include "construct/read_cached.glsl"
 #include "draw/draw.glsl"
+#include "draw/instance_out.glsl"
 #include "draw/visible.glsl"
 #ifdef DISPLACED
 #include "displace/displaced.glsl"
@@ -23,7 +24,8 @@ layout(location = 2) out vec2 out_texcoord;
 #endif
 
 void main() {
-    uint patch_number = patch_drawn(uint(gl_InstanceIndex));
+    uint patch_number = take_instance(patch_drawn(uint(gl_InstanceIndex)));
+    hand_on_instance();
     uint first_corner = draw.first_corner + patch_number * CORNERS;
     uint segments = item.segments;
     read_cached(draw.first_patch + patch_number, first_corner, segments);

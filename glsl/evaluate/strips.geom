@@ -6,6 +6,7 @@
 #include "constants.glsl"
 #include "evaluate/uniform_grid.glsl"
 #include "draw/draw.glsl"
+#include "draw/instance_out.glsl"
 #include "draw/construction.glsl"
 #include "construct/read_cached.glsl"
 #include "construct/stencils.glsl"
@@ -68,6 +69,7 @@ void emit(uint row, uint place) {
 #ifdef TEXCOORD
     out_texcoord = INTERPOLATED(texcoord, at);
 #endif
+    hand_on_instance();
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);
     gl_Position = to_clip(world_position);
@@ -127,8 +129,9 @@ void main() {
     segments = item.segments;
     uvec2 size = tile_size(segments);
     uvec2 tiles = (segments + size - 1u) / size;
-    patch_number = tile_number[0] / (tiles.x * tiles.y);
-    uint tile = tile_number[0] % (tiles.x * tiles.y);
+    uint tile_of_all = take_instance(tile_number[0]);
+    patch_number = tile_of_all / (tiles.x * tiles.y);
+    uint tile = tile_of_all % (tiles.x * tiles.y);
     uvec2 first = size * uvec2(tile % tiles.x, tile / tiles.x);
     uvec2 end = min(first + size, uvec2(segments));
 #ifdef TRIANGLE

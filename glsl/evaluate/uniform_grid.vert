@@ -6,6 +6,7 @@
 #include "displace/displaced.glsl"
 #endif
 #include "draw/draw.glsl"
+#include "draw/instance_out.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -24,6 +25,8 @@ layout(location = 4) in vec3 lookup;  // xy: where in the map; z: its level
 #endif
 
 void main() {
+    instance_number = uint(gl_InstanceIndex);
+    hand_on_instance();
 #ifdef DISPLACED
     world_position = to_world(displace(position, direction, lookup.xy, lookup.z));
 #else

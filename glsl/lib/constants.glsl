@@ -18,6 +18,8 @@
 #define ID_CONSTRUCTION 12u
 #define ID_HAS_TEXCOORDS 13u
 #define ID_ADAPTIVE 14u
+// Far from the ids of fragment shaders that callers bring.
+#define ID_INSTANCES 1000u
 
 // Bindings of set 1: storage buffers, where tables start, the displacement map; texel buffers, of tables from BINDING_TABLE_TEXELS on.
 #define BINDING_POSITIONS 0u
@@ -48,11 +50,17 @@
 #define CULL_SMALL_FLAG 16u
 
 // Bits of a draw's flags: the displacement map has vectors; what is seen counter-clockwise faces away. From KIND_SHIFT on, the kind
-// of the patches.
+// of the patches. Then, of instances, whether what faces away is the inside, so that a mirrored one has it the other way round.
 #define VECTOR_FLAG 1u
 #define COUNTER_CLOCKWISE_FLAG 2u
 #define KIND_SHIFT 2u
 #define KIND_MASK 3u
+#define INSIDE_FLAG 16u
+
+// The location where a fragment shader has the number of its instance.
+#define LOCATION_INSTANCE 3u
+// The location where an evaluation shader has that of its patch.
+#define LOCATION_PATCH_INSTANCE 24u
 
 // What corners share: words, and the bit of a plus edge whose faces have normals of their own.
 #define SHARED_WORDS 5u

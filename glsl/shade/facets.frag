@@ -1,6 +1,7 @@
 // The faces of the control mesh, each lit by its own plane.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define FRAGMENT_STAGE
 #include "draw/draw.glsl"
 #include "shade/lighting.glsl"
 #include "draw/output.glsl"

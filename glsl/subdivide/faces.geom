@@ -22,6 +22,7 @@
 #endif
 
 #include "draw/draw.glsl"
+#include "draw/instance_out.glsl"
 #include "evaluate/patch.glsl"
 #include "subdivide/subdivision.glsl"
 
@@ -46,7 +47,10 @@ layout(points, invocations = 4) in;
 layout(triangle_strip, max_vertices = 40) out;
 #endif
 
-layout(location = 0) in uint patch_number[];
+layout(location = 0) in uint in_patch_number[];
+
+// Within the draw, or its instance.
+uint patch_number;
 
 // Without what else is in there, which would count.
 out gl_PerVertex {
@@ -281,11 +285,12 @@ vec3 normals[(DRAWN + 1) * (DRAWN + 1)];
 
 void emit(ivec2 p) {
     vec3 position = grid[at(p)];
+    hand_on_instance();
     world_position = to_world(position);
     world_normal = normal_to_world(normals[p.y * (DRAWN + 1) + p.x]);
     gl_Position = to_clip(world_position);
 #ifdef TEXCOORD
-    uint corner = draw.first_corner + 4u * patch_number[0];
+    uint corner = draw.first_corner + 4u * patch_number;
     vec2 uv[4] = { corner_texcoord(corner + turned(0)), corner_texcoord(corner + turned(1)),
                    corner_texcoord(corner + turned(2)), corner_texcoord(corner + turned(3)) };
     out_texcoord = INTERPOLATED(uv, (vec2(p) / float(SIDE)));
@@ -294,7 +299,8 @@ void emit(ivec2 p) {
 }
 
 void main() {
-    uint first = draw.first_corner + 4u * patch_number[0];
+    patch_number = take_instance(in_patch_number[0]);
+    uint first = draw.first_corner + 4u * patch_number;
     // No loop here and below: drivers do not unroll those around others, whose indices should be constants.
     gather(0, fan_at(first + turned(0)));
     gather(1, fan_at(first + turned(1)));
@@ -323,7 +329,7 @@ void main() {
             uint k = turned(0);
             ivec2 q = SIDE * CORNER[k] + x * PLUS[k] + y * MINUS[k];
             precise vec2 uv = vec2(q) / float(SIDE);
-            capture_sample(draw.first_patch + patch_number[0], uint(q.y * (SIDE + 1) + q.x),
+            capture_sample(draw.first_patch + patch_number, uint(q.y * (SIDE + 1) + q.x),
                            uint((SIDE + 1) * (SIDE + 1)), vec3(uv, 0.0), grid[at(p)],
                            normals[y * (DRAWN + 1) + x]);
 #endif

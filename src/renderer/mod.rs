@@ -60,7 +60,7 @@ pub use frame::visible::VisibleItems;
 pub use frame::{Frame, Renderer};
 pub use options::{
     ColorEncoding, Cull, DevicePositions, DisplacementId, DisplacementMap, DrawItem, Error, Factor, Fragment, Geometry,
-    MeasuredFrom, MemoryUsage, ModelId, ModelOptions, Options, Pass, Style, Target, View,
+    Instance, Instances, MeasuredFrom, MemoryUsage, ModelId, ModelOptions, Options, Pass, Style, Target, View,
 };
 pub use pipelines::{Requirements, check, requirements};
 pub use shader::ShaderId;

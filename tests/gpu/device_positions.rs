@@ -27,7 +27,7 @@ mod shaders {
 const SEGMENTS: u32 = 4;
 
 /// Every way in which vertices become a surface.
-fn ways() -> Vec<(ControlMesh, ModelOptions)> {
+pub fn ways() -> Vec<(ControlMesh, ModelOptions)> {
     let mesh = |name| shape(name).expect("built in");
     let plain = ModelOptions::default();
     let depth = |depth| Some(AdaptiveOptions { depth, ..AdaptiveOptions::default() });

@@ -46,6 +46,9 @@ layout(location = 5) out vec3 owned[][OWNED];
 layout(location = 11) patch out uint captured_patch;
 #endif
 
+// The instance, where there are several.
+layout(location = LOCATION_PATCH_INSTANCE) patch out uint instance_of_patch;
+
 // For the first invocation to put together.
 layout(location = 12) out uint outside[];
 layout(location = 13) out vec4 pixel_box[];
@@ -85,6 +88,9 @@ void finish_patch(uint patch_number) {
         }
     }
 #endif
+    if (INSTANCES) {
+        instance_of_patch = instance_number;
+    }
     float asked[CORNERS], outer[CORNERS];
     float largest = 1.0, smallest = MAX_FACTOR;
     for (uint k = 0u; k < CORNERS; ++k) {

@@ -40,7 +40,7 @@ vec3 in_centre(uint k) {
 #endif
 
 // What is left to do when the corner's control points are written: see `finish_corner`.
-void finish_framed_corner(uint k) {
+void finish_framed_corner(uint patch_number, uint k) {
 #ifdef SHARED
     vec3 with[SHARED_VECTORS];
     for (int i = 0; i < SHARED_VECTORS; ++i) {
@@ -50,10 +50,10 @@ void finish_framed_corner(uint k) {
 #ifdef DISPLACED
     lod = PACKED_NUMBER(of_corner[k], RING_LOD);
 #endif
-    uint corner = draw.first_corner + in_patch_number[0] * CORNERS + k;
+    uint corner = draw.first_corner + patch_number * CORNERS + k;
     write_shared(corner, with, PACKED_NUMBER(of_corner[k], RING_SHARP), lod);
 #endif
-    finish_corner(in_patch_number[0]);
+    finish_corner(patch_number);
 }
 
 #endif

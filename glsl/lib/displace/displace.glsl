@@ -38,7 +38,7 @@ vec3 displaced_normal(vec3 position, vec3 normal, vec2 texcoord) {
         vec3 plane = cross(dx, dy);
         return dot(plane, normal) < 0.0 ? -plane : plane;
     }
-    float scale = item.displacement_scale * length(item.transform[0].xyz);
+    float scale = item.displacement_scale * length(transform_row(0u).xyz);
     float height = texture(displacement_map, texcoord).x;
     float height_dx = scale * (texture(displacement_map, texcoord + dFdx(texcoord)).x - height);
     float height_dy = scale * (texture(displacement_map, texcoord + dFdy(texcoord)).x - height);

@@ -19,10 +19,8 @@ struct Examined {
 
 // How far displacement moves a point, at most, in world space.
 float reach() {
-    float scale = sqrt(dot(item.transform[0].xyz, item.transform[0].xyz)
-                       + dot(item.transform[1].xyz, item.transform[1].xyz)
-                       + dot(item.transform[2].xyz, item.transform[2].xyz));
-    return scale * item.displacement_reach;
+    vec3 x = transform_row(0u).xyz, y = transform_row(1u).xyz, z = transform_row(2u).xyz;
+    return sqrt(dot(x, x) + dot(y, y) + dot(z, z)) * item.displacement_reach;
 }
 
 vec4 clip_row(int i) {
@@ -179,10 +177,12 @@ bool faces_away(float step) {
     float away = length(to_eye);
     vec3 z = to_eye / away;
     vec3 x = unit(abs(z.x) < 0.6 ? vec3(0.0, z.z, -z.y) : vec3(-z.z, 0.0, z.x));
+    mat3 rows = mat3(transform_row(0u).xyz, transform_row(1u).xyz, transform_row(2u).xyz);
+    bool is_mirrored = INSTANCES && (draw.flags & INSIDE_FLAG) != 0u && determinant(rows) < 0.0;
     // Where it is the others that are culled, cross products are seen in a mirror.
-    vec3 y = (draw.flags & COUNTER_CLOCKWISE_FLAG) != 0u ? cross(x, z) : cross(z, x);
+    vec3 y = ((draw.flags & COUNTER_CLOCKWISE_FLAG) != 0u) != is_mirrored ? cross(x, z) : cross(z, x);
     // Columns are what the axes are in object space; the rows of the transform are its matrix transposed.
-    mat3 axes = mat3(item.transform[0].xyz, item.transform[1].xyz, item.transform[2].xyz) * mat3(x, y, z);
+    mat3 axes = rows * mat3(x, y, z);
 
     // Rows of control points, as seen from the centre.
 #define AT(k, i) (CONTROL_POINT(k, i) - centre) * axes

@@ -15,6 +15,7 @@
 #endif
 
 #include "draw/draw.glsl"
+#include "draw/instance_out.glsl"
 #include "evaluate/patch.glsl"
 
 // The renderer puts other spacings in the place of this one (`spaced` in src/renderer/shader/spirv.rs).
@@ -28,6 +29,7 @@ layout(quads, equal_spacing, cw) in;
 
 #include "draw/handed_on.glsl"
 layout(location = 0) in vec4 handed_on[][HANDED_ROWS];
+layout(location = LOCATION_PATCH_INSTANCE) patch in uint instance_of_patch;
 // The control points that each corner owns.
 vec3 owned[CORNERS][OWNED];
 
@@ -55,14 +57,17 @@ layout(location = 2) out vec2 out_texcoord;
 #include "capture/capture.glsl"
 layout(location = 11) patch in uint captured_patch;
 // For glsl/capture/triangles.geom.
-layout(location = 3) out vec3 out_coordinate;
-layout(location = 4) out uint out_patch;
+layout(location = 6) out vec3 out_coordinate;
+layout(location = 7) out uint out_patch;
 uint capture_place;
 uint capture_places;
 #endif
 
 // Takes what was handed on of the patch.
 void read_patch() {
+    if (INSTANCES) {
+        instance_number = instance_of_patch;
+    }
 #ifdef MAY_BE_ADAPTIVE
     uint low = uint(PACKED_NUMBER(handed_on[0], HANDED_PATCH)), high = uint(PACKED_NUMBER(handed_on[1], HANDED_PATCH));
     evaluated_patch = high << 24 | low;
@@ -131,6 +136,7 @@ void emit_sample(Sample surface, vec3 at) {
 #ifdef TEXCOORD
     out_texcoord = INTERPOLATED(texcoord, at);
 #endif
+    hand_on_instance();
     world_position = to_world(surface.position);
     world_normal = normal_to_world(surface.normal);
     gl_Position = to_clip(world_position);

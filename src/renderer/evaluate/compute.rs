@@ -36,8 +36,7 @@ impl Path for Compute {
         let Some(uniform_grid) = drawn.uniform_grid() else { return };
         // SAFETY: as the caller promises.
         unsafe {
-            recorder.push();
-            uniform_grid.cmd_draw(recorder.device, recorder.cmd, group.number);
+            uniform_grid.cmd_draw(recorder, group.number);
         }
     }
 }

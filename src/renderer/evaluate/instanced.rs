@@ -24,6 +24,8 @@ impl Path for Instanced {
     }
 
     fn recipe(&self, stages: PatchStages, cut: Cut, _key: GeometryKey, made_for: &MadeFor) -> Recipe {
+        // Attributes go with what is an instance for Vulkan: a patch of an instance of the item.
+        let stages = PatchStages { attributes: stages.attributes && !cut.has_instances(), ..stages };
         let constants = stages.specialization(cut, made_for.properties);
         Recipe {
             topology_is_dynamic: true,
@@ -43,13 +45,12 @@ impl Path for Instanced {
         let (device, cmd) = (recorder.device, recorder.cmd);
         // SAFETY: as the caller promises.
         unsafe {
-            recorder.push();
-            if let Some(points) = control_points.filter(|_| stages.attributes) {
+            if let Some(points) = control_points.filter(|_| stages.attributes && recorder.place.instances.is_none()) {
                 let of_corner = u64::from(stages.patch_bytes()) / stages.kind.corners() as u64;
                 let offset = of_corner * group.first_corner as u64;
                 recorder.bound.uniform_grid.cmd_bind_vertices(device, cmd, points.raw(), offset);
             }
-            uniform_grid.cmd_draw(device, cmd, number);
+            uniform_grid.cmd_draw(recorder, number);
         }
     }
 }

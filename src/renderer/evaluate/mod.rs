@@ -19,5 +19,5 @@ pub(crate) use indices::SharedIndices;
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub(crate) use indices::topology;
 pub(crate) use path::path;
-pub(crate) use recorder::{Bound, DrawnGroup, Place, Recorder};
+pub(crate) use recorder::{Bound, DrawnGroup, Place, PlacedInstances, Recorder};
 pub(crate) use uniform_grid::{BoundUniformGrid, UniformGrid, UniformGridPipelines};

@@ -25,6 +25,17 @@ pub(crate) struct Place {
     pub view: u32,
     /// Bytes before the item's record in its buffer.
     pub record: u32,
+    pub instances: Option<PlacedInstances>,
+}
+
+/// Where shaders find the instances of an item.
+#[derive(Clone, Copy)]
+pub(crate) struct PlacedInstances {
+    pub count: u32,
+    /// The word where the first is.
+    pub first_word: u32,
+    /// Words from one to the next.
+    pub stride: u32,
 }
 
 /// The draws of one item.
@@ -88,12 +99,39 @@ impl Recorder<'_> {
         unsafe { self.device.cmd_push_constants(self.cmd, self.layout, STAGES, 0, constants) };
     }
 
+    /// Records the draws of an item with `patches` patches (or tiles of them), once or of all its instances: of as many at a time, which
+    /// `draw` is told, as can be counted.
+    pub(crate) fn cmd_draw_instances(&mut self, patches: u32, mut draw: impl FnMut(&mut Self, u32)) {
+        let Some(PlacedInstances { count, first_word, stride }) = self.place.instances else {
+            draw(self, 1);
+            return;
+        };
+        self.constants.patches = patches;
+        self.constants.instance_stride = stride;
+        let step = u32::MAX / patches.max(1);
+        for first in (0..count).step_by(step as usize) {
+            self.constants.first_word = first_word + first * stride;
+            draw(self, step.min(count - first));
+        }
+    }
+
+    /// Records the draws of `count` patches (or tiles of them), in each instance of the item. As [`Recorder::cmd_draw_all`].
+    ///
+    /// # Safety
+    /// As [`Renderer::cmd_draw`](crate::Renderer::cmd_draw), with the pipeline bound.
+    pub(crate) unsafe fn cmd_draw_batches(&mut self, count: u32, points: u32, vertices: u32) {
+        // SAFETY: as the caller promises.
+        self.cmd_draw_instances(count, |recorder, instances| unsafe {
+            recorder.cmd_draw_all(instances * count, points, vertices);
+        });
+    }
+
     /// Records the draws of `count` patches (or tiles of them), in instances as the device likes them. Each has `points` points, and
     /// at most `vertices` vertices when it is evaluated.
     ///
     /// # Safety
     /// As [`Renderer::cmd_draw`](crate::Renderer::cmd_draw), with the pipeline bound.
-    pub(crate) unsafe fn cmd_draw_batches(&mut self, count: u32, points: u32, vertices: u32) {
+    unsafe fn cmd_draw_all(&mut self, count: u32, points: u32, vertices: u32) {
         for draw in self.properties.patch_batch.draws(count, points, vertices) {
             // SAFETY: as the caller promises.
             unsafe {

@@ -1,6 +1,7 @@
 //! Evaluation on a uniform grid: its indices; by compute, pipelines, vertices and dispatches.
 
 use super::indices::{IndexCache, PatchIndices, SharedIndices, UniformGridShape};
+use super::recorder::Recorder;
 use crate::constants::{GROUP_VERTICES, ID_HAS_TEXCOORDS};
 use crate::gpu::Specialization;
 use crate::gpu::{Buffer, DescriptorSet, DeviceContext, GpuError, MAX_WORKGROUPS};
@@ -234,24 +235,32 @@ impl UniformGrid {
         }
     }
 
-    /// Records the draws of a group.
+    /// Pushes the constants, and records the draws of a group.
     ///
     /// # Safety
     /// `cmd` is being recorded, inside rendering, after [`UniformGrid::cmd_bind`], with a pipeline for it.
-    pub(crate) unsafe fn cmd_draw(&self, device: &ash::Device, cmd: vk::CommandBuffer, group: usize) {
+    pub(crate) unsafe fn cmd_draw(&self, recorder: &mut Recorder, group: usize) {
+        let (device, cmd) = (recorder.device, recorder.cmd);
         let UniformGridGroup { patches, vertices, first_vertex, indices } = self.groups[group];
         let PatchIndices { count: indices, first: first_index, joint, block } = indices;
         if self.vertices.is_none() {
             // SAFETY: as the caller promises.
-            unsafe { device.cmd_draw_indexed(cmd, indices, patches, first_index, 0, 0) };
+            recorder.cmd_draw_instances(patches, |recorder, instances| unsafe {
+                recorder.push();
+                device.cmd_draw_indexed(cmd, indices, instances * patches, first_index, 0, 0);
+            });
             return;
         }
-        for patch in (0..patches).step_by(block as usize) {
-            let count = (indices + joint) * block.min(patches - patch) - joint;
-            let offset = (first_vertex + patch * vertices) as i32;
+        recorder.cmd_draw_instances(1, |recorder, instances| {
             // SAFETY: as the caller promises.
-            unsafe { device.cmd_draw_indexed(cmd, count, 1, first_index, offset, 0) };
-        }
+            unsafe { recorder.push() };
+            for patch in (0..patches).step_by(block as usize) {
+                let count = (indices + joint) * block.min(patches - patch) - joint;
+                let offset = (first_vertex + patch * vertices) as i32;
+                // SAFETY: as the caller promises.
+                unsafe { device.cmd_draw_indexed(cmd, count, instances, first_index, offset, 0) };
+            }
+        });
     }
 }
 

@@ -22,6 +22,11 @@ impl Frame {
     pub fn index(self) -> u32 {
         self.index
     }
+
+    /// What tells it from all others: its number, and that of its renderer.
+    pub(super) fn stamp(self) -> [u64; 2] {
+        [self.number, self.renderer]
+    }
 }
 
 /// What the renderer knows of the frame that is being recorded.
@@ -87,6 +92,7 @@ impl Renderer {
         self.begun = Begun { frame, is_open: true, ..Begun::new(renderer, self.options.frames_in_flight) };
         self.views_drawn[index as usize] = 0;
         self.lists[index as usize].clear();
+        self.instances[index as usize].clear();
         for retired in &mut self.retired {
             retired.frames[index as usize] = false;
         }

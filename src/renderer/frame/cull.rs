@@ -28,7 +28,7 @@ impl Renderer {
     /// of [`Options::views_per_frame`](crate::renderer::Options::views_per_frame).
     ///
     /// # Errors
-    /// As [`Renderer::cmd_draw`]; [`Error::NoVisibleLists`]; [`Error::ListsTooLarge`]. What was recorded until then does no harm.
+    /// As [`Renderer::cmd_draw`]; [`Error::NoVisibleLists`]; [`Error::ListsTooLarge`]; [`Error::CulledInstances`]. What was recorded until then does no harm.
     ///
     /// # Safety
     /// `cmd` is being recorded, outside rendering, after [`Renderer::cmd_prepare`] of the same frame, for the same queue, which
@@ -45,13 +45,16 @@ impl Renderer {
         if !self.options.visible_lists {
             return Err(Error::NoVisibleLists);
         }
+        if let Some(item) = items.iter().find(|item| item.instances.is_some()) {
+            return Err(Error::CulledInstances { id: item.model });
+        }
         let view_offset = self.take_view(frame_index, view)?;
         let items = items.iter().map(|item| self.with_segments(item)).collect::<Result<Vec<_>, Error>>()?;
         let mut bytes = 0;
         for item in &items {
             self.resolve(view, item)?;
             let lists = self.listed_groups(item)?.next().is_some();
-            self.make_cuts(item.model, item.factor, item.cull, lists)?;
+            self.make_cuts(item.model, Cut::new(item.factor, item.cull), item.factor, lists)?;
             for (_, stages, group) in self.listed_groups(item)? {
                 let layout = ListLayout::new(stages);
                 bytes += pieces(group, layout).map(|(_, count)| layout.bytes(count)).sum::<u64>();
@@ -97,7 +100,7 @@ impl Renderer {
         let mut bound = Bound::default();
         for own in &visible.items {
             let lists = Some(ItemLists { all: visible, own });
-            let place = Place { set: visible.set, view: visible.view_offset, record: own.record };
+            let place = Place { set: visible.set, view: visible.view_offset, record: own.record, instances: None };
             let resolved = self.resolve(&visible.view, &own.item)?;
             // SAFETY: as the caller promises.
             unsafe { self.cmd_draw_item(cmd, place, &resolved, lists, &mut bound)? };

@@ -39,9 +39,20 @@ impl Renderer {
         let mut bound = Bound::default();
         let drawn = items.iter().try_for_each(|item| {
             let item = self.with_segments(item)?;
-            self.make_cuts(item.model, item.factor, item.cull, false)?;
+            if item.instances.is_some_and(|instances| instances.count() == 0) {
+                return Ok(());
+            }
+            let placed = self.place_instances(frame, &item)?;
+            self.make_cuts(
+                item.model,
+                Cut::new(item.factor, item.cull).of_instances(placed.is_some()),
+                item.factor,
+                false,
+            )?;
             let resolved = self.resolve(view, &item)?;
-            let place = Place { set, view: view_offset, record: records.push(&resolved.record)? };
+            let record = records.push(&resolved.record)?;
+            let (set, instances) = placed.map_or((set, None), |(set, instances)| (set, Some(instances)));
+            let place = Place { set, view: view_offset, record, instances };
             // SAFETY: as the caller promises.
             unsafe { self.cmd_draw_item(cmd, place, &resolved, None, &mut bound) }
         });
@@ -71,15 +82,23 @@ impl Renderer {
     pub fn make_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
         let factor = if factor == Factor::Segments { self.model(id)?.own_factor() } else { factor };
         if self.options.visible_lists && cull != Cull::NONE && self.model(id)?.options.evaluation.culls() {
-            self.make_cuts(id, factor, cull, true)?;
+            self.make_cuts(id, Cut::new(factor, cull), factor, true)?;
         }
-        self.make_cuts(id, factor, cull, false)
+        self.make_cuts(id, Cut::new(factor, cull), factor, false)
+    }
+
+    /// As [`Renderer::make_pipelines`], for draws of [`DrawItem::instances`], none of whose pipelines are there when the model is added.
+    ///
+    /// # Errors
+    /// As [`Renderer::make_pipelines`].
+    pub fn make_instance_pipelines(&mut self, id: ModelId, factor: Factor, cull: Cull) -> Result<(), Error> {
+        let factor = if factor == Factor::Segments { self.model(id)?.own_factor() } else { factor };
+        self.make_cuts(id, Cut::new(factor, cull).of_instances(true), factor, false)
     }
 
     /// As [`Renderer::make_pipelines`], for draws of lists only, or for others only.
-    pub(crate) fn make_cuts(&mut self, id: ModelId, factor: Factor, cull: Cull, lists: bool) -> Result<(), Error> {
+    pub(crate) fn make_cuts(&mut self, id: ModelId, cut: Cut, factor: Factor, lists: bool) -> Result<(), Error> {
         let model = self.models.get_mut(&id).ok_or(Error::NoSuchModel { id })?;
-        let cut = Cut::new(factor, cull);
         // Of patches that are not looked at, all are drawn.
         let cuts = if lists { [Cut::new(factor, Cull::NONE), Cut::listed(factor)] } else { [cut; 2] };
         for each in cuts {
@@ -133,18 +152,21 @@ impl Renderer {
         let &ResolvedItem { item, model, style, .. } = resolved;
         let (device, cmd) = (recorder.device, recorder.cmd);
         recorder.bound.uniform_grid = BoundUniformGrid::default();
-        let key = PipelineKey { style: item.style, geometry: GeometryKey::Control };
+        let instances = item.instances.is_some();
+        let key = PipelineKey { style: item.style, geometry: GeometryKey::Control, instances };
         // SAFETY: as the caller of `cmd_draw` promises.
         unsafe {
             self.bind(cmd, style, self.pipelines.draws.get(key), recorder.bound);
-            recorder.push();
             if let Some(control) = &model.control {
                 let (first, count) = match style.geometry {
                     Geometry::ControlEdges => (0, control.edges),
                     _ => (control.edges, control.faces),
                 };
                 device.cmd_bind_index_buffer(cmd, control.buffer.raw(), 0, vk::IndexType::UINT32);
-                device.cmd_draw_indexed(cmd, count, 1, first, 0, 0);
+                recorder.cmd_draw_instances(1, |recorder, instances| {
+                    recorder.push();
+                    device.cmd_draw_indexed(cmd, count, instances, first, 0, 0);
+                });
             }
         }
     }
@@ -169,7 +191,8 @@ impl Renderer {
         let path = path(model.options.evaluation);
         let level = path.level(item.factor);
         let made = |cut| model.made.iter().find(|made| made.is_of(cut, level));
-        let of_all = made(Cut::new(item.factor, if lists.is_some() { Cull::NONE } else { item.cull }));
+        let cull = if lists.is_some() { Cull::NONE } else { item.cull };
+        let of_all = made(Cut::new(item.factor, cull).of_instances(item.instances.is_some()));
         let of_lists = lists.and_then(|_| made(Cut::listed(item.factor)));
         let groups = model.tables.plan().groups();
         let pipeline = |number: usize| {

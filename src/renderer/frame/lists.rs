@@ -11,6 +11,8 @@ use crate::renderer::shader::{Cut, DrawConstants, ItemRecord, PatchStages, SetLa
 use crate::table::TEXEL_BYTES;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
+use rustc_hash::FxHashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Bytes of a patch's place on a list.
@@ -88,12 +90,15 @@ pub(crate) struct ListConstants {
     pub copies: u32,
 }
 
-const _: () = assert!(std::mem::offset_of!(ListConstants, count) == 16);
-const _: () = assert!(size_of::<ListConstants>() == 32);
+const _: () = assert!(std::mem::offset_of!(ListConstants, count) == 28);
+const _: () = assert!(size_of::<ListConstants>() == 44);
 
 /// The lists of a frame, the records of its items, and set 0 with them.
 pub(crate) struct FrameLists {
     pub set: DescriptorSet,
+    /// The buffers of set 0, and the sets with instances in their place.
+    parts: [vk::DescriptorBufferInfo; 4],
+    sets: FxHashMap<(vk::Buffer, u64, u64), DescriptorSet>,
     pub records: Records,
     buffer: Option<Buffer>,
     /// Bytes that lists may take.
@@ -121,16 +126,38 @@ impl FrameLists {
         let part = |buffer: &Buffer, range| vk::DescriptorBufferInfo { buffer: buffer.raw(), offset: 0, range };
         let records = Records::new(context, records)?;
         let of_items = part(records.buffer.as_ref().unwrap_or(views), size_of::<ItemRecord>() as u64);
-        let parts = [part(views, size_of::<ViewData>() as u64), part(lists, range), of_items];
+        let parts = [part(views, size_of::<ViewData>() as u64), part(lists, range), of_items, part(views, 4)];
         // SAFETY: the layout is among those of the pool, with these; the lists go with the set, and the views with the renderer.
         let set = unsafe { DescriptorSet::of_buffers(&layouts.pool, &layouts.view, "subdiv view", &parts)? };
-        Ok(Self { set, records, buffer, capacity: bytes, used: 0 })
+        Ok(Self { set, parts, sets: FxHashMap::default(), records, buffer, capacity: bytes, used: 0 })
     }
 
     /// Forgets the lists and records that there are.
     pub(crate) fn clear(&mut self) {
         self.used = 0;
         self.records.used = 0;
+        self.sets.clear();
+    }
+
+    /// Set 0 with instances: those that start in some bytes of a buffer.
+    pub(crate) fn set_of_instances(
+        &mut self,
+        layouts: &SetLayouts,
+        buffer: vk::Buffer,
+        seen: Range<u64>,
+    ) -> Result<vk::DescriptorSet, GpuError> {
+        let (offset, range) = (seen.start, seen.end - seen.start);
+        let key = (buffer, offset, range);
+        if let Some(set) = self.sets.get(&key) {
+            return Ok(set.raw());
+        }
+        let [view, lists, items, _] = self.parts;
+        let parts = [view, lists, items, vk::DescriptorBufferInfo { buffer, offset, range }];
+        // SAFETY: as in `new`; the instances live as long as the frame.
+        let set = unsafe { DescriptorSet::of_buffers(&layouts.pool, &layouts.view, "subdiv instances", &parts)? };
+        let raw = set.raw();
+        self.sets.insert(key, set);
+        Ok(raw)
     }
 
     pub(crate) fn has_room(&self, bytes: u64) -> bool {

@@ -5,6 +5,7 @@ use crate::renderer::{Fragment, Style, check};
 mod begun;
 mod cull;
 mod draw;
+mod instances;
 mod lists;
 mod positions;
 mod prepare;
@@ -30,6 +31,7 @@ use crate::table::Notice;
 use ash::vk;
 use begun::Begun;
 pub use begun::Frame;
+use instances::FrameInstances;
 use lists::{FrameLists, ListPipelines};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -73,6 +75,7 @@ pub struct Renderer {
     views: Buffer,
     /// Of each frame.
     lists: Vec<FrameLists>,
+    instances: Vec<FrameInstances>,
     begun: Begun,
     /// Views drawn in each frame since it began.
     views_drawn: Vec<u32>,
@@ -131,6 +134,7 @@ impl Renderer {
             retired: Vec::new(),
             views,
             lists,
+            instances: (0..options.frames_in_flight).map(|_| FrameInstances::default()).collect(),
             begun: Begun::new(renderer, options.frames_in_flight),
             views_drawn: vec![0; options.frames_in_flight as usize],
         })
@@ -269,7 +273,8 @@ impl Renderer {
     pub fn memory_usage(&self) -> MemoryUsage {
         let lists = self.lists.iter().map(FrameLists::bytes).sum();
         let records: u64 = self.lists.iter().map(|lists| lists.records.bytes()).sum();
-        let mut usage = MemoryUsage { views: self.views.size() + records, lists, ..MemoryUsage::default() };
+        let instances: u64 = self.instances.iter().map(FrameInstances::bytes).sum();
+        let mut usage = MemoryUsage { views: self.views.size() + records + instances, lists, ..MemoryUsage::default() };
         self.models.values().for_each(|model| model.add_memory(&mut usage));
         let uniform_grids = self.models.values().filter_map(|model| model.uniform_grid.as_ref());
         let indices: FxHashMap<_, _> =

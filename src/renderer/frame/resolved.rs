@@ -1,11 +1,12 @@
 //! Draw items, checked and resolved: the one place where a draw's factor is limited.
 
 use super::Renderer;
-use crate::constants::COUNTER_CLOCKWISE_FLAG;
+use crate::constants::{COUNTER_CLOCKWISE_FLAG, INSIDE_FLAG};
 use crate::renderer::evaluate::Drawn;
 use crate::renderer::model::Model;
 use crate::renderer::options::{DrawItem, Error, Factor, Geometry, Style, View, is_size};
 use crate::renderer::shader::{DrawConstants, ItemRecord, displacement_flags};
+use glam::Mat4;
 
 /// A draw item that can be drawn, with what it names.
 pub(crate) struct ResolvedItem<'r> {
@@ -73,7 +74,14 @@ impl Renderer {
         };
         let drawn = (style.geometry == Geometry::Surface).then(|| model.drawn(factor)).transpose()?;
         let segments = drawn.and_then(Drawn::segments).unwrap_or(0);
-        let back = if style.culls_counter_clockwise(&item.transform, view) { COUNTER_CLOCKWISE_FLAG } else { 0 };
+        // Of instances, shaders see themselves which are mirrored.
+        let is_mirrored = item.instances.is_none() && Mat4::from_cols_array_2d(&item.transform).determinant() < 0.0;
+        let back = match style.culls_counter_clockwise(view) {
+            Some(true) => COUNTER_CLOCKWISE_FLAG,
+            Some(false) => 0,
+            None if is_mirrored => COUNTER_CLOCKWISE_FLAG | INSIDE_FLAG,
+            None => INSIDE_FLAG,
+        };
         let record = ItemRecord::of(item, &model.map, value, segments);
         let constants = DrawConstants::new(displacement_flags(&model.map) | back);
         Ok(ResolvedItem { item, model, style, drawn, most, record, constants })

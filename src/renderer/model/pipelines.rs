@@ -67,7 +67,8 @@ impl ModelPipelines {
 
     /// Makes what draws of these groups of patches need in every style, and what comes before.
     pub(crate) fn make(&mut self, groups: &[PatchStages], cut: Cut, factor: Factor) -> Result<MadeCut, GpuError> {
-        self.draws.make_control()?;
+        let instances = cut.has_instances();
+        self.draws.make_control(instances)?;
         let (styles, level) =
             (self.draws.styles().len(), groups.first().and_then(|stages| path(stages.evaluation).level(factor)));
         let mut pipelines = Vec::with_capacity(styles * groups.len());
@@ -78,8 +79,8 @@ impl ModelPipelines {
                 pipelines.resize(pipelines.len() + styles, vk::Pipeline::null());
                 continue;
             };
-            self.draws.make(key, |key, made_for| path.recipe(stages, cut, key, made_for))?;
-            let of_style = |style| self.draws.get(PipelineKey { style, geometry: key }).unwrap_or_default();
+            self.draws.make((key, instances), |key, made_for| path.recipe(stages, cut, key, made_for))?;
+            let of_style = |style| self.draws.get(PipelineKey { style, geometry: key, instances }).unwrap_or_default();
             pipelines.extend((0..styles).map(of_style));
             match (stages.construction, stages.evaluation) {
                 (_, Evaluation::Subdivision) => {}

@@ -1,5 +1,6 @@
 use super::displacement::DisplacementId;
 use super::id::ModelId;
+use super::instances::INSTANCES;
 use crate::gpu::GpuError;
 use crate::mesh::MeshError;
 use crate::table::TableError;
@@ -66,6 +67,16 @@ pub enum Error {
     ListsTooLarge { bytes: u64, max: u64 },
     #[error("{given} items are drawn in a frame, {max} at most: draw fewer")]
     TooManyItems { given: u64, max: u64 },
+    #[error("model {}: the buffer of its instances is null: give yours, or take Renderer::instances", id.number)]
+    NoInstanceBuffer { id: ModelId },
+    #[error("model {}: Instances: the offset {offset} and the stride {stride} are in bytes, multiples of 4, the stride from 80 up", id.number)]
+    BadInstanceLayout { id: ModelId, offset: u64, stride: u32 },
+    #[error("model {}: Instances: the buffer has {size} bytes, but its instances end after {needed}", id.number)]
+    InstanceBufferTooSmall { id: ModelId, size: u64, needed: u64 },
+    #[error("{given} instances are given at once, {max} at most on this device: give them in parts, each for an item")]
+    TooManyInstances { given: usize, max: u64 },
+    #[error("model {}: cmd_cull makes no lists of instances: draw them by cmd_draw, whose control shaders cull by DrawItem::cull, too", id.number)]
+    CulledInstances { id: ModelId },
     #[error("style {given}: Options::styles has {count}")]
     NoSuchStyle { given: usize, count: usize },
     #[error("model {}: {factor:?}: a tessellation factor is a number from 1 up, pixels and scales are above 0", id.number)]
@@ -142,7 +153,11 @@ pub enum Error {
 pub(crate) const EVALUATED_VERTICES: &str = "evaluated vertices";
 
 fn smaller(table: &str) -> &'static str {
-    if table == EVALUATED_VERTICES { "have fewer segments, or split the mesh" } else { "split the mesh" }
+    match table {
+        EVALUATED_VERTICES => "have fewer segments, or split the mesh",
+        INSTANCES => "draw them as several items",
+        _ => "split the mesh",
+    }
 }
 
 fn constructions(evaluation: Evaluation) -> String {

@@ -3,6 +3,7 @@
 mod displacement;
 mod error;
 mod id;
+mod instances;
 mod item;
 mod memory;
 mod model_options;
@@ -16,6 +17,7 @@ mod view;
 pub use displacement::{DisplacementId, DisplacementMap};
 pub use error::Error;
 pub use id::ModelId;
+pub use instances::{Instance, Instances};
 pub use item::DrawItem;
 pub use memory::MemoryUsage;
 pub use model_options::ModelOptions;

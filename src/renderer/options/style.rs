@@ -6,7 +6,6 @@ use crate::gpu::{Blend, DepthBias, DepthState};
 #[cfg(doc)]
 use crate::{gpu::Features, renderer::Options};
 use ash::vk;
-use glam::Mat4;
 
 /// What of a model a [`Style`] draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -27,7 +26,9 @@ pub enum Geometry {
 /// normal in world space (`vec3`, not of length one; where the surface is displaced, of the surface before: see
 /// `displaced_normal` in `glsl/lib/displace/displace.glsl`), and at 2 the texture coordinate (`vec2`) if [`Options::texcoords`] is
 /// on or the model is displaced; for the control mesh only location 0. `glsl/lib/draw/draw.glsl` declares the view, the item
-/// (`draw_colour()`, and [`DrawItem::words`](crate::renderer::DrawItem::words) as `item.words`) and the push constants; your own
+/// (`draw_colour()`, and
+/// [`DrawItem::words`](crate::renderer::DrawItem::words) as `draw_words()`; define `FRAGMENT_STAGE` before you include it, to have those of
+/// [instances](crate::renderer::DrawItem::instances)) and the push constants; your own
 /// descriptor sets start at set 2 ([`Options::set_layouts`]).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
@@ -95,13 +96,13 @@ impl Default for Style {
 }
 
 impl Style {
-    /// Whether it culls what winds counter-clockwise as the eye sees it in space, of a surface with this transform; else what
-    /// winds clockwise. If it culls neither: the inside.
-    pub(crate) fn culls_counter_clockwise(&self, transform: &[[f32; 4]; 4], view: &View) -> bool {
+    /// Whether it culls what winds counter-clockwise as the eye sees it in space, or else what winds clockwise; none if it culls
+    /// neither.
+    pub(crate) fn culls_counter_clockwise(&self, view: &View) -> Option<bool> {
         match self.cull {
-            vk::CullModeFlags::BACK => (self.front_face == vk::FrontFace::CLOCKWISE) != view.mirrored,
-            vk::CullModeFlags::FRONT => (self.front_face == vk::FrontFace::COUNTER_CLOCKWISE) != view.mirrored,
-            _ => Mat4::from_cols_array_2d(transform).determinant() < 0.0,
+            vk::CullModeFlags::BACK => Some((self.front_face == vk::FrontFace::CLOCKWISE) != view.mirrored),
+            vk::CullModeFlags::FRONT => Some((self.front_face == vk::FrontFace::COUNTER_CLOCKWISE) != view.mirrored),
+            _ => None,
         }
     }
 

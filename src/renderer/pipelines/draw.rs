@@ -1,11 +1,11 @@
 //! The pipelines of draws, each made when the first model is added that needs it.
 
-use super::recipe::{MadeFor, Recipe};
-use crate::constants::ID_ENCODE_SRGB;
+use super::recipe::{MadeFor, Recipe, RecipeStage};
+use crate::constants::{ID_ENCODE_SRGB, ID_INSTANCES, LOCATION_INSTANCE};
 use crate::gpu::{DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Specialization, pipeline_layout};
 use crate::renderer::options::{ColorEncoding, Fragment, Geometry, Options, Style, Target};
 use crate::renderer::shader::{
-    Capture, DrawConstants, GeometryKey, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId,
+    Capture, DrawConstants, GeometryKey, INPUT, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId, without_variable,
 };
 use ash::vk;
 use rustc_hash::FxHashMap;
@@ -66,11 +66,11 @@ impl DrawPipelines {
     /// Makes the pipelines of a recipe in every style of the surface.
     pub(crate) fn make(
         &mut self,
-        geometry: GeometryKey,
+        (geometry, instances): (GeometryKey, bool),
         recipe: impl Fn(GeometryKey, &MadeFor) -> Recipe,
     ) -> Result<(), GpuError> {
         for style in 0..self.styles.len() {
-            let key = PipelineKey { style, geometry };
+            let key = PipelineKey { style, geometry, instances };
             if self.styles[style].geometry == Geometry::Surface && !self.made.contains_key(&key) {
                 let recipe = recipe(geometry, &self.made_for());
                 self.make_one(key, &recipe)?;
@@ -80,9 +80,9 @@ impl DrawPipelines {
     }
 
     /// Makes the pipelines of the control mesh, in the styles that draw it.
-    pub(crate) fn make_control(&mut self) -> Result<(), GpuError> {
+    pub(crate) fn make_control(&mut self, instances: bool) -> Result<(), GpuError> {
         for style in 0..self.styles.len() {
-            let key = PipelineKey { style, geometry: GeometryKey::Control };
+            let key = PipelineKey { style, geometry: GeometryKey::Control, instances };
             let topology = match self.styles[style].geometry {
                 Geometry::Surface => continue,
                 Geometry::ControlFaces => vk::PrimitiveTopology::TRIANGLE_LIST,
@@ -99,11 +99,28 @@ impl DrawPipelines {
     fn make_one(&mut self, key: PipelineKey, recipe: &Recipe) -> Result<(), GpuError> {
         let style = &self.styles[key.style];
         let target = style.target_or(&self.target);
-        let codes = recipe.stages.iter().map(|stage| stage.code(&self.shaders)).collect::<Result<Vec<_>, _>>()?;
-        let encode = [Specialization::bool(ID_ENCODE_SRGB, target.encoding == ColorEncoding::Srgb)];
-        let mut stages: Vec<Shader> =
-            recipe.stages.iter().zip(&codes).map(|(stage, code)| stage.shader(code)).collect();
-        stages.extend(fragment(style, target, recipe.displaced, &encode));
+        let last = recipe.stages.len() - 1;
+        let code = |(number, stage): (usize, &RecipeStage)| match key.instances {
+            true => stage.code(&self.shaders),
+            false => stage.code_of_one(&self.shaders, number == last),
+        };
+        let codes = recipe.stages.iter().enumerate().map(code).collect::<Result<Vec<_>, _>>()?;
+        let encode = [
+            Specialization::bool(ID_INSTANCES, key.instances),
+            Specialization::bool(ID_ENCODE_SRGB, target.encoding == ColorEncoding::Srgb),
+        ];
+        let of_instances = Specialization::bool(ID_INSTANCES, key.instances);
+        let constants: Vec<Vec<_>> = recipe.stages.iter().map(|stage| stage.with(of_instances)).collect();
+        let stages = recipe.stages.iter().zip(&codes).zip(&constants);
+        let mut stages: Vec<Shader> = stages.map(|((stage, code), constants)| stage.shader(code, constants)).collect();
+        let (fragment, ours) = fragment(style, target, recipe.displaced).unzip();
+        let fragment = fragment.map(|code| match key.instances {
+            true => code.to_vec(),
+            false => without_variable(code, INPUT, LOCATION_INSTANCE),
+        });
+        // Of our constants, a shader of the caller's has those alone that say what is drawn.
+        let constants = if ours == Some(true) { &encode[..] } else { &encode[..1] };
+        stages.extend(fragment.as_ref().map(|code| Shader::fragment(code).specialized(constants)));
         let mut dynamic_states = Vec::new();
         dynamic_states.extend(recipe.topology_is_dynamic.then_some(vk::DynamicState::PRIMITIVE_TOPOLOGY));
         // Set when bound: a pipeline that always discards has no attachment formats, and fits no rendering that has attachments.
@@ -134,11 +151,11 @@ impl DrawPipelines {
     }
 }
 
-/// The fragment shader, if there is anything for it to do; `ours` are the constants of those that are ours.
-fn fragment<'a>(style: &'a Style, target: &Target, displaced: bool, ours: &'a [Specialization]) -> Option<Shader<'a>> {
+/// The SPIR-V of the fragment shader, if there is anything for it to do, and whether it is ours.
+fn fragment<'a>(style: &'a Style, target: &Target, displaced: bool) -> Option<(&'a [u32], bool)> {
     let id = match (&style.fragment, style.geometry) {
         _ if style.rasterizer_discard => return None,
-        (Fragment::Spirv(code), _) => return Some(Shader::fragment(code)),
+        (Fragment::Spirv(code), _) => return Some((code, false)),
         _ if target.render_target().color_attachments() == 0 => return None,
         (Fragment::Lit, Geometry::Surface) if displaced => ShaderId::ShadeLitFragDisplaced,
         (Fragment::Normals, Geometry::Surface) if displaced => ShaderId::ShadeNormalsFragDisplaced,
@@ -147,5 +164,5 @@ fn fragment<'a>(style: &'a Style, target: &Target, displaced: bool, ours: &'a [S
         (Fragment::Normals, Geometry::Surface) => ShaderId::ShadeNormalsFrag,
         _ => ShaderId::ShadeFlatFrag,
     };
-    Some(Shader::fragment(id.code()).specialized(ours))
+    Some((id.code(), true))
 }

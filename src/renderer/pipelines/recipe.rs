@@ -1,8 +1,11 @@
 //! What pipelines of draws are made of, but for the style.
 
 use super::vertex_input::VertexInput;
+use crate::constants::{LOCATION_INSTANCE, LOCATION_PATCH_INSTANCE};
 use crate::gpu::{DeviceProperties, GpuError, Shader, Spacing, Specialization};
-use crate::renderer::shader::{Capture, ShaderCode, ShaderKey, Source, reads_texels, spaced};
+use crate::renderer::shader::{
+    Capture, INPUT, OUTPUT, ShaderCode, ShaderKey, Source, reads_texels, spaced, without_variable,
+};
 use ash::vk;
 
 /// A shader, with its constants.
@@ -27,15 +30,33 @@ impl RecipeStage {
         Ok(if self.spacing == Spacing::Equal { code.to_vec() } else { spaced(code, self.spacing) })
     }
 
-    /// The shader with its SPIR-V.
-    pub(crate) fn shader<'s>(&'s self, code: &'s [u32]) -> Shader<'s> {
+    /// The SPIR-V for draws that are not of instances; `is_last` if rasterization follows.
+    ///
+    /// # Errors
+    /// As [`ShaderCode::find`].
+    pub(crate) fn code_of_one(&self, shaders: &ShaderCode, is_last: bool) -> Result<Vec<u32>, GpuError> {
+        let code = match (self.code(shaders)?, self.key.source.stage()) {
+            (code, "tesc") => without_variable(&code, OUTPUT, LOCATION_PATCH_INSTANCE),
+            (code, "tese") => without_variable(&code, INPUT, LOCATION_PATCH_INSTANCE),
+            (code, _) => code,
+        };
+        Ok(if is_last { without_variable(&code, OUTPUT, LOCATION_INSTANCE) } else { code })
+    }
+
+    /// Its constants, and one more.
+    pub(crate) fn with(&self, constant: Specialization) -> Vec<Specialization> {
+        self.constants.iter().copied().chain([constant]).collect()
+    }
+
+    /// The shader with its SPIR-V and constants.
+    pub(crate) fn shader<'s>(&self, code: &'s [u32], constants: &'s [Specialization]) -> Shader<'s> {
         let shader = match self.key.source.stage() {
             "tesc" => Shader::tess_control(code),
             "tese" => Shader::tess_evaluation(code),
             "geom" => Shader::geometry(code),
             _ => Shader::vertex(code),
         };
-        shader.specialized(&self.constants)
+        shader.specialized(constants)
     }
 }
 

@@ -212,6 +212,6 @@ mod tests {
         };
         let error = check_properties(&properties, properties.features, &all, &target, &Options::default()).unwrap_err();
         let told = error.to_string();
-        assert!(told.contains("7 storage buffers a shader stage (it has 4)"), "{told}");
+        assert!(told.contains("8 storage buffers a shader stage (it has 4)"), "{told}");
     }
 }

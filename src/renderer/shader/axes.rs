@@ -70,9 +70,6 @@ struct Axes {
     levels: u8,
 }
 
-/// Vertex attributes that every Vulkan device has.
-const LEAST_ATTRIBUTES: u32 = 16;
-
 impl Source {
     const fn axes(self) -> Axes {
         use Output::{CaptureGrid, CapturePoints, CaptureVertices, Surface, Texcoords};
@@ -159,11 +156,6 @@ impl ShaderKey {
             Source::CullComp if patch.hull == 0 => false,
             Source::UniformGridVert | Source::LitFrag | Source::NormalsFrag if self.sharing == Sharing::Normals => {
                 false
-            }
-            // Where attributes fit on every device, there is no other way.
-            Source::InstancedVert if !self.attributes => {
-                self.sharing != Sharing::Positions
-                    || patch.corners as u32 * self.sharing.kept_texels(patch.owned) > LEAST_ATTRIBUTES
             }
             _ => true,
         };

@@ -11,16 +11,27 @@ pub(crate) struct Cut {
     cull: Cull,
     /// Whether only those on a list are drawn.
     listed: bool,
+    /// Whether draws are of instances of an item.
+    instances: bool,
 }
 
 impl Cut {
     pub(crate) fn new(factor: Factor, cull: Cull) -> Self {
-        Self { metric: factor.metric(), cull, listed: false }
+        Self { metric: factor.metric(), cull, listed: false, instances: false }
     }
 
     /// For draws of the patches on a list.
     pub(crate) fn listed(factor: Factor) -> Self {
         Self { listed: true, ..Self::new(factor, Cull::NONE) }
+    }
+
+    /// The same for draws of instances, or of an item once.
+    pub(crate) fn of_instances(self, instances: bool) -> Self {
+        Self { instances, ..self }
+    }
+
+    pub(crate) fn has_instances(self) -> bool {
+        self.instances
     }
 
     pub(crate) fn is_listed(self) -> bool {
@@ -29,7 +40,7 @@ impl Cut {
 
     /// Of draws where nothing is left for a control shader to do.
     pub(crate) fn without_control(self) -> Self {
-        Self { listed: self.listed, ..Self::default() }
+        Self { listed: self.listed, instances: self.instances, ..Self::default() }
     }
 
     /// Of faces that are refined: neither hulls nor the control points of leaves tell which way they face.
@@ -45,7 +56,7 @@ impl Cut {
     }
 
     /// What is not as in draws with a uniform factor of all patches; else empty.
-    pub(crate) fn words(self) -> [&'static str; 5] {
+    pub(crate) fn words(self) -> [&'static str; 6] {
         let metric = match self.metric {
             0 => "",
             1 => "pixels",
@@ -60,6 +71,7 @@ impl Cut {
             flag(back, "cull back"),
             flag(small, "cull small"),
             flag(self.listed, "listed"),
+            flag(self.instances, "instances"),
         ]
     }
 }

@@ -72,6 +72,12 @@ pub(crate) struct DrawConstants {
     pub first_patch: u32,
     pub patches_per_instance: u32,
     pub flags: u32,
+    /// Patches of an instance of the item, or tiles of them; 0 where it is drawn once.
+    pub patches: u32,
+    /// The word where the first instance is.
+    pub first_word: u32,
+    /// Words from one instance to the next.
+    pub instance_stride: u32,
 }
 
 impl DrawConstants {
@@ -92,7 +98,7 @@ const _: () = assert!(std::mem::offset_of!(ItemRecord, words) == 160);
 const _: () = assert!(std::mem::offset_of!(ItemRecord, factor) == 176);
 const _: () = assert!(size_of::<ItemRecord>() == 208);
 // Every Vulkan device has at least 128 bytes of push constants: the rest is free.
-const _: () = assert!(size_of::<DrawConstants>() == 16);
+const _: () = assert!(size_of::<DrawConstants>() == 28);
 const _: () = assert!(PatchKind::ALL.len() == 4);
 
 impl ItemRecord {

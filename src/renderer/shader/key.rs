@@ -31,6 +31,8 @@ pub(crate) struct PipelineKey {
     /// Index into the styles.
     pub style: usize,
     pub geometry: GeometryKey,
+    /// Whether draws are of instances of an item.
+    pub instances: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

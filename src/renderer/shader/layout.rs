@@ -34,7 +34,8 @@ impl SetLayouts {
     }
 }
 
-/// The layout of set 0: what draws know of their view, and the list of what can be seen in it, and the record of an item.
+/// The layout of set 0: what draws know of their view, and the list of what can be seen in it, the record of an item, and
+/// its instances.
 fn view_layout(context: &Arc<DeviceContext>) -> Result<SetLayout, GpuError> {
     let stages = STAGES | vk::ShaderStageFlags::COMPUTE;
     descriptor_set_layout(context, "subdiv view", &VIEW_BINDINGS.map(|ty| (ty, stages)))
@@ -84,10 +85,11 @@ const _: () = {
 };
 
 /// What set 0 has, by binding.
-const VIEW_BINDINGS: [vk::DescriptorType; 3] = [
+const VIEW_BINDINGS: [vk::DescriptorType; 4] = [
     vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC,
     vk::DescriptorType::STORAGE_BUFFER_DYNAMIC,
     vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC,
+    vk::DescriptorType::STORAGE_BUFFER,
 ];
 
 /// What set 1 has, by binding.

@@ -117,6 +117,53 @@ pub(crate) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
     code
 }
 
+/// The storage class of what a shader takes from the stage before (SPIR-V 1.6, 3.7).
+pub(crate) const INPUT: u32 = 1;
+/// The storage class of what it hands on.
+pub(crate) const OUTPUT: u32 = 3;
+
+/// A shader without the number that it takes or hands on at a location, which nothing that runs reads or writes: drivers keep room
+/// for all that is declared. A shader that has none, or does more with it than read and write, is as it was.
+pub(crate) fn without_variable(code: &[u32], class: u32, location: u32) -> Vec<u32> {
+    const OP_UNDEF: u32 = 1;
+    const OP_NAME: u32 = 5;
+    const OP_ENTRY_POINT: u32 = 15;
+    const OP_VARIABLE: u32 = 59;
+    const OP_LOAD: u32 = 61;
+    const OP_STORE: u32 = 62;
+    const OP_ACCESS_CHAIN: u32 = 65;
+    const OP_DECORATE: u32 = 71;
+    const LOCATION: u32 = 30;
+    let all = instructions(code).unwrap_or_default();
+    let is_there = |id: u32| all.iter().any(|(opcode, w)| *opcode == OP_DECORATE && *w == [id, LOCATION, location]);
+    let found = all.iter().find(|(opcode, w)| *opcode == OP_VARIABLE && w[2] == class && is_there(w[1]));
+    let Some(variable) = found.map(|(_, words)| words[1]) else { return code.to_vec() };
+    if all.iter().any(|(opcode, words)| *opcode == OP_ACCESS_CHAIN && words[2] == variable) {
+        return code.to_vec();
+    }
+    let mut rest = code[..HEADER_WORDS].to_vec();
+    let mut push = |opcode: u32, words: &[u32]| {
+        rest.push((words.len() as u32 + 1) << 16 | opcode);
+        rest.extend_from_slice(words);
+    };
+    for (opcode, words) in all {
+        match opcode {
+            OP_NAME | OP_DECORATE | OP_STORE if words[0] == variable => {}
+            OP_VARIABLE if words[1] == variable => {}
+            OP_LOAD if words[2] == variable => push(OP_UNDEF, &words[..2]),
+            OP_ENTRY_POINT => {
+                // The name ends with a zero byte; what the shader takes and hands on comes after it.
+                let name =
+                    words[2..].iter().position(|word| word.to_le_bytes().contains(&0)).map_or(words.len(), |n| n + 3);
+                let kept = words[name..].iter().filter(|&&id| id != variable);
+                push(opcode, &words[..name].iter().chain(kept).copied().collect::<Vec<_>>());
+            }
+            _ => push(opcode, words),
+        }
+    }
+    rest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,6 +177,23 @@ mod tests {
             let code = spaced(equal, spacing);
             let changed: Vec<_> = (0..code.len()).filter(|&i| code[i] != equal[i]).collect();
             assert_eq!((changed.len(), code[changed[0]], equal[changed[0]]), (1, mode, 1));
+        }
+    }
+
+    #[test]
+    fn variables_are_left_out() {
+        use crate::constants::{LOCATION_INSTANCE, LOCATION_PATCH_INSTANCE};
+        let code = ShaderId::EvaluateTessellationTeseBicubic.code();
+        let [less, least] = {
+            let less = without_variable(code, OUTPUT, LOCATION_INSTANCE);
+            let least = without_variable(&less, INPUT, LOCATION_PATCH_INSTANCE);
+            [less, least]
+        };
+        // A variable, its place, what writes it and its name among those of the entry point; what reads it becomes what is not known.
+        let count = |code: &[u32]| instructions(code).expect("SPIR-V").len();
+        assert!(count(code) > count(&less) && count(&less) > count(&least), "{} {}", count(code), count(&less));
+        for (class, location) in [(OUTPUT, LOCATION_INSTANCE), (INPUT, LOCATION_PATCH_INSTANCE), (OUTPUT, 99)] {
+            assert_eq!(without_variable(&least, class, location), least);
         }
     }
 }
