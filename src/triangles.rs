@@ -3,12 +3,15 @@
 //! What is drawn are the arrays of a [`Tessellation`](crate::dice::Tessellation), or any others. Styles are those of a
 //! [`Renderer`](crate::Renderer), of the geometry [`Surface`](crate::renderer::Geometry::Surface).
 
+use crate::constants::LOCATION_INSTANCE;
 use crate::gpu::{
     Buffer, BufferDesc, DescriptorPool, DescriptorSet, DeviceContext, GpuError, GraphicsPipelineDesc, MemoryLocation,
     Owned, RenderTarget, SetLayout, Shader, descriptor_set_layout, pipeline_layout,
 };
 use crate::headless::{Headless, OffscreenDesc};
-use crate::renderer::{DrawConstants, Fragment, ItemRecord, STAGES, ShaderId, Style, View, ViewData};
+use crate::renderer::{
+    DrawConstants, Fragment, INPUT, ItemRecord, OUTPUT, STAGES, ShaderId, Style, View, ViewData, without_variable,
+};
 use ash::vk;
 use std::sync::Arc;
 
@@ -60,8 +63,8 @@ impl Triangles {
     ) -> Result<Self, GpuError> {
         let context = headless.context();
         use vk::DescriptorType as Type;
-        let bindings =
-            [(Type::UNIFORM_BUFFER, STAGES), (Type::STORAGE_BUFFER, STAGES), (Type::UNIFORM_BUFFER_DYNAMIC, STAGES)];
+        let bindings = [Type::UNIFORM_BUFFER, Type::STORAGE_BUFFER, Type::UNIFORM_BUFFER_DYNAMIC, Type::STORAGE_BUFFER];
+        let bindings = bindings.map(|ty| (ty, STAGES));
         let set_layout = descriptor_set_layout(context, NAME, &bindings)?;
         let size = size_of::<DrawConstants>() as u32;
         let constants = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size }];
@@ -116,8 +119,15 @@ impl Triangles {
             .dst_binding(2)
             .descriptor_type(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC)
             .buffer_info(&items);
+        // In the place of instances, of which there are none.
+        let instances = [self.items.descriptor()];
+        let no_instances = vk::WriteDescriptorSet::default()
+            .dst_set(self.set.raw())
+            .dst_binding(3)
+            .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+            .buffer_info(&instances);
         // SAFETY: the device does not use the set, and the buffer lives as long as it.
-        unsafe { self.context.device().update_descriptor_sets(&[write], &[]) };
+        unsafe { self.context.device().update_descriptor_sets(&[write, no_instances], &[]) };
     }
 
     /// Sets the vertices.
@@ -185,7 +195,8 @@ impl Triangles {
 
 /// A buffer with room for the records of `items` items.
 fn item_buffer(context: &Arc<DeviceContext>, items: usize) -> Result<Buffer, GpuError> {
-    let (size, usage) = (ItemRecord::STRIDE * items.max(1) as u64, vk::BufferUsageFlags::UNIFORM_BUFFER);
+    let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER;
+    let size = ItemRecord::STRIDE * items.max(1) as u64;
     Buffer::new(context, &BufferDesc { name: NAME, size, usage, location: MemoryLocation::Upload })
 }
 
@@ -195,16 +206,19 @@ fn pipeline(
     target: &OffscreenDesc,
     style: &Style,
 ) -> Result<Owned<vk::Pipeline>, GpuError> {
-    let mut stages = vec![Shader::vertex(ShaderId::EvaluateUniformGridVert.code())];
+    let vertex = without_variable(ShaderId::EvaluateUniformGridVert.code(), OUTPUT, LOCATION_INSTANCE);
+    let fragment = match &style.fragment {
+        Fragment::Lit => ShaderId::ShadeLitFrag.code(),
+        Fragment::Normals => ShaderId::ShadeNormalsFrag.code(),
+        Fragment::Flat => ShaderId::ShadeFlatFrag.code(),
+        Fragment::Spirv(code) => code,
+    };
+    let fragment = without_variable(fragment, INPUT, LOCATION_INSTANCE);
+    let mut stages = vec![Shader::vertex(&vertex)];
     let dynamic_states: &[_] =
         if style.rasterizer_discard { &[vk::DynamicState::RASTERIZER_DISCARD_ENABLE] } else { &[] };
     if !style.rasterizer_discard {
-        stages.push(Shader::fragment(match &style.fragment {
-            Fragment::Lit => ShaderId::ShadeLitFrag.code(),
-            Fragment::Normals => ShaderId::ShadeNormalsFrag.code(),
-            Fragment::Flat => ShaderId::ShadeFlatFrag.code(),
-            Fragment::Spirv(code) => code,
-        }));
+        stages.push(Shader::fragment(&fragment));
     }
     let vectors = |binding| vk::VertexInputBindingDescription::default().binding(binding).stride(12);
     let attribute = |binding| {

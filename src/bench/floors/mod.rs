@@ -9,12 +9,13 @@ pub(super) use vertex_buffer::VertexBuffer;
 
 use super::BenchError;
 use super::drawable::{Frame, Lane, Pass};
+use crate::constants::{LOCATION_INSTANCE, LOCATION_PATCH_INSTANCE};
 use crate::gpu::{
     Buffer, BufferDesc, DepthState, DescriptorPool, DescriptorSet, DeviceContext, GpuError, GraphicsPipelineDesc,
     MemoryLocation, Owned, RenderTarget, SetLayout, Shader, descriptor_set_layout, pipeline_layout,
 };
 use crate::headless::Headless;
-use crate::renderer::{DrawConstants, ItemRecord, STAGES, ShaderId, ViewData};
+use crate::renderer::{DrawConstants, INPUT, ItemRecord, OUTPUT, STAGES, ShaderId, ViewData, without_variable};
 use ash::vk;
 use bytemuck::NoUninit;
 use std::sync::Arc;
@@ -53,7 +54,7 @@ impl Kit {
         let (uniform, buffer, texels) = (Type::UNIFORM_BUFFER, Type::STORAGE_BUFFER, Type::UNIFORM_TEXEL_BUFFER);
         let of_item = Type::UNIFORM_BUFFER_DYNAMIC;
         let set_layouts = [
-            descriptor_set_layout(context, NAME, &[(uniform, STAGES), (buffer, STAGES), (of_item, STAGES)])?,
+            descriptor_set_layout(context, NAME, &[uniform, buffer, of_item, buffer].map(|ty| (ty, STAGES)))?,
             descriptor_set_layout(context, NAME, &[(buffer, STAGES), (buffer, STAGES), (texels, STAGES)])?,
         ];
         let raw = [set_layouts[0].raw(), set_layouts[1].raw()];
@@ -80,6 +81,7 @@ impl Kit {
         let writes = [
             write(sets[0].raw(), uniform).buffer_info(&views),
             write(sets[0].raw(), buffer).dst_binding(1).buffer_info(&buffers[..1]),
+            write(sets[0].raw(), buffer).dst_binding(3).buffer_info(&buffers[..1]),
             write(sets[1].raw(), buffer).buffer_info(&buffers),
             write(sets[1].raw(), texels).dst_binding(BINDINGS as u32).texel_buffer_view(&texel_views),
         ];
@@ -105,10 +107,20 @@ impl Kit {
             depth: lane.target.depth,
             stencil: vk::Format::UNDEFINED,
         };
+        // As in pipelines of items that are drawn once.
+        let last = stages.len() - 1;
+        let code = |(number, stage): (usize, &Shader)| {
+            let code = without_variable(stage.code, OUTPUT, LOCATION_PATCH_INSTANCE);
+            let code = without_variable(&code, INPUT, LOCATION_PATCH_INSTANCE);
+            if number == last { without_variable(&code, OUTPUT, LOCATION_INSTANCE) } else { code }
+        };
+        let codes: Vec<Vec<u32>> = stages.iter().enumerate().map(code).collect();
+        let stages: Vec<Shader> = stages.iter().zip(&codes).map(|(stage, code)| Shader { code, ..*stage }).collect();
+        let fragment = without_variable(ShaderId::ShadeLitFrag.code(), INPUT, LOCATION_INSTANCE);
         let pipeline = |pass: Pass| {
             let (mut stages, mut dynamic_states) = (stages.to_vec(), input.dynamic_states.to_vec());
             match pass {
-                Pass::Pixels => stages.push(Shader::fragment(ShaderId::ShadeLitFrag.code())),
+                Pass::Pixels => stages.push(Shader::fragment(&fragment)),
                 // As the styles of a renderer.
                 Pass::Geometry => dynamic_states.push(vk::DynamicState::RASTERIZER_DISCARD_ENABLE),
             }
