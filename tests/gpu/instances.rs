@@ -213,6 +213,20 @@ fn instances_that_cannot_be_drawn() {
         let told = told(&mut renderer, frame, instances);
         assert!(told.contains(expected), "{told}");
     }
+    // More than a shader sees at once, which takes no memory on the device to find out.
+    let max = stage.headless.properties().max_storage_buffer_range;
+    let count = max / size_of::<Instance>() as u64 + 1;
+    // SAFETY: it is not drawn.
+    let large = unsafe { Instances::in_buffer(own.raw(), u64::MAX, 0, 80, count as u32) };
+    let expected = format!("instances of an item take {} bytes, but a shader can see {max}", 80 * count);
+    let told_large = told(&mut renderer, frame, large);
+    assert!(told_large.contains(&expected) && told_large.ends_with("draw them as several items"), "{told_large}");
+    if max < 1 << 28 {
+        let many = vec![of[0]; count as usize];
+        let error = renderer.instances(frame, &many).expect_err("an error").to_string();
+        let expected = format!("{count} instances are given at once, {} at most on this device", count - 1);
+        assert!(error.starts_with(&expected) && error.ends_with("give them in parts, each for an item"), "{error}");
+    }
     // None at all draw nothing, from any buffer.
     for instances in [in_buffer(own.raw(), 0, 80, 0), renderer.instances(frame, &[]).expect("no instances")] {
         let item = DrawItem { instances: Some(instances), ..DrawItem::new(model, 2.0) };
