@@ -3,14 +3,13 @@
 //! What is drawn are the arrays of a [`Tessellation`](crate::dice::Tessellation), or any others. Styles are those of a
 //! [`Renderer`](crate::Renderer), of the geometry [`Surface`](crate::renderer::Geometry::Surface).
 
-use crate::constants::LOCATION_INSTANCE;
 use crate::gpu::{
     Buffer, BufferDesc, DescriptorPool, DescriptorSet, DeviceContext, GpuError, GraphicsPipelineDesc, MemoryLocation,
     Owned, RenderTarget, SetLayout, Shader, descriptor_set_layout, pipeline_layout,
 };
 use crate::headless::{Headless, OffscreenDesc};
 use crate::renderer::{
-    DrawConstants, Fragment, INPUT, ItemRecord, OUTPUT, STAGES, ShaderId, Style, View, ViewData, without_variable,
+    DrawConstants, Fragment, ItemRecord, STAGES, ShaderId, Style, View, ViewData, without_instances,
 };
 use ash::vk;
 use std::sync::Arc;
@@ -206,14 +205,14 @@ fn pipeline(
     target: &OffscreenDesc,
     style: &Style,
 ) -> Result<Owned<vk::Pipeline>, GpuError> {
-    let vertex = without_variable(ShaderId::EvaluateUniformGridVert.code(), OUTPUT, LOCATION_INSTANCE);
+    let vertex = without_instances(ShaderId::EvaluateUniformGridVert.code(), vk::ShaderStageFlags::VERTEX, true);
     let fragment = match &style.fragment {
         Fragment::Lit => ShaderId::ShadeLitFrag.code(),
         Fragment::Normals => ShaderId::ShadeNormalsFrag.code(),
         Fragment::Flat => ShaderId::ShadeFlatFrag.code(),
         Fragment::Spirv(code) => code,
     };
-    let fragment = without_variable(fragment, INPUT, LOCATION_INSTANCE);
+    let fragment = without_instances(fragment, vk::ShaderStageFlags::FRAGMENT, false);
     let mut stages = vec![Shader::vertex(&vertex)];
     let dynamic_states: &[_] =
         if style.rasterizer_discard { &[vk::DynamicState::RASTERIZER_DISCARD_ENABLE] } else { &[] };

@@ -81,16 +81,17 @@ impl Bilinear {
         normals.map(|normal| normal.normalize_or_zero().dot(self.normal)).into_iter().fold(1.0, f64::min).max(0.0)
     }
 
-    /// Along the normal; without one nothing is known but the distance.
+    /// Height along the normal; the length where there is no normal.
     pub fn height(&self, difference: DVec3) -> f64 {
         if self.normal == DVec3::ZERO { difference.length() } else { difference.dot(self.normal) }
     }
 
+    /// Length across the normal.
     pub fn sideways(&self, difference: DVec3) -> f64 {
         difference.cross(self.normal).length()
     }
 
-    /// Along the normal, with what lies sideways.
+    /// Stray of one difference: its height, and what its way sideways counts to either side.
     pub fn measure(&self, difference: DVec3) -> Stray {
         let (height, distance) = (self.height(difference), difference.length());
         let sideways = self.lean * self.sideways(difference);

@@ -68,7 +68,7 @@ pub use shader::ShaderId;
 #[cfg(feature = "headless")]
 pub(crate) use shader::Capture;
 #[cfg(feature = "headless")]
-pub(crate) use shader::{DrawConstants, INPUT, ItemRecord, OUTPUT, STAGES, ViewData, without_variable};
+pub(crate) use shader::{DrawConstants, ItemRecord, STAGES, ViewData, without_instances};
 #[cfg(all(feature = "measure", feature = "headless"))]
 pub(crate) use {
     evaluate::{subdivision::level as subdivision_level, topology},

@@ -9,13 +9,12 @@ pub(super) use vertex_buffer::VertexBuffer;
 
 use super::BenchError;
 use super::drawable::{Frame, Lane, Pass};
-use crate::constants::{LOCATION_INSTANCE, LOCATION_PATCH_INSTANCE};
 use crate::gpu::{
     Buffer, BufferDesc, DepthState, DescriptorPool, DescriptorSet, DeviceContext, GpuError, GraphicsPipelineDesc,
     MemoryLocation, Owned, RenderTarget, SetLayout, Shader, descriptor_set_layout, pipeline_layout,
 };
 use crate::headless::Headless;
-use crate::renderer::{DrawConstants, INPUT, ItemRecord, OUTPUT, STAGES, ShaderId, ViewData, without_variable};
+use crate::renderer::{DrawConstants, ItemRecord, STAGES, ShaderId, ViewData, without_instances};
 use ash::vk;
 use bytemuck::NoUninit;
 use std::sync::Arc;
@@ -109,14 +108,10 @@ impl Kit {
         };
         // As in pipelines of items that are drawn once.
         let last = stages.len() - 1;
-        let code = |(number, stage): (usize, &Shader)| {
-            let code = without_variable(stage.code, OUTPUT, LOCATION_PATCH_INSTANCE);
-            let code = without_variable(&code, INPUT, LOCATION_PATCH_INSTANCE);
-            if number == last { without_variable(&code, OUTPUT, LOCATION_INSTANCE) } else { code }
-        };
+        let code = |(number, stage): (usize, &Shader)| without_instances(stage.code, stage.stage, number == last);
         let codes: Vec<Vec<u32>> = stages.iter().enumerate().map(code).collect();
         let stages: Vec<Shader> = stages.iter().zip(&codes).map(|(stage, code)| Shader { code, ..*stage }).collect();
-        let fragment = without_variable(ShaderId::ShadeLitFrag.code(), INPUT, LOCATION_INSTANCE);
+        let fragment = without_instances(ShaderId::ShadeLitFrag.code(), vk::ShaderStageFlags::FRAGMENT, false);
         let pipeline = |pass: Pass| {
             let (mut stages, mut dynamic_states) = (stages.to_vec(), input.dynamic_states.to_vec());
             match pass {

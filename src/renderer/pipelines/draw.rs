@@ -1,11 +1,11 @@
 //! The pipelines of draws, each made when the first model is added that needs it.
 
 use super::recipe::{MadeFor, Recipe, RecipeStage};
-use crate::constants::{ID_ENCODE_SRGB, ID_INSTANCES, LOCATION_INSTANCE};
+use crate::constants::{ID_ENCODE_SRGB, ID_INSTANCES};
 use crate::gpu::{DeviceContext, GpuError, GraphicsPipelineDesc, Owned, Shader, Specialization, pipeline_layout};
 use crate::renderer::options::{ColorEncoding, Fragment, Geometry, Options, Style, Target};
 use crate::renderer::shader::{
-    Capture, DrawConstants, GeometryKey, INPUT, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId, without_variable,
+    Capture, DrawConstants, GeometryKey, PipelineKey, STAGES, SetLayouts, ShaderCode, ShaderId, without_instances,
 };
 use ash::vk;
 use rustc_hash::FxHashMap;
@@ -116,7 +116,7 @@ impl DrawPipelines {
         let (fragment, ours) = fragment(style, target, recipe.displaced).unzip();
         let fragment = fragment.map(|code| match key.instances {
             true => code.to_vec(),
-            false => without_variable(code, INPUT, LOCATION_INSTANCE),
+            false => without_instances(code, vk::ShaderStageFlags::FRAGMENT, false),
         });
         // Of our constants, a shader of the caller's has those alone that say what is drawn.
         let constants = if ours == Some(true) { &encode[..] } else { &encode[..1] };

@@ -1,11 +1,8 @@
 //! What pipelines of draws are made of, but for the style.
 
 use super::vertex_input::VertexInput;
-use crate::constants::{LOCATION_INSTANCE, LOCATION_PATCH_INSTANCE};
 use crate::gpu::{DeviceProperties, GpuError, Shader, Spacing, Specialization};
-use crate::renderer::shader::{
-    Capture, INPUT, OUTPUT, ShaderCode, ShaderKey, Source, reads_texels, spaced, without_variable,
-};
+use crate::renderer::shader::{Capture, ShaderCode, ShaderKey, Source, reads_texels, spaced, without_instances};
 use ash::vk;
 
 /// A shader, with its constants.
@@ -35,12 +32,8 @@ impl RecipeStage {
     /// # Errors
     /// As [`ShaderCode::find`].
     pub(crate) fn code_of_one(&self, shaders: &ShaderCode, is_last: bool) -> Result<Vec<u32>, GpuError> {
-        let code = match (self.code(shaders)?, self.key.source.stage()) {
-            (code, "tesc") => without_variable(&code, OUTPUT, LOCATION_PATCH_INSTANCE),
-            (code, "tese") => without_variable(&code, INPUT, LOCATION_PATCH_INSTANCE),
-            (code, _) => code,
-        };
-        Ok(if is_last { without_variable(&code, OUTPUT, LOCATION_INSTANCE) } else { code })
+        let code = self.code(shaders)?;
+        Ok(without_instances(&code, self.shader(&code, &[]).stage, is_last))
     }
 
     /// Its constants, and one more.

@@ -25,4 +25,4 @@ pub(crate) use key::{Capture, GeometryKey, PatchStages, PipelineKey, reads_texel
 pub(crate) use layout::{
     MODEL_BUFFERS, MODEL_TEXELS, STAGES, SetLayouts, TABLE_TEXELS, VECTOR_TEXEL, has_binding, stage_storage_buffers,
 };
-pub(crate) use spirv::{Fault, INPUT, OUTPUT, check_spirv, spaced, without_variable};
+pub(crate) use spirv::{Fault, check_spirv, spaced, without_instances};

@@ -1,5 +1,6 @@
 //! SPIR-V, read and changed word by word.
 
+use crate::constants::{LOCATION_INSTANCE, LOCATION_PATCH_INSTANCE};
 use crate::gpu::Spacing;
 use ash::vk;
 use std::collections::HashMap;
@@ -118,13 +119,24 @@ pub(crate) fn spaced(code: &[u32], spacing: Spacing) -> Vec<u32> {
 }
 
 /// The storage class of what a shader takes from the stage before (SPIR-V 1.6, 3.7).
-pub(crate) const INPUT: u32 = 1;
+const INPUT: u32 = 1;
 /// The storage class of what it hands on.
-pub(crate) const OUTPUT: u32 = 3;
+const OUTPUT: u32 = 3;
+
+/// A shader for draws of items that have no instances; `is_last` if rasterization follows.
+pub(crate) fn without_instances(code: &[u32], stage: vk::ShaderStageFlags, is_last: bool) -> Vec<u32> {
+    let code = match stage {
+        vk::ShaderStageFlags::TESSELLATION_CONTROL => without_variable(code, OUTPUT, LOCATION_PATCH_INSTANCE),
+        vk::ShaderStageFlags::TESSELLATION_EVALUATION => without_variable(code, INPUT, LOCATION_PATCH_INSTANCE),
+        vk::ShaderStageFlags::FRAGMENT => without_variable(code, INPUT, LOCATION_INSTANCE),
+        _ => code.to_vec(),
+    };
+    if is_last { without_variable(&code, OUTPUT, LOCATION_INSTANCE) } else { code }
+}
 
 /// A shader without the number that it takes or hands on at a location, which nothing that runs reads or writes: drivers keep room
 /// for all that is declared. A shader that has none, or does more with it than read and write, is as it was.
-pub(crate) fn without_variable(code: &[u32], class: u32, location: u32) -> Vec<u32> {
+fn without_variable(code: &[u32], class: u32, location: u32) -> Vec<u32> {
     const OP_UNDEF: u32 = 1;
     const OP_NAME: u32 = 5;
     const OP_ENTRY_POINT: u32 = 15;
@@ -182,13 +194,9 @@ mod tests {
 
     #[test]
     fn variables_are_left_out() {
-        use crate::constants::{LOCATION_INSTANCE, LOCATION_PATCH_INSTANCE};
         let code = ShaderId::EvaluateTessellationTeseBicubic.code();
-        let [less, least] = {
-            let less = without_variable(code, OUTPUT, LOCATION_INSTANCE);
-            let least = without_variable(&less, INPUT, LOCATION_PATCH_INSTANCE);
-            [less, least]
-        };
+        let stage = vk::ShaderStageFlags::TESSELLATION_EVALUATION;
+        let [less, least] = [false, true].map(|is_last| without_instances(code, stage, is_last));
         // A variable, its place, what writes it and its name among those of the entry point; what reads it becomes what is not known.
         let count = |code: &[u32]| instructions(code).expect("SPIR-V").len();
         assert!(count(code) > count(&less) && count(&less) > count(&least), "{} {}", count(code), count(&less));
